@@ -194,7 +194,7 @@ def test_a_volume_method_at_cfl_1_converges_to_the_run(kind: str) -> None:
     run = ss.simulate(problem, steps * time)
     assert run.slip_rate(steps * time) > 0.0
     errors = []
-    for finer in (16, 32, 64):
+    for finer in (8, 16, 32):
         zs = [np.repeat(np.array(rho) * np.array(c), finer * np.array(counts)) for rho, c, counts in stacks]
         stiffness = [1.0 / np.sum(1.0 / one) for one in zs]
         chains = [
@@ -205,5 +205,5 @@ def test_a_volume_method_at_cfl_1_converges_to_the_run(kind: str) -> None:
         found = slip_on_grid(chains, kind == "joined", law, normal, time / finer, steps * finer, start)
         errors.append(abs(found - float(run.slip(steps * time))))
     # where a front arrives at the end of a step the rule is of first order, elsewhere of second
-    assert errors[-1] < 2e-3 * float(run.slip(steps * time))
+    assert errors[-1] < 4e-3 * float(run.slip(steps * time))
     assert all(1.8 < coarse / fine < 4.2 for coarse, fine in pairwise(errors)), errors

@@ -272,6 +272,7 @@ duration = "0.2 s"
 """
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("initial", "rate"),
     [

@@ -142,7 +142,7 @@ FAR = {
 }
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("impedance", [0.0, 4e6, 9.8e6, 3e7])
 @pytest.mark.parametrize("name", FAR)
 def test_a_varying_far_stress_agrees_with_the_method_of_steps(name: str, impedance: float) -> None:

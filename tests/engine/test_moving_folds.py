@@ -108,7 +108,7 @@ def sampled(run: ss.Solution, points: int) -> list[tuple[float, float, float]]:
 
 @pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("driver", [math.inf, 0.5 * Z])
-@pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
+@pytest.mark.parametrize("law", [WAVY, WEAKENING, PRODUCT, FREE, KINKED], ids=["wavy", "weakening", "product", "free", "kinked"])
 def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.FrictionLaw, driver: float) -> None:
     """At each time a stable root; jumps under a smooth load only where g turns (or stick ends), and to the next root that way."""
     slab = replace(SLAB, driver_impedance=driver)
@@ -117,7 +117,7 @@ def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.Fricti
     for law_slip, rate, load in sampled(run, 120):
         assert min(abs(rate - root) for root in stable_roots(law, law_slip, load)) < 1e-9
     folds = run.shocks[run.shocks.cause == "fold"]
-    assert len(folds) >= 2 or law is not WAVY
+    assert len(folds) >= 2 or (law, driver) != (WAVY, math.inf)
     for shock in folds.itertuples():
         sense = math.copysign(1.0, shock.rate_before or shock.rate_after)
         before, after = abs(shock.rate_before), abs(shock.rate_after)
