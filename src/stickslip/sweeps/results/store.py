@@ -51,7 +51,8 @@ class ResultStore:
         self.arrays: dict[str, Any]
         if isinstance(place, Path):
             group = zarr_folder.opened(place, "r+")
-            self.arrays = {name: array_of(group, name) for name in self.names}
+            with zarr.config.set({"array.write_empty_chunks": True}):  # taken when opened: a file that is missing is noticed
+                self.arrays = {name: array_of(group, name) for name in self.names}
         else:
             self.loaded = self._opened().load()
             self.arrays = {name: self.loaded[name].values for name in self.names}
@@ -106,7 +107,7 @@ class ResultStore:
         reasons = np.full(len(result.status), "", dtype=np.dtypes.StringDType())
         for place, reason in result.reasons.items():
             reasons[place] = reason
-        with writing(self.place), zarr.config.set({"array.write_empty_chunks": True}):  # a file that is missing is noticed
+        with writing(self.place):
             for name, values in result.results.items():
                 self.arrays[name][region] = values.reshape(shape + values.shape[1:])
             self.arrays[REASON][region] = reasons.reshape(shape)
