@@ -112,7 +112,8 @@ class Readings(NamesAttributes):
         """Return displacement (m), velocity (m/s) and shear stress (Pa) in the slab, at distances from the contact and times.
 
         `x` (m) and `t` (s) are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take
-        at a wave front. Raises InputError for a block, and for `x` outside the slab. See also `stickslip.observables.field`.
+        at a wave front; at the end of a run on layers it is the left one. Raises InputError for a block, and for `x` outside the
+        body. See also `stickslip.observables.field`.
         """
         from stickslip.observables.field import field
 

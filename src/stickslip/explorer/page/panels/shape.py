@@ -31,9 +31,9 @@ def data_of(answer: Answer, units: Units) -> View:
     scale, bar = REACH * WIDTH / largest * units.slip[1], round_step(largest / size)
     keys = [LegendKey("velocity of particles", "signed", "scale")] if slab is not None else []
     low, height = (answer.slab.place[[0, -1]] / units.place[1]).tolist() if answer.slab is not None else (0.0, 1.0)
-    size = height - low
+    tall = height - low
     return View(
-        limits={"shape_x": (0.0, WIDTH), "shape_y": (low - 0.16 * size, height + 0.17 * size)},
+        limits={"shape_x": (0.0, WIDTH), "shape_y": (low - 0.16 * tall, height + 0.17 * tall)},
         labels={"axis:shape_y@shape": axis_label("distance", "x", units.place[0])},
         keys={"shape": tuple(keys)},
         hidden={"axis:shape_x@shape"} | (set() if slab is not None else {"axis:shape_y@shape"}),
