@@ -83,6 +83,7 @@ ROOMS = {
     ),
     "observables": (
         ("planar", "predictability", "severity", "proof", "quadrature", "rule_influence"),
+        ("layer_replay",),
         ("layers", "waves"),
         ("inside_layers",),
         ("energy", "field"),

@@ -68,7 +68,7 @@ def test_check_shows_layers_and_cells() -> None:
 def test_check_warns_of_rest_that_is_walked_through() -> None:
     long = ss.load_scenario("low-velocity-zone").with_values({"duration": "1 year"})
     (warning,) = examine(long).warnings
-    assert "about 2.8e+07 pieces, each of 5 cells; under long loading give a driver of finite impedance" in warning
+    assert "about 2.8e+07 pieces, each of 5 cells; under long loading give drag, or a driver of finite impedance" in warning
     assert not examine(long.with_values({"driver_impedance": 2e8})).warnings
     assert "the run ends before the first echo returns at R = 1.14286 s" in examine(long.with_values({"duration": 1.0})).warnings
 

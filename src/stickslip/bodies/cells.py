@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 MOST_CELLS = 4096
@@ -26,24 +28,35 @@ class CellCut(NamedTuple):
     error: float
 
 
-def cut_into_cells(times: ArrayLike, allowed: float) -> CellCut:
+def cut_into_cells(times: ArrayLike, allowed: float, longest: float = math.inf) -> CellCut:
     """Cut layers with these travel times (s) into as few cells of equal time as the allowed relative error (1) permits.
 
-    The travel time of all layers together stays what it is. Raises InputError if it takes more than MOST_CELLS cells.
+    The travel time of all layers together stays what it is. A finite `longest` (s) is for layers with drag: every cell is then two
+    halves, with a drag between them, that last at most so long together. Raises InputError if it takes more than MOST_CELLS cells.
     """
-    given = np.asarray(times, float)
+    if math.isinf(longest):
+        return _cut(np.asarray(times, float), allowed, longest, MOST_CELLS)
+    whole = _cut(np.asarray(times, float), allowed, longest, MOST_CELLS // 2)
+    return CellCut(tuple(2 * count for count in whole.counts), 0.5 * whole.time, whole.error)
+
+
+def _cut(given: Floats, allowed: float, longest: float, most: int) -> CellCut:
     total, best = float(given.sum()), CellCut((), 0.0, np.inf)
-    for number in range(len(given), MOST_CELLS + 1):
+    if total > most * longest:
+        raise InputError(
+            f"drag needs more than {most} cells of two halves, each of at most {longest:.3g} s: allow more (drag_step)"
+        )
+    for number in range(len(given), most + 1):
         counts = np.maximum(np.rint(given * (number / total)), 1.0)
         time = total / float(counts.sum())
         error = float(np.max(np.abs(counts * time / given - 1.0)))
-        if error < best.error and counts.sum() <= MOST_CELLS:
+        if error < best.error and counts.sum() <= most and time <= longest:
             best = CellCut(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING else 0.0)
         if best.error <= allowed:
             return best
-    if len(given) > MOST_CELLS:
-        raise InputError(f"{len(given)} layers are more than the {MOST_CELLS} cells that there may be: join thin layers")
+    if len(given) > most:
+        raise InputError(f"{len(given)} layers are more than the {most} cells that there may be: join thin layers")
     raise InputError(
-        f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {MOST_CELLS} cells of equal time give them with"
+        f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {most} cells of equal time give them with"
         f" a relative error of {best.error:.2g}, and {allowed:g} is asked for: allow more (travel_time_error), or join thin layers"
     )

@@ -5,7 +5,8 @@ A cell of impedance Z is crossed in the time T. From behind it, where the stress
     Z (W + Z tanh(s T)) / (Z + W tanh(s T))
 
 and at the driver W is the driver's impedance. W is kept as a quotient of two functions of s without poles, so that a rigid driver
-needs no exception and slow disturbances, which meet springs in series, lose no digits. Cells of one layer are crossed at once.
+needs no exception and slow disturbances, which meet springs in series, lose no digits. Cells of one layer are crossed at once; with
+drag two by two, between which it adds its stress over velocity to W.
 """
 
 from __future__ import annotations
@@ -49,13 +50,19 @@ def _of_side(layers: Layers, s: Complex) -> Quotient:
     above = np.full(s.shape, 1.0 if rigid else layers.driver_impedance / layers.impedances[-1], complex)
     below = np.full(s.shape, 0.0 if rigid else 1.0, complex)
     last = layers.impedances[-1]
-    for z, count in zip(reversed(layers.impedances), reversed(layers.counts), strict=True):
+    drags = np.cumsum((0, *layers.counts[:-1]))
+    for z, count, dragged in zip(*map(reversed, (layers.impedances, layers.counts, layers.drags[drags].tolist())), strict=True):
         above *= last / z  # above / below is W over the impedance of the present layer
-        fades = np.expm1(-2.0 * s * (count * layers.time))
+        together = 1 if dragged else count
+        fades = np.expm1(-2.0 * s * (together * layers.time))
         with_it, against = 1.0 + 0.5 * fades, -0.5 * fades  # cosh and sinh, times exp(-s T)
-        above, below = above * with_it + below * against, below * with_it + above * against
-        size = np.maximum(np.abs(above), np.abs(below))
-        above, below, last = np.asarray(above / size), np.asarray(below / size), z
+        for crossed in range(count // together):
+            if crossed % 2:
+                above = above + (dragged / z) * below
+            above, below = above * with_it + below * against, below * with_it + above * against
+            size = np.maximum(np.abs(above), np.abs(below))
+            above, below = np.asarray(above / size), np.asarray(below / size)
+        last = z
     return Quotient(np.asarray(above * last), np.asarray(below))
 
 

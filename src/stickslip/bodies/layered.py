@@ -10,15 +10,29 @@ from typing import ClassVar, cast
 
 from stickslip.bodies.cells import CellCut
 from stickslip.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_equivalent
-from stickslip.bodies.layers import Layers, cells_for, check_lengths, of_layers, travel_times
+from stickslip.bodies.layers import (
+    Layers,
+    cells_for,
+    check_lengths,
+    drag_of_layers,
+    given_drag,
+    longest_cell,
+    of_layers,
+    travel_times,
+)
 from stickslip.bodies.sliding import SpringBlock
-from stickslip.foundation.conversion import Number, Numbers
+from stickslip.foundation.conversion import Number, Numbers, OptionalNumbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity, declare, quantity
 from stickslip.foundation.show import Declared
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
+
+
+DRAG_STEP = Quantity("1", "largest share of a wave that drag takes at one place", above=0)
+LARGEST_STEP = 0.5
+"""Largest `drag_step` (1) that may be allowed."""
 
 
 def _driver(side: str) -> Quantity:
@@ -52,6 +66,11 @@ class OfLayers(WithWaves, ABC):
     def is_joined(self) -> bool:
         """True if there are two sides that move as one."""
         return False
+
+    @property
+    def has_drag(self) -> bool:
+        """True if there is drag in any layer, against which waves die."""
+        return any(one.drag is not None for one in self.stacks)
 
     def _together(self, numbers: tuple[float, ...]) -> float:
         """Return what several impedances or stiffnesses are together: sides that are joined resist side by side."""
@@ -114,14 +133,15 @@ class OfLayers(WithWaves, ABC):
 
         Its stiffness is that of the layers in series, and of both sides in series, or side by side if they are joined. Its mass has
         the kinetic energy of the layers, in which the velocity falls from the contact to a driver in proportion to the compliance
-        passed. Raises InputError if a driver is not rigid.
+        passed, and its damping has the loss by their drag. Raises InputError if a driver is not rigid.
         """
         soft = "other_driver_impedance" if math.isinf(self.stacks[0].driver_impedance) else "driver_impedance"
         check_equivalent(cast(BodyOnCharacteristics, self), soft)
         whole = self.stiffness
         shares = [1.0 if self.is_joined else whole / one.stiffness for one in self.stacks]
         mass = sum(share * share * one.slow_mass for share, one in zip(shares, self.stacks, strict=True))
-        return SpringBlock(mass=mass + self.contact_mass, stiffness=whole, normal_force=self.normal_stress)
+        damping = sum(share * share * one.slow_damping for share, one in zip(shares, self.stacks, strict=True))
+        return SpringBlock(mass + self.contact_mass, whole, self.normal_stress, damping)
 
 
 @dataclass(frozen=True)
@@ -132,6 +152,10 @@ class LayeredSlab(Declared, OfLayers):
     times; their travel times are rounded to whole numbers of cells, with a relative error of at most `travel_time_error`, while
     their impedances, and the travel time of all together, stay as given. Raises InputError if a number is out of range, if the
     lists differ in length, or if no more than 4096 cells can be so exact.
+
+    With `drag` D, such as that of mud on a pipe, rho dv/dt = dsigma/dx - D v, with velocities v relative to the other side of the
+    contact: waves die, and stress at rest stays. Drag is lumped in the middle of cells, so finely that none of these places takes
+    more than the share `drag_step` of a wave. At the start the stress grows outwards by what drag takes while the driver pulls.
     """
 
     kind: ClassVar[str] = "layered-slab"
@@ -144,21 +168,25 @@ class LayeredSlab(Declared, OfLayers):
     driver_impedance: Number = declare(_driver(""), math.inf)
     contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
     travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
+    drag: OptionalNumbers = declare(drag_of_layers(), None)
+    drag_step: Number = declare(DRAG_STEP, 0.02)
 
     def __post_init__(self) -> None:
         check_body(self)
-        check_lengths(type(self).__name__, ("thickness", "density", "wave_speed"), (self.thickness, self.density, self.wave_speed))
+        _check_stacks(self, ("",), self.drag_step)
         _ = self.cells
 
     @cached_property
     def cells(self) -> CellCut:
         """The cells of equal travel time that the layers are cut into."""
-        return cells_for(type(self).__name__, travel_times(self.thickness, self.wave_speed), self.travel_time_error)
+        times, longest = travel_times(self.thickness, self.wave_speed), longest_cell(self.density, self.drag, self.drag_step)
+        return cells_for(type(self).__name__, times, self.travel_time_error, longest)
 
     @cached_property
     def stacks(self) -> tuple[Layers, ...]:
         """The layers with their cells."""
-        return (Layers(tuple(self.density), tuple(self.wave_speed), self.cells.counts, self.cells.time, self.driver_impedance),)
+        counts, time, drag = self.cells.counts, self.cells.time, given_drag(self.drag)
+        return (Layers(tuple(self.density), tuple(self.wave_speed), counts, time, self.driver_impedance, drag),)
 
 
 @dataclass(frozen=True)
@@ -167,7 +195,8 @@ class TwoSlabs(Declared, OfLayers):
 
     With sides = "apart" one slab slips on the other: the driver of the first one is pulled, that of the other one is held. With
     sides = "joined" both move as one on the contact, as the two parts of a string do under a bow, and both drivers are pulled; the
-    friction is then shared between them. Layers are cut into cells as those of a `LayeredSlab` are. A contact mass is that of the
+    friction is then shared between them. Layers are cut into cells as those of a `LayeredSlab` are, and drag acts as there, on
+    velocities as an observer sees them for whom the driver that is held, or the third body, rests. A contact mass is that of the
     place where the slabs are joined. Raises InputError if a number is out of range, if lists differ in length, or if no more than
     4096 cells can be so exact.
     """
@@ -187,17 +216,16 @@ class TwoSlabs(Declared, OfLayers):
     contact_mass: Number = quantity("kg/m^2", "mass at the contact of joined sides, per unit area", at_least=0, default=0.0)
     travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
     sides: str = declare(Choice("whether slip is between the sides, or they slip as one", (APART, JOINED)), APART)
+    drag: OptionalNumbers = declare(drag_of_layers(), None)
+    other_drag: OptionalNumbers = declare(drag_of_layers("on the other side, "), None)
+    drag_step: Number = declare(DRAG_STEP, 0.02)
 
     def __post_init__(self) -> None:
         check_body(self)
-        own = type(self).__name__
-        for prefix in ("", "other_"):
-            names = [f"{prefix}{name}" for name in ("thickness", "density", "wave_speed")]
-            check_lengths(own, names, [getattr(self, name) for name in names])
+        _check_stacks(self, ("", "other_"), self.drag_step)
         if self.contact_mass > 0.0 and not self.is_joined:
-            raise InputError(
-                f'{own}: contact_mass needs sides = "joined": between two slabs it is not clear which of them it is on'
-            )
+            why = "between two slabs it is not clear which of them it is on"
+            raise InputError(f'{type(self).__name__}: contact_mass needs sides = "joined": {why}')
         _ = self.cells
 
     @property
@@ -212,7 +240,9 @@ class TwoSlabs(Declared, OfLayers):
         Both drivers are an even number of cells away from the contact, or both an odd number.
         """
         times = travel_times(self.thickness, self.wave_speed) + travel_times(self.other_thickness, self.other_wave_speed)
-        found, own = cells_for(type(self).__name__, times, self.travel_time_error), len(self.thickness)
+        drags = (self.density, self.drag), (self.other_density, self.other_drag)
+        longest = min(longest_cell(density, drag, self.drag_step) for density, drag in drags)
+        found, own = cells_for(type(self).__name__, times, self.travel_time_error, longest), len(self.thickness)
         if sum(found.counts[:own]) % 2 == sum(found.counts[own:]) % 2:
             return found
         return CellCut(tuple(2 * count for count in found.counts), 0.5 * found.time, found.error)
@@ -222,6 +252,23 @@ class TwoSlabs(Declared, OfLayers):
         """The layers of both sides with their cells."""
         own, counts, time = len(self.thickness), self.cells.counts, self.cells.time
         return (
-            Layers(tuple(self.density), tuple(self.wave_speed), counts[:own], time, self.driver_impedance),
-            Layers(tuple(self.other_density), tuple(self.other_wave_speed), counts[own:], time, self.other_driver_impedance),
+            Layers(tuple(self.density), tuple(self.wave_speed), counts[:own], time, self.driver_impedance, given_drag(self.drag)),
+            Layers(
+                tuple(self.other_density),
+                tuple(self.other_wave_speed),
+                counts[own:],
+                time,
+                self.other_driver_impedance,
+                given_drag(self.other_drag),
+            ),
         )
+
+
+def _check_stacks(body: LayeredSlab | TwoSlabs, prefixes: tuple[str, ...], drag_step: float) -> None:
+    """Raise InputError unless the lists of each side have one number for each layer, and the share that drag takes is small."""
+    for prefix in prefixes:
+        names = [f"{prefix}{name}" for name in ("thickness", "density", "wave_speed", "drag")]
+        given = {name: getattr(body, name) for name in names if getattr(body, name) is not None}
+        check_lengths(type(body).__name__, list(given), list(given.values()))
+    if drag_step > LARGEST_STEP:
+        raise InputError(f"{type(body).__name__}: drag_step must be at most {LARGEST_STEP:g}, got {drag_step:g}")

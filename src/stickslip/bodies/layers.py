@@ -20,15 +20,22 @@ LARGEST_ERROR = 0.1
 
 
 def of_layers(unit: str, meaning: str) -> NumberSeries:
-    """Declare a number of each layer, from the contact outwards."""
+    """Declare a number above 0 of each layer, from the contact outwards."""
     return NumberSeries(Quantity(unit, f"{meaning} of each layer, from the contact outwards", above=0), least=1)
+
+
+def drag_of_layers(side: str = "") -> NumberSeries:
+    """Declare the drag of each layer on one side."""
+    meaning = f"{side}viscous drag of each layer: stress over velocity for each metre of thickness"
+    return NumberSeries(Quantity("Pa s/m^2", meaning, at_least=0), least=1)
 
 
 @dataclass(frozen=True)
 class Layers:
     """The layers on one side of a contact, from the contact outwards, and the impedance of the driver behind them (Pa s/m).
 
-    `counts` is the number of cells of each layer, and `time` what a wave takes to cross one (s).
+    `counts` is the number of cells of each layer, and `time` what a wave takes to cross one (s). Layers with drag have an even
+    number of them: the drag of two cells acts between these, on the velocity there.
     """
 
     density: tuple[float, ...]
@@ -36,6 +43,18 @@ class Layers:
     counts: tuple[int, ...]
     time: float
     driver_impedance: float
+    drag: tuple[float, ...] | None = None
+    """Drag of each layer (Pa s/m^2), if there is any."""
+
+    @property
+    def drags(self) -> Floats:
+        """The stress over velocity (Pa s/m) that drag takes at the far end of each cell."""
+        if self.drag is None:
+            return np.zeros(sum(self.counts))
+        lengths = 2.0 * self.time * np.array(self.wave_speed)
+        found = np.repeat(np.array(self.drag) * lengths, self.counts)
+        found[1::2] = 0.0
+        return found
 
     @property
     def impedances(self) -> tuple[float, ...]:
@@ -57,6 +76,14 @@ class Layers:
         """The share (1) of the compliance between the contact and each place where cells meet, from 0 to 1 at the driver."""
         return np.array([0.0, *accumulate(1.0 / z for z in self.cell_impedances)]) * (self.stiffness * self.time)
 
+    def rates(self, contact: float, driver: float) -> Floats:
+        """Return the velocity (m/s) at each place where cells meet while the layers are sheared evenly between two velocities."""
+        return np.asarray(contact + (driver - contact) * self.passed)
+
+    def held(self, contact: float, driver: float) -> Floats:
+        """Return the stress (Pa) that drag then takes between the contact and each of these places."""
+        return np.append(0.0, np.cumsum(self.drags * self.rates(contact, driver)[1:]))
+
     @property
     def stiffness(self) -> float:
         """The decrease of the stress per metre of slow slip under a rigid driver (Pa/m): the cells are springs Z / T in series."""
@@ -68,6 +95,12 @@ class Layers:
         near, far = 1.0 - self.passed[:-1], 1.0 - self.passed[1:]
         masses = np.array(self.cell_impedances) * self.time
         return float(np.sum(masses * (near * near + near * far + far * far))) / 3.0
+
+    @property
+    def slow_damping(self) -> float:
+        """The damping (Pa s/m) with the loss of slow slip, beyond what drag takes under a driver while the contact rests."""
+        left = 1.0 - self.passed[1:]
+        return float(np.sum(self.drags * left * left))
 
     @property
     def reflection(self) -> float:
@@ -102,11 +135,24 @@ def check_lengths(owner: str, names: Sequence[str], lists: Sequence[Sequence[flo
         raise InputError(f"{owner}: {', '.join(names[:-1])} and {names[-1]} need one number for each layer, got {found}")
 
 
-def cells_for(owner: str, times: tuple[float, ...], allowed: float) -> CellCut:
-    """Return the cells of layers with these travel times (s). Raises InputError, which begins with `owner`, if there are none."""
+def given_drag(drag: Sequence[float] | None) -> tuple[float, ...] | None:
+    """Return the drags of layers (Pa s/m^2), or None if there is no drag at all."""
+    return tuple(drag) if drag is not None and any(drag) else None
+
+
+def longest_cell(density: Sequence[float], drag: Sequence[float] | None, step: float) -> float:
+    """Return the longest time (s) that two halves of a cell may take, so that drag takes at most the share `step` (1) of a wave."""
+    return min((2.0 * step * rho / one for rho, one in zip(density, drag or (), strict=False) if one > 0.0), default=math.inf)
+
+
+def cells_for(owner: str, times: tuple[float, ...], allowed: float, longest: float) -> CellCut:
+    """Return the cells of layers with these travel times (s). Raises InputError, which begins with `owner`, if there are none.
+
+    `longest` is that of `cut_into_cells`.
+    """
     if allowed > LARGEST_ERROR:
         raise InputError(f"{owner}: travel_time_error must be at most {LARGEST_ERROR:g}, got {allowed:g}")
     try:
-        return cut_into_cells(times, allowed)
+        return cut_into_cells(times, allowed, longest)
     except InputError as error:
         raise InputError(f"{owner}: {error}") from None

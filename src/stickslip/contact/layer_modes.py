@@ -60,8 +60,8 @@ class LayerModes:
 
     @cached_property
     def _keeps_energy(self) -> bool:
-        """True if drivers send back all that they meet."""
-        return all(abs(one.reflection) == 1.0 for one in self.body.stacks)
+        """True if drivers send back all that they meet, and no drag takes any."""
+        return not self.body.has_drag and all(abs(one.reflection) == 1.0 for one in self.body.stacks)
 
     @cached_property
     def is_neutral(self) -> bool:

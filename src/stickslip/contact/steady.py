@@ -169,6 +169,8 @@ class _Steady:
         first = " at first" if problem.loading_varies else ""
         if problem.far_stress_rate:
             return "the far stress keeps changing"
+        if self.is_soft and isinstance(problem.body, OfLayers) and problem.body.has_drag:  # it takes stress from steady sliding too
+            return "behind a driver that gives way, steady sliding against drag is not sought"
         if self.drive == 0.0:
             return f"nothing pulls{first}"
         if law.states and law.steady_state(1.0) is None:
@@ -322,7 +324,8 @@ class _Steady:
             return body.damping - body.impedance  # a mass sends sharp fronts back whole
         if body.has_machine:
             return _largest(lambda fall: self._withstands(fall), self._surely_falls())
-        if body.is_driven_rigidly or not (self.is_soft or isinstance(body, OfLayers)):
+        dragged = isinstance(body, OfLayers) and body.has_drag
+        if not dragged and (body.is_driven_rigidly or not (self.is_soft or isinstance(body, OfLayers))):
             return body.damping - body.impedance
         if isinstance(body, OfLayers):
             heavy = body.inertia > 0.0

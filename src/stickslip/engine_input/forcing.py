@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import BodyOnCharacteristics
+from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
@@ -171,6 +171,14 @@ def far_excess(problem: Problem) -> Any:
     return problem.excess - problem.body.impedance * problem.rate
 
 
+def far_at_first(problem: Problem) -> Any:
+    """Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa)."""
+    body, rate = problem.body, problem.rate
+    if not isinstance(body, OfLayers):
+        return far_excess(problem)
+    return far_excess(problem) + float(body.stacks[0].held(rate, rate + problem.initial_shear)[-1])
+
+
 def steady_inflow(problem: Problem) -> tuple[float, float]:
     """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second. Slab: Pa; block: N/s."""
     body = problem.body
@@ -314,7 +322,7 @@ def _lossy(problem: Problem) -> tuple[list[Segment], Tone]:
         steady = gain * (body.driver_impedance * problem.first_pull_rate - problem.strength)
     else:
         segments, tone = _scaled(problem.pull_rate, gain * body.driver_impedance)
-        steady = gain * (far_excess(problem) if far is None else far - problem.strength)
+        steady = gain * (far_at_first(problem) if far is None else far - problem.strength)
     growth = gain * problem.far_stress_rate
     return [Segment(s.start, s.value + steady + growth * s.start, s.slope + growth) for s in segments], tone
 

@@ -1,7 +1,8 @@
 """Prepare a body of layers for the engine: its cells, and the waves in them before the start (`engine.waves.ladder`).
 
 At the start the stress is the same along each side and grows at the same rate, and the velocity rises from the contact to the
-driver in proportion to the compliance passed. These waves are straight lines in time.
+driver in proportion to the compliance passed. These waves are straight lines in time. Where there is drag, the stress is that at
+the contact and what drag takes up to there, so that it would stay so: what a steady driver holds it with is the stress behind it.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ class StartingSide(NamedTuple):
     pulled_at: float
     """Rate at which the driver is pulled: not the rate of the slab there if the driver gives way."""
     stress: float
-    far_stress: float
+    far_stress: float | None
+    """None for that behind the last layer."""
     far_stress_rate: float
     share: float
     """Share (1) in the load and its growth."""
@@ -59,12 +61,13 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
     stress, growth = far_excess(problem), problem.far_stress_rate
     given = problem.far_stress
     assert problem.varies or not isinstance(given, LoadingHistory)
-    far = stress if given is None or isinstance(given, LoadingHistory) else given - problem.strength
+    far = None if given is None or isinstance(given, LoadingHistory) else given - problem.strength
     whole = body.stiffness
     for n, layers in enumerate(body.stacks):
         if body.is_joined:
             share = layers.stiffness / whole
-            yield StartingSide(layers, rate, rate + shear, pull, share * stress, share * far, share * growth, share)
+            own = None if far is None else share * far
+            yield StartingSide(layers, rate, rate + shear, pull, share * stress, own, share * growth, share)
         elif n == 0:
             driver = rate + shear
             yield StartingSide(layers, driver - shear * whole / layers.stiffness, driver, pull, stress, far, growth, 1.0)
@@ -90,12 +93,15 @@ def _cells_of(side: StartingSide) -> at.Floats:
     """Return the cells of one side, from the contact outwards."""
     layers = side.layers
     zs, time = np.array(layers.cell_impedances), layers.time
-    rates = side.contact_rate + (side.driver_rate - side.contact_rate) * layers.passed
+    rates, held = (of(side.contact_rate, side.driver_rate) for of in (layers.rates, layers.held))
+    drags = layers.drags[:-1]
     growth = layers.stiffness * (side.driver_rate - side.contact_rate)
     table = LadderCell.table(len(zs))
     cells = LadderCell.of(table)
     cells.impedance = zs
-    cells.reflection[:-1], cells.reflection[-1] = (zs[:-1] - zs[1:]) / (zs[:-1] + zs[1:]), layers.reflection
+    resist = zs[:-1] + zs[1:] + drags
+    cells.reflection[:-1], cells.reflection[-1] = (zs[:-1] - zs[1:] - drags) / resist, layers.reflection
+    cells.reflection_beyond[:-1] = (zs[1:] - zs[:-1] - drags) / resist
     cells.is_last[-1] = 1.0
     cells.inflow[-1], cells.inflow_rate[-1] = _steady_inflow(side)
     cells.inflow_before[-1] = 2.0 * zs[-1] * side.driver_rate
@@ -103,7 +109,7 @@ def _cells_of(side: StartingSide) -> at.Floats:
     away = place % 2 == 0  # the even place of the cell is the one nearer to the contact
     sign = np.where(away, -1.0, 1.0)
     cells.ramp_share = side.share * sign
-    cells.wave = zs * rates[np.where(away, place, place + 1)] + sign * (side.stress - growth * 2.0 * time)
+    cells.wave = zs * rates[np.where(away, place, place + 1)] + sign * (side.stress + held[:-1] - growth * 2.0 * time)
     cells.growth = sign * growth
     return table
 
@@ -114,7 +120,9 @@ def _steady_inflow(side: StartingSide) -> tuple[float, float]:
     if np.isinf(layers.driver_impedance):
         return 2.0 * layers.impedances[-1] * side.pulled_at, 0.0
     gain, growth = 1.0 + layers.reflection, side.far_stress_rate
-    sent = layers.driver_impedance * side.pulled_at + side.far_stress - growth * layers.inflow_delay
+    held = float(layers.held(side.contact_rate, side.driver_rate)[-1])
+    far = side.stress + held if side.far_stress is None else side.far_stress
+    sent = layers.driver_impedance * side.pulled_at + far - growth * layers.inflow_delay
     return gain * sent, gain * growth
 
 

@@ -12,7 +12,8 @@ import numpy as np
 from stickslip.bodies import OfLayers
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.foundation.errors import InputError
-from stickslip.observables.layers import MOST, MOVED, MOVED_IN_TRIP, LayerWaves
+from stickslip.observables.layer_replay import MOVED, MOVED_IN_TRIP
+from stickslip.observables.layers import MOST, LayerWaves
 from stickslip.trajectory.history import History, Side
 
 ROUNDING = 1e-12
@@ -120,7 +121,8 @@ class _Totals:
     def at(self, trip: Integers, phase: Floats) -> tuple[Floats, Floats]:
         """Return the integrals of E and O, shape (places, cells)."""
         before = self.waves.earlier(trip, phase)
-        of_even, of_odd = self.waves.rows(trip, phase), self.waves.odd(self.waves.rows(*before), *before)
+        both = self.waves.rows(*(np.concatenate(pair) for pair in zip((trip, phase), before, strict=True)))
+        of_even, of_odd = both[: len(trip)], self.waves.odd(both[len(trip) :], *before)
         self.values = of_even[:, 0], of_odd[:, 0]
         passed = [(one > self.base[self.which])[:, None] for one in (trip, before[0])]
         even, odd = (np.where(past, ends[self.which], 0.0) for past, ends in zip(passed, self.ends, strict=True))

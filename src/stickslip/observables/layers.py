@@ -5,188 +5,38 @@ leaves its even place at time s, O(s) the one that leaves its odd place, which f
 the reference strength; where sides are joined, each bears its share of that (`engine_input.ladder`). A step of 2 T follows from
 the slip rate alone, so that the loads of the history are not used: they can be compared.
 
-The integral of E from the start of a round trip obeys the same recursion, and gives displacements without a quadrature. The replay
-of one moment takes a time in proportion to the pieces of the history before it, and to the number of cells.
+The kernels are in `layer_replay`. A replay takes a time in proportion to the pieces of the history, to the cells, and to the phases
+that are asked for; one that answers many moments costs hardly more than one for the last of them.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from stickslip.bodies import OfLayers
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Floats, Integers, LadderCell
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.engine_input.ladder import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
+from stickslip.observables.layer_replay import (
+    PULL,
+    SUMS,
+    TOTAL,
+    VALUE,
+    FollowedTrips,
+    FollowedWaves,
+    LadderCells,
+    SlipPieces,
+    WaveQueries,
+    answer,
+    replay,
+)
 from stickslip.trajectory.history import History, Positions
 
-VALUE, TOTAL, PULL = 0, 1, 2
-"""What drivers send: a load where it joins the waves (Pa), its integral in the round trip (Pa s), and the driver's rate (m/s)."""
-MOVED, MOVED_IN_TRIP, WORK, RADIATED = range(4)
-"""Sums of a replay: how far the face of the second side has moved (m), since the start and since that of the round trip, and the
-work of the drivers and the energy radiated through them (J/m^2), integrated over time at one phase: J/(m^2 s).
-"""
 MOST = 1 << 19
-"""Numbers that are replayed together, of cells or of what drivers send: it keeps the memory bounded."""
-
-
-class SlipPieces(NamedTuple):
-    """The slip of the contact, as arrays over the pieces of the history: see `layout.Store`."""
-
-    trip: Integers
-    phase_from: Floats
-    phase_to: Floats
-    speed: Floats
-    bend: Floats
-    rate: Floats
-    grown: Floats
-    """Slip in the whole piece (m)."""
-
-
-class LadderCells(NamedTuple):
-    """The cells, as arrays; see `layout.LadderCell`."""
-
-    impedance: Floats
-    reflection: Floats
-    ramp: Floats
-    """Growth of the wave in a round trip of a settled rest (Pa)."""
-    wave: Floats
-    growth: Floats
-    starts: Integers
-    """First cell of each side, and the number of cells."""
-    driver: Floats
-    """Impedance of the driver of each side (Pa s/m)."""
-    strength: Floats
-    """Reference strength (Pa) of each side."""
-    joined: int
-    delay: float
-    """Time (s) from the driver to the place where waves are followed."""
-
-
-class ReplaySteps(NamedTuple):
-    """Replays at several phases (s), with the round trips into which single steps lead, and what drivers send in them."""
-
-    phase: Floats
-    asked: Integers
-    """Round trip (at least -1) of each query, in order at each phase."""
-    first: Integers
-    """First query of each phase, and the number of queries."""
-    trip: Integers
-    sent: Floats
-    """Array over phases, steps, sides, and VALUE, TOTAL and PULL."""
-
-
-@kernel
-def replay(contact: SlipPieces, ladder: LadderCells, steps: ReplaySteps, rows: Floats, sums: Floats) -> None:
-    """Write E, its integral and the sums at each query; no rows if there is no room for them."""
-    both, growth, asked = np.empty((2, len(ladder.impedance))), np.zeros(4), steps.asked
-    wave, total = both[0], both[1]
-    for u in range(len(steps.phase)):
-        phase, q, piece, trip = steps.phase[u], steps.first[u], 0, -1
-        state = np.zeros(4)
-        growth[:] = 0.0
-        wave[:] = ladder.wave + ladder.growth * phase
-        total[:] = (ladder.wave + 0.5 * ladder.growth * phase) * phase
-        slope = 0.0
-        for k in range(len(steps.trip) + 1):
-            upto = steps.trip[k] if k < len(steps.trip) else asked[steps.first[u + 1] - 1] + 1
-            while q < steps.first[u + 1] and asked[q] < upto:
-                more = float(asked[q] - trip)
-                if len(rows) > 0:
-                    rows[q, 0] = wave + more * ladder.ramp
-                    rows[q, 1] = total + more * phase * ladder.ramp
-                sums[q] = state + more * growth
-                sums[q, WORK] += 0.5 * more * (more + 1.0) * slope
-                q += 1
-            if k == len(steps.trip) or q == steps.first[u + 1]:
-                break
-            more = float(upto - 1 - trip)
-            if more > 0.0:
-                wave += more * ladder.ramp
-                total += more * phase * ladder.ramp
-                state += more * growth
-                state[WORK] += 0.5 * more * (more + 1.0) * slope
-            trip, rate, slipped = upto, 0.0, 0.0
-            while piece < len(contact.trip) and contact.trip[piece] < trip:
-                piece += 1
-            while piece < len(contact.trip) and contact.trip[piece] == trip and contact.phase_from[piece] <= phase:
-                rate, grown = motion(contact, piece, phase)
-                slipped += grown
-                piece += 1
-            growth[:] = 0.0
-            slope = step(ladder, both, steps.sent[u, k], (rate, slipped), growth)
-            if trip == 0 and phase < ladder.delay:
-                growth[WORK] = growth[RADIATED] = slope = 0.0
-            state += growth
-            state[MOVED_IN_TRIP] = growth[MOVED_IN_TRIP]
-            growth[MOVED_IN_TRIP] = 0.0
-
-
-@kernel
-def motion(contact: SlipPieces, piece: int, phase: float) -> tuple[float, float]:
-    """Return the slip rate (m/s) at a phase (s), 0 behind the end of the piece, and the slip (m) in the piece until then."""
-    if phase >= contact.phase_to[piece]:
-        return 0.0, contact.grown[piece]
-    speed, bend, local = contact.speed[piece], contact.bend[piece], phase - contact.phase_from[piece]
-    pace = speed + np.sqrt(max(speed * speed + 4.0 * bend * local, 0.0))
-    xi = min(2.0 * local / pace, 1.0) if pace > 0.0 else 0.0
-    rate, grown = 0.0, 0.0
-    for k in range(contact.rate.shape[1] - 1, -1, -1):
-        one = contact.rate[piece, k]
-        rate = rate * xi + one
-        grown = grown * xi + one * (speed / (k + 1.0) + 2.0 * bend * xi / (k + 2.0))
-    return rate, grown * xi
-
-
-@kernel
-def step(ladder: LadderCells, both: Floats, sent: Floats, slip: tuple[float, float], growth: Floats) -> float:
-    """Let waves and integrals of one round trip ago cross two cells, and the contact answer with its slip rate (m/s) and slip (m).
-
-    Write the powers of the drivers (W/m^2) and the way (m) of the second side's face; return by how much the power grows in each
-    round trip of a settled rest.
-    """
-    wave, total, rate, slipped, slope = both[0], both[1], slip[0], slip[1], 0.0
-    for side in range(len(ladder.starts) - 1):
-        first, past = ladder.starts[side], ladder.starts[side + 1]
-        for parity in range(2):
-            for cell in range(first + parity, past, 2):
-                share = ladder.reflection[cell]
-                if cell == past - 1:
-                    away, doubled = wave[cell], 2.0 * ladder.impedance[cell]
-                    wave[cell] = share * away + sent[side, VALUE]
-                    total[cell] = share * total[cell] + sent[side, TOTAL]
-                    velocity = (away + wave[cell]) / doubled
-                    growth[WORK] += (0.5 * (wave[cell] - away) + ladder.strength[side]) * velocity
-                    slope += abs(ladder.ramp[cell]) * np.sign(ladder.ramp[first]) * -velocity
-                    if ladder.driver[side] < np.inf:
-                        growth[RADIATED] += ladder.driver[side] * (velocity - sent[side, PULL]) ** 2
-                else:
-                    away, back = wave[cell], wave[cell + 1]
-                    wave[cell], wave[cell + 1] = share * away + (1.0 + share) * back, (1.0 - share) * away - share * back
-                    away, back = total[cell], total[cell + 1]
-                    total[cell], total[cell + 1] = share * away + (1.0 + share) * back, (1.0 - share) * away - share * back
-    if len(ladder.starts) == 2:
-        wave[0] = 2.0 * ladder.impedance[0] * rate - wave[0]
-        total[0] = 2.0 * ladder.impedance[0] * slipped - total[0]
-        return slope
-    other = ladder.starts[1]
-    first, second = ladder.impedance[0], ladder.impedance[other]
-    if ladder.joined == 1:
-        for cell, own in ((0, 2.0 * first), (other, 2.0 * second)):
-            wave[cell] = own * rate - wave[cell]
-            total[cell] = own * slipped - total[cell]
-        return slope
-    # The stress at the contact is (Z2 g1 + Z1 g2 - Z1 Z2 v) / (Z1 + Z2).
-    stress = (second * wave[0] + first * wave[other] - first * second * rate) / (first + second)
-    of_time = (second * total[0] + first * total[other] - first * second * slipped) / (first + second)
-    growth[MOVED_IN_TRIP] = growth[MOVED] = (total[other] - of_time) / second
-    for cell in (0, other):
-        wave[cell] -= 2.0 * stress
-        total[cell] -= 2.0 * of_time
-    return slope
+"""Numbers that are kept together, of cells or of what drivers send: it keeps the memory bounded."""
+TOGETHER = 64
+"""Phases that are replayed together (1): what they need fits into the fast memory of a processor."""
 
 
 class LayerWaves:
@@ -207,11 +57,14 @@ class LayerWaves:
             bend=np.array(store.bend, float),
             rate=np.array(store.rate, float),
             grown=history.grown(Positions.inside(np.arange(len(history)), 1.0)),
+            moves=np.array(np.any(store.rate, axis=1), bool),
         )
         strength = np.array([side.share * self.problem.strength for side in sides])
         self.ladder = LadderCells(
             impedance=np.array(cells.impedance, float),
             reflection=np.array(cells.reflection, float),
+            beyond=np.array(cells.reflection_beyond, float),
+            drag=np.concatenate([side.layers.drags for side in sides]),
             ramp=np.array(cells.ramp_share * history.ramp, float),
             wave=np.array(cells.wave, float),
             growth=np.array(cells.growth, float),
@@ -220,6 +73,7 @@ class LayerWaves:
             strength=strength,
             joined=int(body.is_joined),
             delay=float(body.inflow_delay),
+            time=self.time,
         )
         self.is_away = np.concatenate([np.arange(count) % 2 == 0 for count in counts])
         """True for cells in which E travels away from the contact."""
@@ -249,7 +103,7 @@ class LayerWaves:
         return self.clipped(np.where(late, trip, trip - 1), np.where(late, phase - self.time, phase + self.time))
 
     def sent(self, trip: Integers, phase: Floats) -> Floats:
-        """Return what each driver sends that joins the waves at these places in time: VALUE, TOTAL and PULL on the last axis.
+        """Return what each driver sends that joins the waves at these places in time: axes sides, and VALUE, TOTAL, PULL.
 
         Until the first wave of the run has come from a driver that is behind an odd number of cells, it keeps the initial state.
         """
@@ -259,7 +113,7 @@ class LayerWaves:
             np.asarray(begin + known, float),
             phase - known,
         )  # and not time - low, which is rounded to the digits of the time
-        found = np.empty((*time.shape, len(self._before), 3))
+        found = np.empty((len(self._before), 3, *time.shape))
         for side, last in enumerate(self.last):
             if self.problem.loading_varies:
                 inflow, weight = inflow_of(self.problem), self._pulled[side]
@@ -271,52 +125,73 @@ class LayerWaves:
             wave, growth = self.ladder.wave[last], self.ladder.growth[last]
             kept = RIGID - self.ladder.reflection[last]  # it reflects all, and the recursion lets it reflect its share
             of_start = kept * (wave + growth * phase) + self._before[side]
-            found[..., side, VALUE] = np.where(early & (phase < before), of_start, value)
-            found[..., side, TOTAL] = whole + known * (kept * (wave + 0.5 * growth * known) + self._before[side])
-            found[..., side, PULL] = self._is_pulled[side] * self.problem.pull_rate_at(np.maximum(time - before, 0.0))
+            found[side, VALUE] = np.where(early & (phase < before), of_start, value)
+            found[side, TOTAL] = whole + known * (kept * (wave + 0.5 * growth * known) + self._before[side])
+            found[side, PULL] = self._is_pulled[side] * self.problem.pull_rate_at(np.maximum(time - before, 0.0))
         return found
 
     def rows(self, trip: Integers, phase: Floats) -> Floats:
         """Return E and its integral since the start of the round trip (axis 1), in each cell (axis 2), at places in time."""
-        return self._replayed(trip, phase, len(self.is_away))[0]
+        return self._replayed(trip, phase, 2, len(self.is_away))[0]
+
+    def waves(self, trip: Integers, phase: Floats) -> Floats:
+        """Return E in each cell (axis 1) at places in time."""
+        return self._replayed(trip, phase, 1, len(self.is_away))[0][:, VALUE]
 
     def sums(self, trip: Integers, phase: Floats) -> Floats:
         """Return the sums of a replay, `MOVED` and so on (axis 1), at places in time."""
-        return self._replayed(trip, phase, 0)[1]
+        return self._replayed(trip, phase, 2, 0)[1]
 
-    def _replayed(self, trip: Integers, phase: Floats, cells: int) -> tuple[Floats, Floats]:
-        rows, sums = np.empty((len(trip) if cells else 0, 2, cells)), np.empty((len(trip), 4))
-        order = np.lexsort((trip, phase))
-        phases, first = np.unique(phase[order], return_index=True)
-        first = np.append(first, len(trip))
-        together = max(MOST // (6 * len(self._steps)), 1)
-        for low in range(0, len(phases), together):
-            high = min(low + together, len(phases))
-            part = order[first[low] : first[high]]
-            steps = self._steps[self._steps <= max(int(trip[part].max()), 0)]
-            times = np.meshgrid(phases[low:high], steps, indexing="ij")
-            given = ReplaySteps(
-                phase=phases[low:high],
-                asked=trip[part].astype(np.int64),
-                first=(first[low : high + 1] - first[low]).astype(np.int64),
-                trip=steps,
-                sent=self.sent(times[1], times[0]),
-            )
-            found = np.empty((len(part) if cells else 0, 2, cells)), np.empty((len(part), 4))
-            replay(self.contact, self.ladder, given, *found)
-            sums[part] = found[1]
-            if cells:
-                rows[part] = found[0]
+    def powers(self, trip: Integers, phase: Floats) -> Floats:
+        """Return the same sums, but for those of motion."""
+        return self._replayed(trip, phase, 1, 0)[1]
+
+    def _replayed(self, trip: Integers, phase: Floats, levels: int, cells: int) -> tuple[Floats, Floats]:
+        rows, sums = np.empty((len(trip) if cells else 0, levels, cells)), np.empty((len(trip), SUMS))
+        phases, which = np.unique(phase, return_inverse=True)
+        last = np.full(len(phases), -1)
+        np.maximum.at(last, which, trip)
+        late_first = np.argsort(-last, kind="stable")  # phases that need but a part of the history stand together
+        rank = np.empty_like(late_first)
+        rank[late_first] = np.arange(len(phases))
+        order = np.lexsort((trip, rank[which] // TOGETHER))
+        first = np.searchsorted(rank[which[order]] // TOGETHER, np.arange(len(phases) // TOGETHER + 2))
+        for n in range(len(first) - 1):
+            part, here = order[first[n] : first[n + 1]], phases[late_first[n * TOGETHER : (n + 1) * TOGETHER]]
+            if len(part):
+                asked, place = trip[part].astype(np.int64), self._at_first(here, levels)
+                found = np.empty((len(part) if cells else 0, levels, cells)), np.empty((len(part), SUMS))
+                self._replay_together(here, place, WaveQueries(asked, rank[which[part]] % TOGETHER, *found))
+                sums[part] = found[1]
+                if cells:
+                    rows[part] = found[0]
         return rows, sums
+
+    def _at_first(self, phase: Floats, levels: int) -> FollowedWaves:
+        """Return the place one round trip before the start."""
+        wave, growth, many = self.ladder.wave[:, None], self.ladder.growth[:, None] * phase, len(phase)
+        both = [wave + growth, (wave + 0.5 * growth) * phase]
+        sums, slip = (np.zeros((number, many)) for number in (SUMS, 2))
+        return FollowedWaves(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]))
+
+    def _replay_together(self, phase: Floats, place: FollowedWaves, queries: WaveQueries) -> None:
+        """Answer queries at some phases, in the order of their round trips."""
+        last = int(queries.asked[-1])
+        trips, block = self._steps[self._steps <= max(last, 0)], max(MOST // (6 * len(phase)), 1)
+        for low in range(0, len(trips), block):
+            part = trips[low : low + block]
+            sent = self.sent(*np.broadcast_arrays(part[:, None], phase))
+            replay(self.contact, self.ladder, FollowedTrips(phase, part, sent), place, queries)
+        answer(self.ladder, FollowedTrips(phase, trips[:0], np.empty((0, 0, 0, 0))), place, queries, last + 1)
 
     def odd(self, rows: Floats, trip: Integers, phase: Floats) -> Floats:
         """Return O and its integral at times T after those of rows of E, whose places in time are given."""
         found, sent = np.empty_like(rows), self.sent(trip + 1, phase)
         for side, last in enumerate(self.last):
             near = np.arange(self.starts[side], last, 2)
-            away, back, share = rows[..., near], rows[..., near + 1], self.ladder.reflection[near]
+            away, back, share, beyond = rows[..., near], rows[..., near + 1], self.ladder.reflection[near], self.ladder.beyond[near]
             found[..., near] = share * away + (1.0 + share) * back
-            found[..., near + 1] = (1.0 - share) * away - share * back
+            found[..., near + 1] = (1.0 + beyond) * away + beyond * back
             if (last - self.starts[side]) % 2 == 0:
-                found[..., last] = self.ladder.reflection[last] * rows[..., last] + sent[:, side, :PULL]
+                found[..., last] = self.ladder.reflection[last] * rows[..., last] + sent[side, : rows.shape[1]].T
         return found

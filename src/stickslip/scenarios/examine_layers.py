@@ -24,7 +24,7 @@ def given_layers(body: BodyOnCharacteristics) -> list[Fact]:
     facts = list[Fact]()
     for name, (declared, _) in fields_of(type(body)).items():
         value = getattr(body, name)
-        if isinstance(declared, NumberSeries):
+        if isinstance(declared, NumberSeries) and value:
             numbers = ", ".join(f"{one:.6g}" for one in value)
             facts.append(Fact(name, f"{numbers} {declared.item.unit}", "", declared.item.meaning))
         elif isinstance(declared, Choice):
@@ -77,11 +77,12 @@ def _of_side(side: str, one: Layers) -> Iterator[Fact]:
 def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:
     """Return a warning about the cost of rest if every driver is rigid, for a law that sticks and a duration (s)."""
     trips = duration / body.round_trip_time
-    if not (sticks and body.is_driven_rigidly and trips > MANY_PIECES):
+    if not (sticks and body.is_driven_rigidly and not body.has_drag and trips > MANY_PIECES):
         return []
     return [
         f"waves between layers and rigid drivers never fade, so rest is followed through every round trip of two cells: about"
-        f" {trips:.2g} pieces, each of {sum(body.cells.counts)} cells; under long loading give a driver of finite impedance"
+        f" {trips:.2g} pieces, each of {sum(body.cells.counts)} cells;"
+        " under long loading give drag, or a driver of finite impedance"
     ]
 
 
@@ -97,7 +98,9 @@ def first_echo(body: OfLayers) -> float:
 
 def _first_echo(one: Layers) -> float:
     passed = 0
-    for count, share in zip(one.counts, (*one.interface_reflections, one.reflection), strict=True):
+    for count, share, drag in zip(one.counts, (*one.interface_reflections, one.reflection), one.drag or one.counts, strict=True):
+        if one.drag is not None and drag > 0.0:
+            return 2.0 * (passed + 1) * one.time
         passed += count
         if share != 0.0:
             break

@@ -46,7 +46,7 @@ COMPILED_FILES = (
     "engine_input/branch_table.py",
     "foundation/constants.py",
     "friction/formula/expression.py",
-    "observables/layers.py",
+    "observables/layer_replay.py",
     "trajectory/history.py",
     "trajectory/machine_motion.py",
     "trajectory/phase_index.py",

@@ -407,6 +407,7 @@ class LadderCell(MemoryRecord):
 
     impedance: float  # Pa s/m
     reflection: float  # 1: share of a wave from the contact that comes back at the far end of the cell
+    reflection_beyond: float  # 1: share of a wave towards the contact that goes back there; -`reflection` where there is no drag
     is_last: float  # 1 if a driver is there, else 0
     pulled: float  # 1: share in this driver's inflow of an inflow that varies; 0 without a driver
     inflow: float  # Pa: what a steady driver sends, at t = 0; 0 without one

@@ -2,7 +2,8 @@
 
 A round trip of the engine lasts 2 T here, after which the first cell answers. In units of load, f = Z v - sigma travels away from
 the contact and g = Z v + sigma towards it. Where two cells meet, with r = (Z - Z') / (Z + Z'), the nearer cell gets r f + (1 + r) g
-back, and the farther one (1 - r) f - r g. The last cell gets back r f and what its driver sends.
+back, and the farther one (1 - r) f - r g. The last cell gets back r f and what its driver sends. Where drag takes the stress d v,
+r = (Z - Z' - d) / (Z + Z' + d), and the farther cell gets (1 + r') f + r' g with r' = (Z' - Z - d) / (Z + Z' + d).
 
 Places where cells meet are counted from the contact, which is place 0. At each phase of a round trip, one wave in each cell leaves
 its *even* place; T later these waves meet at the odd places, and 2 T later at the even ones again. They are a row: a polynomial in
@@ -118,6 +119,7 @@ def meet(run: Run, first: int, past: int, parity: int) -> None:
     """Let the waves of a side, from cell `first` on, meet at its odd places (parity 0) or at its even ones (parity 1)."""
     for cell in range(first + parity, past, 2):
         away, share = wave_in(run, AIR, cell), run.ladder_cells[cell].reflection
+        beyond = run.ladder_cells[cell].reflection_beyond
         if run.ladder_cells[cell].is_last == 1.0:
             meet_driver(run, cell)
             continue
@@ -125,7 +127,7 @@ def meet(run: Run, first: int, past: int, parity: int) -> None:
         for k in range(TERMS):
             outward, inward = away[k], back[k]
             away[k] = share * outward + (1.0 + share) * inward
-            back[k] = (1.0 - share) * outward - share * inward
+            back[k] = (1.0 + beyond) * outward + beyond * inward
 
 
 @kernel

@@ -35,7 +35,7 @@ LONG_NAMES = {
     "elastic": "elastic energy",
     "kinetic": "kinetic energy, with those of a contact mass and of the driver's mass",
     "heat": "friction heat, from the law",
-    "damped": "dissipated by the block's damping",
+    "damped": "dissipated by the damping of a block, or the drag of layers",
     "radiated": "energy radiated through a driver of finite impedance; work is net of it",
     "balance": "work - stored - heat - damped: zero for an exact solution",
     "trapped": "energy of the waves inside the body, beyond a state of uniform stress",
@@ -111,7 +111,7 @@ def _events_of_layers(history: History, body: OfLayers, first: Positions, last: 
     return {
         "released": before["stored"] - after["stored"],
         "work": after["work"] - before["work"],
-        "damped": np.zeros(len(first.piece)),
+        "damped": after["damped"] - before["damped"],
         "trapped": after["trapped"],
     }
 
@@ -144,7 +144,7 @@ def trapped_note(history: History) -> str:
     elif len(history) * sum(body.cells.counts) > MOST_REPLAYED:
         return ""
     else:
-        energy = LayerEnergy(history, body).inside(end).trapped
+        energy = LayerEnergy(history, body).inside([end])[0].trapped
     holds = history.problem.strength**2 / (2.0 * body.stiffness)
     energy_unit = history.problem.unit_of("energy").replace("^", "")
     share = f", {100.0 * energy / holds:.2g} % of what the {body.noun} holds at its static strength" if holds > 0.0 else ""
@@ -173,14 +173,14 @@ def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[
     """Return the energies of a body of layers at positions, without heat; see `energies`."""
     energy, now = LayerEnergy(history, body), epochs(history, at)
     contact = 0.5 * body.inertia * history.rate(at) ** 2
-    stored, moving, trapped = np.array([energy.inside(epoch) for epoch in now]).reshape(-1, 3).T
-    work, radiated = energy.driven(now)
+    stored, moving, trapped = np.array(energy.inside(now)).reshape(-1, 3).T
+    work, radiated, dragged = energy.passed(now)
     return {
         "work": work,
         "stored": stored + contact,
         "elastic": stored - moving,
         "kinetic": moving + contact,
-        "damped": np.zeros(len(now)),
+        "damped": dragged,
         "radiated": radiated,
         "trapped": trapped,
     }

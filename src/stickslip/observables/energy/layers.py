@@ -14,7 +14,8 @@ import numpy as np
 from stickslip.bodies import OfLayers
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.forcing import inflow_of
-from stickslip.observables.layers import MOST, RADIATED, VALUE, WORK, LayerWaves
+from stickslip.observables.layer_replay import DRAGGED, RADIATED, SUMS, VALUE, WORK
+from stickslip.observables.layers import MOST, LayerWaves
 from stickslip.observables.quadrature import NODES, WEIGHTS
 from stickslip.trajectory.history import Epoch, History
 
@@ -40,21 +41,28 @@ class LayerEnergy:
 
     # ---- what the waves store -----------------------------------------------------------------------------------------------
 
-    def inside(self, now: Epoch) -> InsideLayers:
+    def inside(self, moments: list[Epoch]) -> list[InsideLayers]:
+        """Return the energies of the waves at each moment, from one replay of them all."""
+        places = [self._cells_at(now) for now in moments]
+        left = self._left(moments, [ago for ago, _ in places])
+        return [self._at(*one) for one in zip(moments, places, left, strict=True)]
+
+    def _at(self, now: Epoch, places: tuple[Floats, Floats], left: tuple[Floats, Floats]) -> InsideLayers:
         """Return the energies of the waves at a moment.
 
         The trapped energy is that beyond a state of even stress: on each side, if the sides are joined. Under rigid drivers it is
-        sheared at their rates, and the velocity changes with the compliance passed; else it is at rest.
+        sheared at their rates, and the velocity changes with the compliance passed, and the stress by what drag takes; else it is
+        at rest.
         """
         waves = self.waves
-        ago, weight = self._cells_at(now)
-        even, odd = self._left(now, ago)
+        (ago, weight), (even, odd) = places, left
         f, g = np.where(waves.is_away, even, odd), np.where(waves.is_away, odd, even)[::-1]  # the places are symmetric
         impedance, doubled = waves.ladder.impedance, 2.0 * waves.reference
         stored = weight @ ((f * (f - doubled) + g * (g + doubled)) / (4.0 * impedance))
         moving = weight @ ((f + g) ** 2 / (8.0 * impedance))
-        even_rates = impedance * self._sheared(now, ago)
-        mean = self._mean(weight @ (0.5 * (g - f) / impedance))
+        rates, held = self._sheared(now, ago)
+        even_rates, mean = impedance * rates, self._mean(weight @ (0.5 * (g - f) / impedance))
+        mean += held - self._mean(held * waves.time / impedance)
         trapped = weight @ (((f - even_rates + mean) ** 2 + (g - even_rates - mean) ** 2) / (4.0 * impedance))
         return InsideLayers(float(stored.sum()), float(moving.sum()), float(trapped.sum()))
 
@@ -75,26 +83,33 @@ class LayerEnergy:
         widths = np.diff(edges)[:, None]
         return (edges[:-1, None] + widths * places).ravel(), (widths * weights).ravel()
 
-    def _left(self, now: Epoch, ago: Floats) -> tuple[Floats, Floats]:
-        """Return the waves E and O (Pa) that left their places some times (s) before a moment, shape (times, cells)."""
-        waves, phase = self.waves, now.offset - ago
-        early = phase < 0.0
-        at = waves.clipped(np.where(early, now.trip - 1, now.trip), np.where(early, phase + waves.round, phase))
+    def _left(self, moments: list[Epoch], ago: list[Floats]) -> list[tuple[Floats, Floats]]:
+        """Return the waves E and O (Pa) that left their places some times (s) before each moment, shape (times, cells)."""
+        waves, many = self.waves, [len(times) for times in ago]
+        phase = np.concatenate([now.offset - times for now, times in zip(moments, ago, strict=True)])
+        trip, early = np.repeat([now.trip for now in moments], many), phase < 0.0
+        at = waves.clipped(np.where(early, trip - 1, trip), np.where(early, phase + waves.round, phase))
         before = waves.earlier(*at)
-        return waves.rows(*at)[:, VALUE], waves.odd(waves.rows(*before), *before)[:, VALUE]
+        found = waves.waves(*(np.concatenate(both) for both in zip(at, before, strict=True)))
+        odd, ends = waves.odd(found[len(phase) :, None], *before)[:, VALUE], np.cumsum(many)[:-1]
+        return list(zip(np.split(found[: len(phase)], ends), np.split(odd, ends), strict=True))
 
-    def _sheared(self, now: Epoch, ago: Floats) -> Floats:
-        """Return the velocities (m/s) at travel times (s) in the cells when the contact rests and the layers follow the drivers."""
+    def _sheared(self, now: Epoch, ago: Floats) -> tuple[Floats, Floats]:
+        """Return the velocities (m/s) at travel times (s) in the cells when the contact rests and the layers follow the drivers.
+
+        The second result is the stress (Pa) that drag then takes between the contact and each cell.
+        """
         body, waves = self.body, self.waves
         pulled = self.history.problem.pull_rate_at(now.trip * waves.round + now.offset)
         rate = float(pulled) if body.is_driven_rigidly else 0.0
-        found = []
+        found, held = [], []
         for n, layers in enumerate(body.stacks):
             driver = rate if n == 0 or body.is_joined else 0.0
             contact = 0.0 if len(body.stacks) == 1 or body.is_joined else driver - rate * body.stiffness / layers.stiffness
             passed = layers.passed[:-1] + np.diff(layers.passed) * (ago / waves.time)[:, None]
             found.append(contact + (driver - contact) * passed)
-        return np.concatenate(found, axis=1)
+            held.append(layers.held(contact, driver)[:-1])
+        return np.concatenate(found, axis=1), np.concatenate(held)
 
     def _mean(self, strain: Floats) -> Floats:
         """Return the mean stress minus the reference (Pa) in each cell, from integrals of that stress over Z (m)."""
@@ -102,27 +117,32 @@ class LayerEnergy:
         compliance = np.add.reduceat(self.waves.time / self.waves.ladder.impedance, starts[:-1])
         return np.repeat(np.add.reduceat(strain, starts[:-1]) / compliance, np.diff(starts))
 
-    # ---- what the drivers do ------------------------------------------------------------------------------------------------
+    # ---- what drivers and drag do -------------------------------------------------------------------------------------------
 
-    def driven(self, moments: list[Epoch]) -> tuple[Floats, Floats]:
-        """Return the work of the drivers, and the energy radiated through them, since the start until each moment (J/m^2)."""
-        waves, store = self.waves, self.history.store
-        ends = [self._joined(now) for now in moments]
+    def passed(self, moments: list[Epoch]) -> tuple[Floats, Floats, Floats]:
+        """Return energies since the start until each moment (J/m^2): work of the drivers, radiated through them, taken by drag."""
+        many, delays = len(moments), [self.waves.ladder.delay] + [self.waves.time] * self.body.has_drag
+        sums = self._summed([self._later(now, delay) for delay in delays for now in moments])
+        return sums[:many, WORK], sums[:many, RADIATED], sums[-many:, DRAGGED]
+
+    def _summed(self, ends: list[Epoch]) -> Floats:
+        """Return the sums of a replay, integrated over all phases until each moment."""
+        waves, store, moments = self.waves, self.history.store, len(ends)
         trip, phase = np.array([end.trip for end in ends]), np.array([end.offset for end in ends])
         known = int(np.searchsorted(store.trip, trip.max(), side="right"))
         fronts = np.mod(np.concatenate([self._breaks(), store.phase_from[:known], store.phase_to[:known]]), waves.time)
         edges = np.unique(np.concatenate([[0.0, waves.time, waves.round], fronts, fronts + waves.time, phase]))
         places, weights = self._places(edges)
-        sums = np.zeros((len(moments), 4))
-        together = max(MOST // (4 * len(moments)), 1)
+        sums = np.zeros((moments, SUMS))
+        together = max(MOST // (SUMS * moments), 1)
         for low in range(0, len(places), together):
             here = places[low : low + together]
             trips = trip[:, None] - (here > phase[:, None])
-            found = waves.sums(np.maximum(trips, -1).ravel(), np.tile(here, len(moments))).reshape(*trips.shape, 4)
+            found = waves.powers(np.maximum(trips, -1).ravel(), np.tile(here, moments)).reshape(*trips.shape, SUMS)
             sums += np.einsum("mpk,p->mk", found, weights[low : low + together])
-        return sums[:, WORK], sums[:, RADIATED]
+        return sums
 
-    def _joined(self, now: Epoch) -> Epoch:
-        """Return when a wave that is at a driver at a moment is where waves are followed."""
-        offset = now.offset + self.waves.ladder.delay
+    def _later(self, now: Epoch, delay: float) -> Epoch:
+        """Return when a wave that is at a driver, or at an odd place, at a moment is where waves are followed: `delay` s later."""
+        offset = now.offset + delay
         return Epoch(now.trip, offset) if offset < self.waves.round else Epoch(now.trip + 1, offset - self.waves.round)
