@@ -121,7 +121,7 @@ def drawn(seed: int) -> tuple[Any, list[Chain], float, ss.Problem]:
     draw = np.random.default_rng(seed)
     kind, drags = ("one", "apart", "joined")[seed % 3], seed >= WITH_DRAG
     time, normal, pull = 0.01, 1e7, float(draw.uniform(0.05, 0.5))
-    fields: dict[str, Any] = {"drag_step": float(draw.uniform(0.01, 0.4))} if drags else {}
+    fields: dict[str, Any] = {"drag_step": float(draw.uniform(0.1, 0.4))} if drags else {}
     chains = []
     for prefix in ("",) if kind == "one" else ("", "other_"):
         count = int(draw.integers(1, 4))
@@ -133,7 +133,7 @@ def drawn(seed: int) -> tuple[Any, list[Chain], float, ss.Problem]:
         fields |= {f"{prefix}density": density, f"{prefix}wave_speed": speed, f"{prefix}thickness": cells * time * speed}
         fields[f"{prefix}driver_impedance"] = driver
         if drags:
-            fields[f"{prefix}drag"] = draw.uniform(0.0, 2.0, count) * density / (time * sum(cells))
+            fields[f"{prefix}drag"] = draw.uniform(0.0, 1.0, count) * density / (time * sum(cells))
         chains.append(Chain(np.repeat(zs, cells), driver, pull, 1.0))
     body = (
         ss.LayeredSlab(**fields, normal_stress=normal) if kind == "one" else ss.TwoSlabs(**fields, normal_stress=normal, sides=kind)
