@@ -75,6 +75,12 @@ def test_check_asks_about_numbers(command: Command, change: str, warning: str) -
     assert warning in " ".join(command("check", "planar-patch", "--set", change).out.split())
 
 
+def test_nodes_half_a_pascal_above_their_strength_slip(command: Command) -> None:
+    out = command("check", "planar-patch", "--set", "contact.patches[0].initial.load=70000000.5 Pa").out
+    assert "51 of 256 nodes slip at once" in out
+    assert "nothing will slip" not in out
+
+
 @pytest.mark.parametrize(
     ("outside", "warning"),
     [

@@ -2,9 +2,12 @@
 
 import re
 from collections.abc import Callable
+from io import StringIO
 
 import pytest
+from rich.console import Console
 
+from stickslip.cli.output.show import print_words
 from stickslip.cli.output.studies import show_schemes
 from stickslip.scenarios.scenario import load_scenario
 from stickslip.studies.schemes import schemes
@@ -76,3 +79,18 @@ def test_sentences_break_between_words_on_a_terminal_and_not_in_a_file(
     narrow = command("run", "fig6-slab").out
     assert sentence not in narrow
     assert sentence in " ".join(narrow.split())
+
+
+@pytest.mark.parametrize(
+    ("width", "lines"),
+    [
+        (80, ["x   y   some words", "x2  y2  words that go on for longer"]),
+        (30, ["x  y", "    some words", "x2  y2", "    words that go on for", "    longer"]),
+    ],
+)
+def test_prose_stands_beside_its_row_or_where_that_is_too_narrow_below_it(width: int, lines: list[str]) -> None:
+    shown = StringIO()
+    print_words(
+        Console(width=width, file=shown), ("", "", ""), [("x", "y", "some words"), ("x2", "y2", "words that go on for longer")]
+    )
+    assert [line.rstrip() for line in shown.getvalue().splitlines()] == lines

@@ -95,6 +95,7 @@ def test_failures_are_counted_with_their_reasons(command):
 
 def test_progress_is_shown_in_one_line():
     assert str(SweepProgress(0, 0, 100, float("nan"), float("nan"))) == "0 of 100 members"
+    assert str(SweepProgress(0, 0, 100, 0.0, float("nan"))) == "0 of 100 members"
     assert str(SweepProgress(50, 2, 100, 12.5, 240.0)) == "50 of 100 members, 12.5 a second, 4 min left, 2 failed"
 
 

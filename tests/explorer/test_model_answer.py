@@ -260,6 +260,7 @@ def test_regime_changes_at_the_critical_alpha(alpha: str, word: str) -> None:
     found = solve(Setting.bundled("fig6-slab").with_value("friction.alpha", alpha).scenario())
     assert found.regime == word
     assert "0.196 s/m" in found.sentence
+    assert 1.0 < np.nanmax(found.contact.rate) / found.motions[0].slip_rate.max() < 1.2
 
 
 def test_companion_of_a_slab_is_its_equivalent_block() -> None:
@@ -392,3 +393,12 @@ def test_run_of_thousands_of_events_is_answered_without_a_look_at_each_pulse() -
     found = solve(Setting.bundled("fig7-slab-critical").with_value("run.duration", 1.0e5).scenario())
     assert len(found.solution.events) > 1000
     assert "pulse" not in {mark.kind for mark in found.marks}
+
+
+def test_inside_of_the_slab_in_a_long_run_is_shown_around_its_event_in_time_of_the_run() -> None:
+    setting = Setting.bundled("fig7-slab-critical").with_value("initial.excess", "-100 Pa")
+    found = solve(setting.with_value("run.duration", 1.0e5).scenario())
+    (event,) = found.solution.events.itertuples()
+    assert event.start > 1e4
+    assert found.slab.time[0] < event.start < event.end < found.slab.time[-1] < event.end + 10.0
+    assert found.slab.fronts[0][0, 0] == pytest.approx(event.start, abs=1e-6)

@@ -63,6 +63,12 @@ def test_a_step_and_a_gap_stay_where_they_are() -> None:
     assert ((made.time < 50.0) | (made.time > 60.0)).all()
 
 
+def test_a_straight_rise_is_averaged() -> None:
+    """Twenty standard deviations within each ten samples; only at its two ends, where the record bends, samples stay."""
+    made, _ = resampled(read(0.6 + 0.2 * np.clip(TIME - 100.0, 0.0, 5.0) + NOISE), 2000)
+    assert len(made) < 2100
+
+
 def test_missing_samples_stay_missing_and_are_not_averaged_with_others() -> None:
     friction = np.where((TIME > 70.0) & (TIME < 70.145), np.nan, 0.6 + NOISE)
     made, _ = resampled(read(friction), 2000)

@@ -26,7 +26,7 @@ from stickslip.inference.fit.memory import (
     unevenness,
 )
 from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part
+from stickslip.inference.fit.part import Part, shortened
 from stickslip.inference.fit.setup import LATER, LEAST, at_rests, own_of, parts_of, scales_of
 from stickslip.inference.fitted_record import FittedRecord
 from stickslip.inference.record import loading
@@ -117,6 +117,14 @@ def test_parts_between_rests_begin_a_little_after_each_event() -> None:
     assert begins[0] == 0.0
     assert np.allclose(begins[1:], np.array(lows) + LATER * lasting, atol=0.05)
     assert all(len(one.record) >= LEAST for one in found)
+
+
+@pytest.mark.parametrize(("number", "share", "stay"), [(2, 0.1, 1), (2, 0.5, 1), (3, 0.3, 2), (3, 0.9, 1), (2, 0.0, 2)])
+def test_of_several_parts_the_last_ones_are_left_out_as_a_whole(number: int, share: float, stay: int) -> None:
+    parts = [Part(sawtooth(1), None, ("friction",)) for _ in range(number)]
+    kept = shortened(parts, share)
+    assert len(kept) == stay
+    assert all(one is other for one, other in zip(kept, parts, strict=False))
 
 
 def test_independent_columns_span_all_that_changes_and_nothing_else() -> None:
