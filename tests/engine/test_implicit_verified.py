@@ -129,6 +129,20 @@ def test_implicit_steps_meet_random_features_of_the_law(seed: int) -> None:
     check(drawn(seed))
 
 
+@pytest.mark.parametrize("mass", [1e3, 1e5])
+def test_a_bump_between_the_points_of_a_long_step_is_met(mass: float) -> None:
+    """A millimetre wide: steps without a proof pass over it, and the slip, to 1e-7 relative, is that without the bump."""
+    law = ss.friction.FromExpression("0.6 + 0.05*exp(-((u - 1)/0.001)**2)")
+    problem = ss.Problem(replace(SLAB, contact_mass=mass), law, initial_excess=1e7)
+
+    def derivative(_: float, y: Any) -> list[float]:
+        friction = NORMAL * (0.6 + 0.05 * math.exp(-((1e3 * (y[0] - 1.0)) ** 2)))
+        return [y[1], (problem.load - Z * y[1] - friction) / mass]
+
+    slip = odeint(derivative, [0.0, 0.0], [0.0, 4.0], rtol=1e-12, atol=1e-15, hmax=2e-4, mxstep=10**6, tfirst=True)[-1, 0]
+    assert float(ss.simulate(problem, 4.0).slip(4.0)) == pytest.approx(slip, rel=1e-7, abs=0.0)
+
+
 # ---- wrong or failing once -------------------------------------------------------------------------------------------------------
 
 
