@@ -152,7 +152,10 @@ def test_files_are_named_by_texts_or_paths(tmp_path: Path) -> None:
     refused(lambda: ss.resume(tmp_path / "run.nc", checkpoint=3), "resume: checkpoint must be the name of a file, got 3")  # type: ignore[arg-type]
 
 
-NO_BODY = "Problem: body must be SpringBlock or ElasticSlab or LayeredSlab or TwoSlabs or RotatingBlock or TorsionalString, got "
+NO_BODY = (
+    "Problem: body must be SpringBlock or ElasticSlab or LayeredSlab or TwoSlabs or RotatingBlock or TorsionalString or"
+    " SectionedString, got "
+)
 NO_LAW = 'Problem: friction must be a friction law, a function of u and v, or a text such as "0.3 + 0.5/(1 + v)", got '
 EXCESS = "Problem: initial_excess must be "
 A_STRESS = 'a number in Pa or a text with a unit such as "10 Pa", got '

@@ -3,7 +3,7 @@
 # What slides, what resists it, what drives it
 # Many runs
 from . import figures, friction, loading, studies
-from .bodies import ElasticSlab, LayeredSlab, RotatingBlock, SpringBlock, TorsionalString, TwoSlabs
+from .bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
 from .explorer.notebook import explore
 
 # One run
@@ -30,6 +30,7 @@ __all__ = [
     "PlanarSlab",
     "Problem",
     "RotatingBlock",
+    "SectionedString",
     "Solution",
     "SpringBlock",
     "TorsionalString",

@@ -19,6 +19,7 @@ from stickslip.scenarios.scenario import Scenario
 from tests.messages import refused
 
 NAMES = ("bowed-string-tenth", "low-velocity-zone", "steel-on-granite")
+STRING = "pipe-and-collar"
 
 
 def facts(name: str) -> dict[str, float | str]:
@@ -60,6 +61,9 @@ def test_check_shows_layers_and_cells() -> None:
     assert found["r of 1, 2"] == pytest.approx(1 / 3)
     assert found["R"] == pytest.approx(10 * TIME)
     assert found["G/h"] == pytest.approx(1 / (1e3 / (2800 * 1750**2) + 8e3 / (2800 * 3500**2)))
+    string = {one.name: one for one in examine(ss.load_scenario("pipe-and-collar")).derived}
+    assert [string[name].unit for name in ("Z of section 2", "GJ/h", "GJ V/h")] == ["N m s", "N m/rad", "N m/s"]
+    assert "where section 1 meets section 2" in string["r of 1, 2"].meaning
     other = facts("steel-on-granite")
     assert other["Z"] == pytest.approx(1 / (1 / (7850 * 3200) + 1 / (2650 * 3000)))
     assert other["Z of other layer 1"] == pytest.approx(2650 * 3000)
@@ -73,7 +77,7 @@ def test_check_warns_of_rest_that_is_walked_through() -> None:
     assert "the run ends before the first echo returns at R = 1.14286 s" in examine(long.with_values({"duration": 1.0})).warnings
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, STRING])
 def test_a_run_that_is_saved_goes_on_to_the_bit(name: str, tmp_path: Path) -> None:
     scenario = ss.load_scenario(name)
     whole, half = ss.simulate(scenario), ss.simulate(scenario, 0.4 * scenario.duration)
@@ -109,6 +113,18 @@ def test_the_explorer_shows_a_body_of_layers(name: str) -> None:
         assert with_kind(Setting.bundled("fig6-slab"), "body", kind).scenario().problem.body.kind == kind
 
 
+def test_the_explorer_shows_a_string_of_sections() -> None:
+    setting = Setting.bundled(STRING)
+    lists = ("length", "outer_diameter", "inner_diameter", "density", "shear_modulus")
+    body = controls_of(setting)[0]
+    assert [one.kind for one in body.controls if one.path.removeprefix("body.") in lists] == ["points"] * len(lists)
+    assert motion(ss.simulate(setting.scenario())).name == "string"
+    block = with_kind(setting, "body", "rotating-block").scenario().problem.body
+    assert block.stiffness == pytest.approx(setting.scenario().problem.body.stiffness)
+    assert with_kind(setting, "body", "torsional-string").scenario().problem.body.kind == "torsional-string"
+    assert with_kind(Setting.bundled("drill-string"), "body", "sectioned-string").scenario().problem.body.kind == "sectioned-string"
+
+
 Door = Callable[[Scenario], object]
 REFUSALS: dict[str, tuple[Door, str]] = {
     "schemes": (lambda one: ss.studies.schemes(one), "schemes: a {} has no grid: they are of an ElasticSlab"),
@@ -122,7 +138,7 @@ REFUSALS: dict[str, tuple[Door, str]] = {
 """Where bodies of layers are refused, and how the message begins, with the name of the body."""
 
 
-@pytest.mark.parametrize("name", ["low-velocity-zone", "steel-on-granite"])
+@pytest.mark.parametrize("name", ["low-velocity-zone", "steel-on-granite", STRING])
 @pytest.mark.parametrize("door", REFUSALS)
 def test_what_bodies_of_layers_do_not_have_is_refused_in_one_line(door: str, name: str) -> None:
     attempt, begins = REFUSALS[door]

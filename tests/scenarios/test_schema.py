@@ -9,7 +9,7 @@ import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stickslip import ElasticSlab, InputError, Problem, SpringBlock, TorsionalString
+from stickslip import ElasticSlab, InputError, Problem, SectionedString, SpringBlock, TorsionalString
 from stickslip.bodies import BODIES
 from stickslip.foundation.quantities import LawField, NumberSeries, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
@@ -22,9 +22,12 @@ from tests.limits import examples
 
 
 def values(kind: type) -> str:
-    more = "polar_moment = 1.5\nnormal_torque = 1.5\n" if kind is TorsionalString else ""
-    lists = {name for name, (declared, _) in fields_of(kind).items() if isinstance(declared, NumberSeries)}
-    return more + "".join(
+    more = {
+        TorsionalString: "polar_moment = 1.5\nnormal_torque = 1.5\n",
+        SectionedString: "normal_torque = 1.5\ninner_diameter = [0]\n",
+    }
+    lists = {name for name, (declared, _) in fields_of(kind).items() if isinstance(declared, NumberSeries)} - {"inner_diameter"}
+    return more.get(kind, "") + "".join(
         f"{name} = {'[1.5]' if name in lists else '1.5'}\n"
         for name, (_, default) in {**dict.fromkeys(lists, (None, MISSING)), **quantities_in("body", kind)}.items()
         if default is MISSING

@@ -2,11 +2,12 @@
 
 from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
 from stickslip.bodies.layered import LayeredSlab, OfLayers, TwoSlabs
+from stickslip.bodies.sections import SectionedString
 from stickslip.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
 from stickslip.bodies.turning import RotatingBlock, TorsionalString
 
 BODIES: dict[str, type[BodyOnCharacteristics]] = {
-    body.kind: body for body in (SpringBlock, ElasticSlab, LayeredSlab, TwoSlabs, RotatingBlock, TorsionalString)
+    body.kind: body for body in (SpringBlock, ElasticSlab, LayeredSlab, TwoSlabs, RotatingBlock, TorsionalString, SectionedString)
 }
 """Every body by its name in scenario files."""
 
@@ -20,6 +21,7 @@ __all__ = [
     "LayeredSlab",
     "OfLayers",
     "RotatingBlock",
+    "SectionedString",
     "SpringBlock",
     "TorsionalString",
     "TwoSlabs",

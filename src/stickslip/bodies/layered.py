@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, cast
@@ -28,8 +29,8 @@ from stickslip.foundation.show import Declared
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
-
-
+LISTS = ("thickness", "density", "wave_speed", "drag")
+"""The lists of one side of a slab that have a number for each layer."""
 DRAG_STEP = Quantity("1", "largest share of a wave that drag takes at one place", above=0)
 LARGEST_STEP = 0.5
 """Largest `drag_step` (1) that may be allowed."""
@@ -43,19 +44,25 @@ def _driver(side: str) -> Quantity:
 class OfLayers(WithWaves, ABC):
     """What follows from the stacks of layers of a body, one or two: a base for such bodies."""
 
-    load_unit: ClassVar[str] = "Pa"
-    mass_field: ClassVar[str] = "contact_mass"
-    noun: ClassVar[str] = "slab"
+    load_unit: ClassVar[str]
+    part: ClassVar[str] = "layer"  # what sentences call one
+    timed: ClassVar[tuple[str, ...]] = ("thickness", "wave_speed")  # the lists that decide travel times, and so the cells
+    untimed: ClassVar[str] = "densities"  # words for lists that do not
+    impedance_formula: ClassVar[str] = "rho c"
     is_uniform: ClassVar[bool] = False
     driver_inertia: ClassVar[float] = 0.0
     driver_integral_gain: ClassVar[float] = 0.0
-    contact_mass: Number
-    normal_stress: Number
+    travel_time_error: Number
 
     @property
     @abstractmethod
     def stacks(self) -> tuple[Layers, ...]:
         """The layers of each side, with their cells."""
+
+    @property
+    @abstractmethod
+    def inertia(self) -> float:
+        """The mass that slips with the contact (kg/m^2)."""
 
     @property
     @abstractmethod
@@ -118,22 +125,16 @@ class OfLayers(WithWaves, ABC):
         """The thickness of all layers (m), with their travel times rounded to cells."""
         return math.fsum(h for one in self.stacks for h in one.thickness)
 
-    @property
-    def inertia(self) -> float:
-        """The contact mass (kg/m^2)."""
-        return self.contact_mass
-
     @cached_property
     def reflection(self) -> float:
         """The reflection coefficient of the (first) driver for waves in the last layer."""
         return self.stacks[0].reflection
 
-    def equivalent_block(self) -> SpringBlock:
-        """Return the block to which the body is equivalent in slow motion, for each m^2 of contact.
+    def slow_limit(self) -> tuple[float, float]:
+        """Return the mass and the damping (SI) of the layers in slow motion, under rigid drivers.
 
-        Its stiffness is that of the layers in series, and of both sides in series, or side by side if they are joined. Its mass has
-        the kinetic energy of the layers, in which the velocity falls from the contact to a driver in proportion to the compliance
-        passed, and its damping has the loss by their drag. Raises InputError if a driver is not rigid.
+        The mass has the kinetic energy of the layers, in which the velocity falls from the contact to a driver in proportion to the
+        compliance passed, and the damping has the loss by their drag. Raises InputError if a driver is not rigid.
         """
         soft = "other_driver_impedance" if math.isinf(self.stacks[0].driver_impedance) else "driver_impedance"
         check_equivalent(cast(BodyOnCharacteristics, self), soft)
@@ -141,11 +142,35 @@ class OfLayers(WithWaves, ABC):
         shares = [1.0 if self.is_joined else whole / one.stiffness for one in self.stacks]
         mass = sum(share * share * one.slow_mass for share, one in zip(shares, self.stacks, strict=True))
         damping = sum(share * share * one.slow_damping for share, one in zip(shares, self.stacks, strict=True))
-        return SpringBlock(mass + self.contact_mass, whole, self.normal_stress, damping)
+        return mass, damping
+
+
+class OfSlabs(OfLayers, ABC):
+    """What slabs of layers have: stresses for loads, and a mass of the sliding face."""
+
+    load_unit: ClassVar[str] = "Pa"
+    mass_field: ClassVar[str] = "contact_mass"
+    noun: ClassVar[str] = "slab"
+    contact_mass: Number
+    normal_stress: Number
+
+    @property
+    def inertia(self) -> float:
+        """The contact mass (kg/m^2)."""
+        return self.contact_mass
+
+    def equivalent_block(self) -> SpringBlock:
+        """Return the block to which the body is equivalent in slow motion, for each m^2 of contact.
+
+        Its stiffness is that of the layers in series, and of both sides in series, or side by side if they are joined; its mass and
+        its damping are those of `slow_limit`, with the contact mass. Raises InputError if a driver is not rigid.
+        """
+        mass, damping = self.slow_limit()
+        return SpringBlock(mass + self.contact_mass, self.stiffness, self.normal_stress, damping)
 
 
 @dataclass(frozen=True)
-class LayeredSlab(Declared, OfLayers):
+class LayeredSlab(Declared, OfSlabs):
     """A slab of layers in antiplane or in-plane shear, with friction at x = 0, and a driver behind the last layer.
 
     A wave is reflected where layers of different impedance rho c meet. The layers are cut into cells that a wave crosses in equal
@@ -173,7 +198,7 @@ class LayeredSlab(Declared, OfLayers):
 
     def __post_init__(self) -> None:
         check_body(self)
-        _check_stacks(self, ("",), self.drag_step)
+        check_stacks(self, [LISTS], self.drag_step)
         _ = self.cells
 
     @cached_property
@@ -190,7 +215,7 @@ class LayeredSlab(Declared, OfLayers):
 
 
 @dataclass(frozen=True)
-class TwoSlabs(Declared, OfLayers):
+class TwoSlabs(Declared, OfSlabs):
     """Two slabs of layers on both sides of a contact, each with a driver behind its last layer.
 
     With sides = "apart" one slab slips on the other: the driver of the first one is pulled, that of the other one is held. With
@@ -222,7 +247,7 @@ class TwoSlabs(Declared, OfLayers):
 
     def __post_init__(self) -> None:
         check_body(self)
-        _check_stacks(self, ("", "other_"), self.drag_step)
+        check_stacks(self, [[f"{side}{name}" for name in LISTS] for side in ("", "other_")], self.drag_step)
         if self.contact_mass > 0.0 and not self.is_joined:
             why = "between two slabs it is not clear which of them it is on"
             raise InputError(f'{type(self).__name__}: contact_mass needs sides = "joined": {why}')
@@ -264,11 +289,10 @@ class TwoSlabs(Declared, OfLayers):
         )
 
 
-def _check_stacks(body: LayeredSlab | TwoSlabs, prefixes: tuple[str, ...], drag_step: float) -> None:
+def check_stacks(body: OfLayers, sides: Sequence[Sequence[str]], drag_step: float) -> None:
     """Raise InputError unless the lists of each side have one number for each layer, and the share that drag takes is small."""
-    for prefix in prefixes:
-        names = [f"{prefix}{name}" for name in ("thickness", "density", "wave_speed", "drag")]
+    for names in sides:
         given = {name: getattr(body, name) for name in names if getattr(body, name) is not None}
-        check_lengths(type(body).__name__, list(given), list(given.values()))
+        check_lengths(type(body).__name__, body.part, list(given), list(given.values()))
     if drag_step > LARGEST_STEP:
         raise InputError(f"{type(body).__name__}: drag_step must be at most {LARGEST_STEP:g}, got {drag_step:g}")

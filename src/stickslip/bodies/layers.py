@@ -34,6 +34,9 @@ def drag_of_layers(side: str = "") -> NumberSeries:
 class Layers:
     """The layers on one side of a contact, from the contact outwards, and the impedance of the driver behind them (Pa s/m).
 
+    Units below are for a slab. The layers of a string are its sections: read inertia per length (kg m) for density, N m for Pa, and
+    rad for m where it is slip.
+
     `counts` is the number of cells of each layer, and `time` what a wave takes to cross one (s). Layers with drag have an even
     number of them: the drag of two cells acts between these, on the velocity there.
     """
@@ -128,11 +131,11 @@ def travel_times(thickness: Sequence[float], wave_speed: Sequence[float]) -> tup
     return tuple(h / c for h, c in zip(thickness, wave_speed, strict=True))
 
 
-def check_lengths(owner: str, names: Sequence[str], lists: Sequence[Sequence[float]]) -> None:
-    """Raise InputError unless lists of numbers of layers are equally long."""
+def check_lengths(owner: str, part: str, names: Sequence[str], lists: Sequence[Sequence[float]]) -> None:
+    """Raise InputError unless lists of numbers of layers, each called a `part`, are equally long."""
     if len({len(one) for one in lists}) > 1:
         found = ", ".join(f"{len(one)} of {name}" for name, one in zip(names, lists, strict=True))
-        raise InputError(f"{owner}: {', '.join(names[:-1])} and {names[-1]} need one number for each layer, got {found}")
+        raise InputError(f"{owner}: {', '.join(names[:-1])} and {names[-1]} need one number for each {part}, got {found}")
 
 
 def given_drag(drag: Sequence[float] | None) -> tuple[float, ...] | None:

@@ -12,9 +12,17 @@ from stickslip.bodies.contract import OnSpring, WithWaves, check_body, check_dri
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
-from stickslip.foundation.quantities import quantity
+from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
 
+OUTER = "outer diameter of the section"
+INNER = "inner diameter of the section"
+WEIGHT_ON_BIT = Quantity("N", "force on the bit, compression positive", above=0)
+BIT_RADIUS = Quantity("m", "effective radius of the bit: 2/3 of its own if the weight is spread evenly", above=0)
+NORMAL_TORQUE = Quantity("N m", "torque of the bit if mu is 1, in place of weight and radius", above=0)
+DRIVE = Quantity(
+    "N m s", "impedance Zd of the drive: inf for a stiff drive, 0 for a constant torque", at_least=0, infinite=True, word="rigid"
+)
 LOADED_BY = "give either normal_torque, or weight_on_bit and bit_radius"
 """How a string is pressed onto its contact."""
 
@@ -41,8 +49,47 @@ class RotatingBlock(Declared, OnSpring):
         check_body(self)
 
 
+class OnBit:
+    """How a string is pressed onto its contact, by a weight or by a torque: a base for strings, with the names of their fields."""
+
+    weight_on_bit: OptionalNumber
+    bit_radius: OptionalNumber
+    normal_torque: OptionalNumber
+
+    @property
+    def normal_field(self) -> str:
+        """The field that a heavier load changes: the weight on the bit, or the torque where that is given."""
+        return "normal_torque" if self.normal_torque is not None else "weight_on_bit"
+
+    @property
+    def normal_load(self) -> float:
+        """The torque of the bit if mu is 1 (N m)."""
+        if self.normal_torque is not None:
+            return self.normal_torque
+        assert self.weight_on_bit is not None
+        assert self.bit_radius is not None
+        return self.weight_on_bit * self.bit_radius
+
+    def check_bit(self) -> None:
+        """Raise InputError unless the bit has either a weight and a radius, or a torque."""
+        weight = (self.weight_on_bit is None, self.bit_radius is None)
+        if weight[0] != weight[1] or weight[0] == (self.normal_torque is None):
+            raise InputError(f"{type(self).__name__}: {LOADED_BY}")
+
+
+def check_pipe(owner: str, outer: float, inner: float, entry: str = "") -> None:
+    """Raise InputError unless a pipe has a wall; diameters in m. `entry` is the index of a section, such as "[0]"."""
+    if not np.all(np.less(inner, outer)):
+        raise InputError(f"{owner}: inner_diameter{entry} must be below outer_diameter{entry} = {outer:g} m, got {inner:g}")
+
+
+def polar_moment_of(outer: float, inner: float) -> float:
+    """Return the polar moment J (m^4) of a pipe; diameters in m."""
+    return math.pi / 32.0 * (outer**4 - inner**4)
+
+
 @dataclass(frozen=True)
-class TorsionalString(Declared, WithWaves):
+class TorsionalString(Declared, OnBit, WithWaves):
     """A string in torsion, such as a drill string: I u_tt = G J u_xx, a bit with friction at x = 0, a drive at x = length.
 
     The slip u is the angle (rad) of the bit, and loads are torques (N m). The bit resists with the torque S mu, where S is
@@ -64,24 +111,13 @@ class TorsionalString(Declared, WithWaves):
     length: Number = quantity("m", "length of the string", above=0)
     density: Number = quantity("kg/m^3", "density rho", above=0)
     shear_modulus: Number = quantity("Pa", "shear modulus G", above=0)
-    outer_diameter: OptionalNumber = quantity("m", "outer diameter of the section", above=0, default=None)
-    inner_diameter: Number = quantity("m", "inner diameter of the section", at_least=0, default=0.0)
+    outer_diameter: OptionalNumber = quantity("m", OUTER, above=0, default=None)
+    inner_diameter: Number = quantity("m", INNER, at_least=0, default=0.0)
     polar_moment: OptionalNumber = quantity("m^4", "polar moment J of the section, in place of diameters", above=0, default=None)
-    weight_on_bit: OptionalNumber = quantity("N", "force on the bit, compression positive", above=0, default=None)
-    bit_radius: OptionalNumber = quantity(
-        "m", "effective radius of the bit: 2/3 of its own if the weight is spread evenly", above=0, default=None
-    )
-    normal_torque: OptionalNumber = quantity(
-        "N m", "torque of the bit if mu is 1, in place of weight and radius", above=0, default=None
-    )
-    driver_impedance: Number = quantity(
-        "N m s",
-        "impedance Zd of the drive: inf for a stiff drive, 0 for a constant torque",
-        at_least=0,
-        infinite=True,
-        word="rigid",
-        default=math.inf,
-    )
+    weight_on_bit: OptionalNumber = declare(WEIGHT_ON_BIT, None)
+    bit_radius: OptionalNumber = declare(BIT_RADIUS, None)
+    normal_torque: OptionalNumber = declare(NORMAL_TORQUE, None)
+    driver_impedance: Number = declare(DRIVE, math.inf)
     driver_inertia: Number = quantity(
         "kg m^2", "moment of inertia of the drive: inf for a stiff drive", at_least=0, infinite=True, word="rigid", default=0.0
     )
@@ -95,14 +131,9 @@ class TorsionalString(Declared, WithWaves):
         check_driver(self)
         if (self.polar_moment is None) == (self.outer_diameter is None) or (self.polar_moment is not None and self.inner_diameter):
             raise InputError("TorsionalString: give either outer_diameter, with inner_diameter of a pipe, or polar_moment")
-        if self.outer_diameter is not None and not np.all(np.less(self.inner_diameter, self.outer_diameter)):
-            raise InputError(
-                f"TorsionalString: inner_diameter must be below outer_diameter = {self.outer_diameter:g} m, "
-                f"got {self.inner_diameter:g}"
-            )
-        weight = (self.weight_on_bit is None, self.bit_radius is None)
-        if weight[0] != weight[1] or weight[0] == (self.normal_torque is None):
-            raise InputError(f"TorsionalString: {LOADED_BY}")
+        if self.outer_diameter is not None:
+            check_pipe("TorsionalString", self.outer_diameter, self.inner_diameter)
+        self.check_bit()
 
     @property
     def section(self) -> float:
@@ -110,7 +141,7 @@ class TorsionalString(Declared, WithWaves):
         if self.polar_moment is not None:
             return self.polar_moment
         assert self.outer_diameter is not None
-        return math.pi / 32.0 * (self.outer_diameter**4 - self.inner_diameter**4)
+        return polar_moment_of(self.outer_diameter, self.inner_diameter)
 
     @property
     def wave_speed(self) -> float:
@@ -137,20 +168,6 @@ class TorsionalString(Declared, WithWaves):
     def distance(self) -> float:
         """The length (m)."""
         return self.length
-
-    @property
-    def normal_field(self) -> str:
-        """The field that a heavier load changes: the weight on the bit, or the torque where that is given."""
-        return "normal_torque" if self.normal_torque is not None else "weight_on_bit"
-
-    @property
-    def normal_load(self) -> float:
-        """The torque of the bit if mu is 1 (N m)."""
-        if self.normal_torque is not None:
-            return self.normal_torque
-        assert self.weight_on_bit is not None
-        assert self.bit_radius is not None
-        return self.weight_on_bit * self.bit_radius
 
     def equivalent_block(self) -> RotatingBlock:
         """Return the rotating block to which the string is equivalent in slow motion: K = G J / length, inertia I length / 3 + bit.

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 from typer import Context  # typer evaluates the annotation at run time
 
-STARTERS = ("slab", "lab-slab", "block", "string", "layered-slab", "two-slabs")
+STARTERS = ("slab", "lab-slab", "block", "string", "sectioned-string", "layered-slab", "two-slabs")
 """Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
 
 RESULT_FILES = (".nc", ".csv", ".parquet")

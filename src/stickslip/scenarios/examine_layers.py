@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from stickslip.bodies import BodyOnCharacteristics, LayeredSlab, OfLayers, TwoSlabs
+from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.bodies.layers import Layers
+from stickslip.foundation.names import KINDS, TURNS, si_unit
 from stickslip.foundation.quantities import Choice, NumberSeries, fields_of
 from stickslip.scenarios.facts import Fact
 
@@ -13,9 +14,9 @@ MANY_PIECES = 100_000
 """From this many pieces of rest on (some seconds), a warning says how many there are."""
 
 
-def of_layers(body: BodyOnCharacteristics) -> LayeredSlab | TwoSlabs:
+def of_layers(body: BodyOnCharacteristics) -> OfLayers:
     """Return a body that is not uniform."""
-    assert isinstance(body, LayeredSlab | TwoSlabs)
+    assert isinstance(body, OfLayers)
     return body
 
 
@@ -36,22 +37,24 @@ def layer_facts(body: OfLayers, load_rate: float) -> list[Fact]:
     """Return what follows from the numbers of a body of layers; `load_rate` is the rate of loading at first (Pa/s)."""
     cells, together = body.cells, "side by side" if body.is_joined else "in series"
     sides = ", that of both sides" if len(body.stacks) > 1 else ""
-    found = [Fact("Z", body.impedance, "Pa s/m", f"impedance at the contact{sides}")]
+    unit = {name: si_unit(name, body.load_unit) for name in ("impedance", "stiffness", "load_rate")}
+    symbol, slip = ("GJ", "radian") if body.load_unit == TURNS else ("G", "metre")
+    found = [Fact("Z", body.impedance, unit["impedance"], f"impedance at the contact{sides}")]
     for side, one in zip(_names(body), body.stacks, strict=True):
-        found += _of_side(side, one)
+        found += _of_side(side, one, body, unit["impedance"])
     return [
         *found,
-        Fact("R", body.two_way_time, "s", "longest two-way travel time to a driver, through all layers"),
-        Fact("cells", float(sum(cells.counts)), "1", f"of equal travel time: {_counts(cells.counts)} of the layers"),
+        Fact("R", body.two_way_time, "s", f"longest two-way travel time to a driver, through all {body.part}s"),
+        Fact("cells", float(sum(cells.counts)), "1", f"of equal travel time: {_counts(cells.counts)} of the {body.part}s"),
         Fact("time of a cell", cells.time, "s", "to the contact, a wave brings news every two of them"),
-        Fact("error", cells.error, "1", "largest relative error of a layer's travel time, rounded to cells"),
+        Fact("error", cells.error, "1", f"largest relative error of a {body.part}'s travel time, rounded to cells"),
         Fact(
-            "G/h",
+            f"{symbol}/h",
             body.stiffness,
-            "Pa/m",
-            f"load lost per metre of slow slip: the layers in series{sides and ', both sides '}{sides and together}",
+            unit["stiffness"],
+            f"load lost per {slip} of slow slip: the {body.part}s in series{sides and ', both sides '}{sides and together}",
         ),
-        Fact("G V/h", load_rate, "Pa/s", "rate of loading at first"),
+        Fact(f"{symbol} V/h", load_rate, unit["load_rate"], "rate of loading at first"),
     ]
 
 
@@ -63,14 +66,13 @@ def _counts(counts: Sequence[int]) -> str:
     return " + ".join(str(one) for one in counts)
 
 
-def _of_side(side: str, one: Layers) -> Iterator[Fact]:
+def _of_side(side: str, one: Layers, body: OfLayers, unit: str) -> Iterator[Fact]:
     for i, (impedance, count) in enumerate(zip(one.impedances, one.counts, strict=True), 1):
-        name = f"{side}layer {i}"
-        yield Fact(f"Z of {name}", impedance, "Pa s/m", f"impedance rho c; two-way time {2.0 * count * one.time:.6g} s")
+        name, two_way = f"{side}{body.part} {i}", f"two-way time {2.0 * count * one.time:.6g} s"
+        yield Fact(f"Z of {name}", impedance, unit, f"impedance {body.impedance_formula}; {two_way}")
     for i, share in enumerate(one.interface_reflections, 1):
-        yield Fact(
-            f"r of {side}{i}, {i + 1}", share, "1", f"reflection of stress where layer {i} meets layer {i + 1}, from the contact"
-        )
+        meet = f"where {body.part} {i} meets {body.part} {i + 1}"
+        yield Fact(f"r of {side}{i}, {i + 1}", share, "1", f"reflection of {KINDS[body.load_unit].loads} {meet}, from the contact")
     yield Fact(f"{side}r", one.reflection, "1", "reflection of waves at the driver: -1 rigid, 0 matched, +1 dead load")
 
 
@@ -80,7 +82,7 @@ def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:
     if not (sticks and body.is_driven_rigidly and not body.has_drag and trips > MANY_PIECES):
         return []
     return [
-        f"waves between layers and rigid drivers never fade, so rest is followed through every round trip of two cells: about"
+        f"waves between {body.part}s and rigid drivers never fade, so rest is followed through every round trip of two cells: about"
         f" {trips:.2g} pieces, each of {sum(body.cells.counts)} cells;"
         " under long loading give drag, or a driver of finite impedance"
     ]

@@ -31,6 +31,7 @@ STARTERS = {
     "lab-slab": "granite-slab",
     "block": "fig6-block-reconstructed",
     "string": "drill-string",
+    "sectioned-string": "pipe-and-collar",
     "layered-slab": "low-velocity-zone",
     "two-slabs": "steel-on-granite",
 }

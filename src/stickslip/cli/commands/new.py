@@ -15,7 +15,10 @@ from stickslip.foundation.errors import InputError
 def new(
     name: Annotated[
         str | None,
-        argument("slab, lab-slab, block, string, layered-slab, two-slabs, or the name of a bundled scenario.", complete_template),
+        argument(
+            "slab, lab-slab, block, string, sectioned-string, layered-slab, two-slabs, or the name of a bundled scenario.",
+            complete_template,
+        ),
     ] = None,
     *,
     friction: Annotated[str | None, option("A friction law to put into a starter.", autocompletion=complete_law)] = None,
@@ -24,9 +27,9 @@ def new(
 ) -> None:
     r"""Print a commented scenario to start from.
 
-    "slab", "lab-slab", "block", "string", "layered-slab" and "two-slabs" are starters that explain
-    every key, its unit and its range; the others are bundled runs. Redirect the text into a file,
-    edit it, and hand it to `stickslip check` and `stickslip run`.
+    "slab", "lab-slab", "block", "string", "sectioned-string", "layered-slab" and "two-slabs" are
+    starters that explain every key, its unit and its range; the others are bundled runs. Redirect
+    the text into a file, edit it, and hand it to `stickslip check` and `stickslip run`.
 
     \b
       stickslip new slab > mine.toml
@@ -54,6 +57,7 @@ def _print_list() -> None:
     rows.append(("lab-slab", "starter: the same in the size of a laboratory"))
     rows.append(("block", "starter: a block on a spring, every key explained"))
     rows.append(("string", "starter: a drill string, every key explained"))
+    rows.append(("sectioned-string", "starter: a drill string of pipe and collars, every key explained"))
     rows.append(("layered-slab", "starter: a slab of layers, every key explained"))
     rows.append(("two-slabs", "starter: slabs on both sides of a contact, every key explained"))
     rows += [(name, f"{entry.title}. {entry.description}") for name, entry in library.entries().items()]

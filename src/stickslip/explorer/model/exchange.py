@@ -26,7 +26,7 @@ from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
 from stickslip.scenarios.templates import STARTERS, example_of
 
-OF_LAYERS = {"layered-slab": "low-velocity-zone", "two-slabs": "steel-on-granite"}
+OF_LAYERS = {"layered-slab": "low-velocity-zone", "two-slabs": "steel-on-granite", "sectioned-string": "pipe-and-collar"}
 """Bundled scenarios whose bodies of layers take the place of another body."""
 RIGID_DRIVER = {
     "driver_impedance": math.inf,

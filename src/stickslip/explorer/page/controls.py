@@ -41,6 +41,7 @@ _SECTIONS = {
     "In the laboratory": (
         "direct-shear-block",
         "drill-string",
+        "pipe-and-collar",
         "slide-hold-slide-block",
         "velocity-steps-block",
         "kolsky-slab",

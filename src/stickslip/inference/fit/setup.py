@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import BodyOnCharacteristics, LayeredSlab, TwoSlabs
+from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS
@@ -187,17 +187,20 @@ def rounded_times(body: BodyOnCharacteristics, names: Sequence[str]) -> list[str
 
     Between two values at which the cells change, the times of all layers grow alike: one time is told, and not its layer.
     """
-    times = [name for name in names if "thickness[" in name or "wave_speed[" in name]
-    if not (isinstance(body, LayeredSlab | TwoSlabs) and times):
+    if not isinstance(body, OfLayers):
+        return []
+    times = [name for name in names if any(f"{timed}[" in name for timed in body.timed)]
+    if not times:
         return []
     if len(times) > 1:
         raise InputError(
-            f"infer: free: {' and '.join(times)} change travel times, which are rounded to cells: free one of them, or densities"
+            f"infer: free: {' and '.join(times)} change travel times, which are rounded to cells:"
+            f" free one of them, or {body.untimed}"
         )
     error = body.travel_time_error
     return [
-        f"{times[0]} is fitted with travel times rounded to cells: its interval is that of the travel time of all layers together,"
-        f" and it may be {error:.2g} of itself further off, travel_time_error"
+        f"{times[0]} is fitted with travel times rounded to cells: its interval is that of the travel time of all"
+        f" {body.part}s together, and it may be {error:.2g} of itself further off, travel_time_error"
     ]
 
 

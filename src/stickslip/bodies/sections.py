@@ -1,0 +1,118 @@
+"""Define a string in torsion of several sections, such as drill pipe and collars. Slip is an angle, in rad."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+from stickslip.bodies.cells import CellCut
+from stickslip.bodies.contract import check_body
+from stickslip.bodies.layered import DRAG_STEP, OfLayers, check_stacks
+from stickslip.bodies.layers import Layers, cells_for, given_drag, longest_cell, travel_times
+from stickslip.bodies.turning import (
+    BIT_RADIUS,
+    DRIVE,
+    INNER,
+    NORMAL_TORQUE,
+    OUTER,
+    WEIGHT_ON_BIT,
+    OnBit,
+    RotatingBlock,
+    check_pipe,
+    polar_moment_of,
+)
+from stickslip.foundation.conversion import Number, Numbers, OptionalNumber, OptionalNumbers
+from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
+from stickslip.foundation.show import Declared
+
+LISTS = ("length", "outer_diameter", "inner_diameter", "density", "shear_modulus", "drag")
+"""The lists that have a number for each section."""
+
+
+def _of_sections(unit: str, meaning: str) -> NumberSeries:
+    return NumberSeries(Quantity(unit, f"{meaning}, from the bit outwards", above=0), least=1)
+
+
+def _from_zero(unit: str, meaning: str) -> NumberSeries:
+    return NumberSeries(Quantity(unit, meaning, at_least=0), least=1)
+
+
+@dataclass(frozen=True)
+class SectionedString(Declared, OnBit, OfLayers):
+    """A string in torsion of several sections, such as drill pipe and collars, with a bit at x = 0 and a drive behind the last one.
+
+    Lists go from the bit outwards. The bit resists with the torque S mu, where S is `normal_torque`, or `weight_on_bit` times
+    `bit_radius`; `inertia` turns with it. A section has the polar moment J of its diameters, the inertia per length rho J and the
+    impedance J sqrt(rho G), and waves are reflected where impedances differ. Sections are cut into cells that a wave crosses in
+    equal times; their travel times are rounded to whole numbers of cells, as those of a `LayeredSlab` are.
+
+    With `drag` D, such as that of mud, rho J dv/dt = dM/dx - D v, with the torque M: D is the torque that a metre meets for each
+    rad/s. Raises InputError if a number is out of range, if an inner diameter is not below the outer one, if the lists differ in
+    length, or if no more than 4096 cells can be as exact as `travel_time_error`.
+    """
+
+    kind: ClassVar[str] = "sectioned-string"
+    source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the sections; Campillo et al. 1996, eqs (7)-(13), with angles"
+    load_unit: ClassVar[str] = "N m"
+    noun: ClassVar[str] = "string"
+    mass_field: ClassVar[str] = "inertia"
+    part: ClassVar[str] = "section"
+    timed: ClassVar[tuple[str, ...]] = ("length", "density", "shear_modulus")
+    untimed: ClassVar[str] = "diameters"
+    impedance_formula: ClassVar[str] = "J sqrt(rho G)"
+
+    length: Numbers = declare(_of_sections("m", "length of each section"))
+    outer_diameter: Numbers = declare(_of_sections("m", OUTER))
+    inner_diameter: Numbers = declare(_from_zero("m", f"{INNER}, from the bit outwards"))
+    density: Numbers = declare(_of_sections("kg/m^3", "density rho of each section"))
+    shear_modulus: Numbers = declare(_of_sections("Pa", "shear modulus G of each section"))
+    weight_on_bit: OptionalNumber = declare(WEIGHT_ON_BIT, None)
+    bit_radius: OptionalNumber = declare(BIT_RADIUS, None)
+    normal_torque: OptionalNumber = declare(NORMAL_TORQUE, None)
+    driver_impedance: Number = declare(DRIVE, math.inf)
+    inertia: Number = quantity("kg m^2", "moment of inertia of the bit", at_least=0, default=0.0)
+    travel_time_error: Number = quantity("1", "largest relative error of a section's travel time", above=0, default=1e-3)
+    drag: OptionalNumbers = declare(_from_zero("N s", "drag on each section: torque over rotation rate for each metre"), None)
+    drag_step: Number = declare(DRAG_STEP, 0.02)
+
+    def __post_init__(self) -> None:
+        check_body(self)
+        check_stacks(self, [LISTS], self.drag_step)
+        for i, (outer, inner) in enumerate(zip(self.outer_diameter, self.inner_diameter, strict=True)):
+            check_pipe(type(self).__name__, outer, inner, f"[{i}]")
+        self.check_bit()
+        _ = self.cells
+
+    @property
+    def wave_speeds(self) -> tuple[float, ...]:
+        """The speed sqrt(G / rho) of torsional waves in each section (m/s)."""
+        return tuple(math.sqrt(stiff / rho) for stiff, rho in zip(self.shear_modulus, self.density, strict=True))
+
+    @property
+    def inertia_per_length(self) -> tuple[float, ...]:
+        """The moment of inertia per length rho J of each section (kg m)."""
+        moments = (polar_moment_of(*both) for both in zip(self.outer_diameter, self.inner_diameter, strict=True))
+        return tuple(rho * moment for rho, moment in zip(self.density, moments, strict=True))
+
+    @cached_property
+    def cells(self) -> CellCut:
+        """The cells of equal travel time that the sections are cut into."""
+        longest = longest_cell(self.inertia_per_length, self.drag, self.drag_step)
+        return cells_for(type(self).__name__, travel_times(self.length, self.wave_speeds), self.travel_time_error, longest)
+
+    @cached_property
+    def stacks(self) -> tuple[Layers, ...]:
+        """The sections with their cells, as layers."""
+        counts, time, drag = self.cells.counts, self.cells.time, given_drag(self.drag)
+        return (Layers(self.inertia_per_length, self.wave_speeds, counts, time, self.driver_impedance, drag),)
+
+    def equivalent_block(self) -> RotatingBlock:
+        """Return the rotating block to which the string is equivalent in slow motion, with the bit.
+
+        Its stiffness is that of the sections in series; its inertia and damping are those of `slow_limit`. Raises InputError if the
+        drive is not stiff.
+        """
+        inertia, damping = self.slow_limit()
+        return RotatingBlock(inertia + self.inertia, self.stiffness, self.normal_load, damping)
