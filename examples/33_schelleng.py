@@ -5,7 +5,7 @@ How hard may a bow press?
 A bowed string sounds as it should where it slips once in each period, as Helmholtz found. Schelleng gave the forces between which
 it does: with more than ``2 Z v / (beta D)`` the corner of the wave no longer frees the string, and with less than
 ``Z^2 v / (2 R beta^2 D)`` the string slips more often. Z is the impedance of the string, R that of its ends, v the rate of the bow,
-beta its place, and D the fall of friction from rest to fast slip. Here the string itself is asked, at seven places and ten forces.
+beta its place, and D the fall of friction from rest to fast slip. Here the string itself is asked, at 7 places and 13 forces.
 
 You learn to set up a string bowed anywhere, and to compare a rule of thumb with exact runs.
 """

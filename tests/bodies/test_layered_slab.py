@@ -48,7 +48,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     "no layers": ({"thickness": [], "density": [], "wave_speed": []}, "LayeredSlab: thickness must have 1 to "),
     "other length": ({"density": [DENSITY]}, "LayeredSlab: thickness, density and wave_speed need one number for each layer, got"),
     "no thickness": ({"thickness": [0.0, 8e3]}, "LayeredSlab: thickness[0] must be greater than 0 m, got 0"),
-    "too many cells": ({"thickness": [1e-3, 8e3]}, "LayeredSlab: travel times of the layers from 5.71e-07 to 2.29 s: 4096 cells"),
+    "too many cells": ({"thickness": [1e-3, 8e3]}, "LayeredSlab: travel times from 5.71e-07 to 2.29 s: 4096 cells"),
     "too many layers": (dict.fromkeys(SOFT, [1e3] * 4097), "LayeredSlab: 4097 layers are more than the 4096 cells"),
     "contrast": ({"density": [1e300, DENSITY]}, "LayeredSlab: density[0] must lie within 1e+50 kg/m^3, got 1e+300"),
 }

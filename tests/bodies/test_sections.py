@@ -117,7 +117,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     "nothing": ({"normal_torque": None}, "give either normal_torque, or weight_on_bit and bit_radius"),
     "no radius": ({"normal_torque": None, "weight_on_bit": 1e5}, "give either normal_torque, or weight_on_bit and bit_radius"),
     "step": ({"drag_step": 0.7}, "drag_step must be at most 0.5, got 0.7"),
-    "cells": ({"length": [1e-4, 1800.0]}, "travel times of the layers from "),
+    "cells": ({"length": [1e-4, 1800.0]}, "travel times from "),
     "no steel": ({"shear_modulus": [STIFF, 0.0]}, "shear_modulus[1] must be greater than 0 Pa, got 0"),
 }
 

@@ -57,6 +57,6 @@ def _cut(given: Floats, allowed: float, longest: float, most: int) -> CellCut:
     if len(given) > most:
         raise InputError(f"{len(given)} layers are more than the {most} cells that there may be: join thin layers")
     raise InputError(
-        f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {most} cells of equal time give them with"
+        f"travel times from {given.min():.3g} to {given.max():.3g} s: {most} cells of equal time give them with"
         f" a relative error of {best.error:.2g}, and {allowed:g} is asked for: allow more (travel_time_error), or join thin layers"
     )
