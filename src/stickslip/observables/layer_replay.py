@@ -130,8 +130,8 @@ def replay(contact: SlipPieces, ladder: LadderCells, steps: FollowedTrips, place
 def answer(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, queries: WaveQueries, before: int) -> None:
     """Answer the queries in round trips before one."""
     levels, cells = place.wave.shape[0], place.wave.shape[1]
-    while place.counts[2] < len(queries.asked) and queries.asked[place.counts[2]] < before:
-        q = place.counts[2]
+    q = place.counts[2]
+    while q < len(queries.asked) and queries.asked[q] < before:
         u, more = queries.which[q], float(queries.asked[q] - place.counts[0])
         if len(queries.rows) > 0:
             for level in range(levels):
@@ -141,7 +141,8 @@ def answer(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, quer
         for n in range(SUMS):
             queries.sums[q, n] = place.sums[n, u] + more * place.growth[n, u]
         queries.sums[q, WORK] += 0.5 * more * (more + 1.0) * place.slope[u]
-        place.counts[2] = q + 1
+        q += 1
+    place.counts[2] = q
 
 
 @kernel
