@@ -41,8 +41,9 @@ for n in (0, 3, 6):
     print(f"bow at 1/{1 / places[n]:.0f}: Schelleng {smallest[n]:.2f} to {largest[n]:.2f} N, found {found}")
 
 # %%
-# Dark cells slip once in each period. The largest force is close to Schelleng's. The smallest is above his: his string has rounded
-# corners, and here, where waves stay sharp, the contact slips in bursts long before the ends have taken that much energy away.
+# Dark cells slip once in each period. The largest force is Schelleng's, or somewhat below it. The smallest is above his: his
+# string has rounded corners, and here, where waves stay sharp, the contact slips in bursts long before the ends have taken that
+# much energy away.
 
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 image = axes.pcolormesh(places, forces, share, shading="nearest", cmap="Blues", vmin=0.0, vmax=1.0)
