@@ -14,7 +14,7 @@ from stickslip.explorer.model.findings import CAUSES, _jump
 from stickslip.explorer.model.pictures import _path, energy_picture, law_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import MOST_PIECES, Stopped, companion_of, solve
+from stickslip.explorer.model.solve import EVEN_TIMES, MOST_PIECES, Stopped, companion_of, solve
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.energy.balance import energies
@@ -65,9 +65,13 @@ def test_curves_are_those_of_the_solution_between_their_points_too(name: str) ->
         times = np.random.default_rng(1).uniform(first, last, 50)
         assert np.all(np.diff(motion.time) >= 0.0)
         assert motion.slip[-1] == solution.slip(last)
-        assert np.interp(times, motion.time, motion.slip) == pytest.approx(
-            solution.slip(times), abs=2e-3 * max(np.ptp(motion.slip), 1e-12)
-        )
+        # Of a run with more pieces than points the smallest and largest values of each interval are drawn: no wider than a pixel.
+        edges = np.union1d(solution.breaks, solution.history.echo_edges(first, last, EVEN_TIMES))
+        width = (last - first) / EVEN_TIMES if len(edges) > EVEN_TIMES else 0.0
+        near = solution.slip(np.clip(times + width * np.linspace(-1.0, 1.0, 101)[:, None], first, last))
+        drawn, tolerance = np.interp(times, motion.time, motion.slip), 2e-3 * max(np.ptp(motion.slip), 1e-12)
+        assert np.all(drawn >= near.min(axis=0) - tolerance)
+        assert np.all(drawn <= near.max(axis=0) + tolerance)
         assert len({len(motion.time), len(motion.slip), len(motion.slip_rate), len(motion.traction), len(motion.load)}) == 1
         assert len(motion.time) <= POINTS
 
