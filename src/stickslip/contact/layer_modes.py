@@ -32,10 +32,13 @@ MOST_SAMPLES = 1 << 21
 TURN = 0.4
 """Largest turn (rad) from a sample to the next."""
 HALVINGS, DOUBLINGS, REFINEMENTS = 18, 60, 12
+"""Largest numbers of steps in which a line is enclosed, is sought outwards, and gets more samples."""
 GONE = 25.0
 """A disturbance that fades by exp(-GONE) within a two-way travel time through all cells is gone at once."""
 SMALLEST = 1e-60
+"""Smallest growth rate that is sought, as a share of the first step (1)."""
 QUARTERS = np.array([[0.25], [0.5], [0.75]])
+"""Where samples are added between two others (1)."""
 NEAR = 24
 """Number of places from which a root is sought."""
 _Function = Callable[[Complex], Complex]
@@ -109,9 +112,8 @@ class LayerModes:
                 return math.inf if self._winds(line) else 0.0
             turns = (high - low) / self._period - len(self.a) - len(self.b)
             if line == 0.0 and self._keeps_energy and turns >= 1.0:
-                return math.floor(
-                    turns
-                )  # R alone turns once in each period at least, and the polynomials half a turn for each root
+                # R alone turns at least once in each period, and the polynomials by half a turn for each of their roots.
+                return math.floor(turns)
             values = self._followed(self._loop, line, low, high)[1]
             angles = np.unwrap(np.angle(values))
             begin = 0.0 if low == 0.0 else float(np.angle(values[0]))

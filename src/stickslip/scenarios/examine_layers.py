@@ -100,8 +100,9 @@ def first_echo(body: OfLayers) -> float:
 
 def _first_echo(one: Layers) -> float:
     passed = 0
-    for count, share, drag in zip(one.counts, (*one.interface_reflections, one.reflection), one.drag or one.counts, strict=True):
-        if one.drag is not None and drag > 0.0:
+    drags = one.drag or (0.0,) * len(one.counts)
+    for count, share, drag in zip(one.counts, (*one.interface_reflections, one.reflection), drags, strict=True):
+        if drag > 0.0:
             return 2.0 * (passed + 1) * one.time
         passed += count
         if share != 0.0:
