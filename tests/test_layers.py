@@ -113,7 +113,12 @@ ROOMS = {
         ("benchmarks",),
     ),
     "inference": (("record",), ("fit",), ("certainty",), ("fitted_record",), ("inference",), ("infer",)),
-    "trajectory": (("machine_motion", "phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
+    "trajectory": (
+        ("phase_index", "series", "status", "turning_points"),
+        ("machine_motion",),
+        ("history",),
+        ("slip_events", "tables"),
+    ),
     "contact": (
         ("roots", "sliding", "wave_modes", "wave_proof"),
         ("layer_modes",),

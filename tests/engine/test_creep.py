@@ -14,7 +14,8 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.state.layout import TERMS
-from stickslip.trajectory.history import Epoch, horner
+from stickslip.trajectory.history import Epoch
+from stickslip.trajectory.series import horner
 from tests.engine.creep_truth import ROUND, printed
 
 F = ss.friction

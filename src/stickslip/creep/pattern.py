@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict
 from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.trajectory.history import horner
+from stickslip.trajectory.series import horner
 
 SMALLEST = 1e-300
 """Smallest divisor: it keeps a division by zero from occurring."""

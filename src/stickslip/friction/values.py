@@ -137,10 +137,10 @@ class LawValues(LawContract):
         given = [np.asarray(one, float) for one in (u, v, *self.each_state(w))]
         return given if all(one.shape == given[0].shape for one in given) else np.broadcast_arrays(*given)
 
-    def _by_piece(self, slip: NDArray[np.float64], rate: NDArray[np.float64]) -> list[tuple[int, NDArray[np.bool_]]]:
-        """Return each piece that applies somewhere, and where."""
+    def _by_piece(self, slip: NDArray[np.float64], rate: NDArray[np.float64]) -> list[tuple[int, Any]]:
+        """Return each piece that applies somewhere, and where, as an index of the arrays."""
         if len(self.pieces) == 1:
-            return [(0, np.ones(slip.shape, bool))]
+            return [(0, ...)]
         piece = self.piece_at(slip, rate)
         return [(i, piece == i) for i in np.unique(piece).tolist()]
 

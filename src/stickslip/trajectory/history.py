@@ -18,18 +18,9 @@ from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.machine_motion import MachineMotion, machine_motion
 from stickslip.trajectory.phase_index import Phases
+from stickslip.trajectory.series import integrals_at, values_at
 
 Side = Literal["left", "right"]
-
-
-@np.errstate(under="ignore")  # the last coefficients of a short step vanish
-def horner(coefficients: Floats, x: Floats) -> Floats:
-    """Evaluate polynomials (one per row, ascending coefficients) at x (one value per row)."""
-    value = coefficients[:, -1].copy()
-    for k in range(coefficients.shape[1] - 2, -1, -1):
-        value *= x
-        value += coefficients[:, k]
-    return value
 
 
 @kernel
@@ -310,9 +301,9 @@ class History:
 
     def excess(self, at: Positions) -> Floats:
         """Return the load minus the reference strength (Pa, N or N m)."""
-        value = horner(self.store.load[at.piece], at.xi)
+        value = values_at(self.store.load, at.piece, at.xi)
         if at.at_rest.any() and self.problem.body.has_waves:
-            left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
+            left = 2.0 * self.problem.body.impedance * values_at(self.store.rate, at.piece, at.xi)
             value = np.where(at.at_rest, value - left, value)
         return np.where(at.before, self.problem.excess, value + self._gained(at))
 
@@ -328,23 +319,16 @@ class History:
 
     def rate(self, at: Positions) -> Floats:
         """Return the slip rate, m/s."""
-        sliding = np.where(at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
+        sliding = np.where(at.at_rest, 0.0, values_at(self.store.rate, at.piece, at.xi))
         return np.where(at.before, self.problem.rate, sliding)
 
     def mode(self, at: Positions) -> Integers:
         """Return the mode of the contact: 0 at rest, +1 in forward slip, -1 in backward slip."""
         return np.where(at.at_rest, 0, self.store.mode[at.piece])
 
-    @np.errstate(under="ignore")
     def grown(self, at: Positions) -> Floats:
-        """Return the slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
-        rate = self.store.rate[at.piece]
-        powers = np.arange(1, rate.shape[1] + 1)
-        straight = at.xi * horner(self.store.speed[at.piece, None] * rate / powers, at.xi)
-        bend = self.store.bend[at.piece]
-        if not bend.any():
-            return straight
-        return straight + at.xi**2 * horner(2.0 * bend[:, None] * rate / (powers + 1), at.xi)
+        """Return the slip since the start of the piece, m."""
+        return integrals_at(self.store.rate, self.store.speed, self.store.bend, at.piece, at.xi)
 
     def slipped(self, at: Positions) -> Floats:
         """Return the slip since the start of the run, m."""
@@ -380,7 +364,8 @@ class History:
         """Return each state of the law that the contact obeys (`Problem.contact_law`) as its formulas see it in forward slip."""
         known = self.store.state
         return [
-            np.where(at.before, start, horner(known[at.piece, n], at.xi)) for n, start in enumerate(self.problem.contact_states)
+            np.where(at.before, start, values_at(known[:, n], at.piece, at.xi))
+            for n, start in enumerate(self.problem.contact_states)
         ]
 
     def state(self, at: Positions) -> Any:
@@ -398,16 +383,17 @@ class History:
         law, states = self.problem.contact_law, self.states(at)
         for n in law.reverses:
             states[n] = np.where(self.mode(at) < 0, -states[n], states[n])
-        return np.asarray(self.problem.normal * law.coefficient(self.law_slip(at), np.abs(self.rate(at)), one_argument(states)))
+        slip = self.law_slip(at) if law.depends_on_slip else 0.0
+        return np.asarray(self.problem.normal * law.coefficient(slip, np.abs(self.rate(at)), one_argument(states)))
 
     def friction(self, at: Positions) -> Floats:
         """Return the friction traction minus the reference strength, with the sign of the load."""
-        excess, rate = self.excess(at), self.rate(at)
         body = self.problem.body
         if not body.has_inertia:
-            return excess - body.damping * rate
+            return self.excess(at) - body.damping * self.rate(at)
         mode = self.mode(at)
         by_law = np.where(mode < 0, -1.0, 1.0) * self.resistance(at) - self.problem.strength
-        if self.problem.friction.reverses:  # such a state holds a traction at rest, too
+        held = (mode == 0) | (at.before & (self.problem.rate == 0.0))
+        if self.problem.friction.reverses or not held.any():  # a state that reverses holds a traction at rest, too
             return by_law
-        return np.where((mode == 0) | (at.before & (rate == 0.0)), excess, by_law)
+        return np.where(held, self.excess(at), by_law)

@@ -22,6 +22,7 @@ from stickslip.engine_input.forcing import EDGE, Inflow, inflow_of, machine_at_f
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.trajectory.series import horner
 
 FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
@@ -82,7 +83,7 @@ class MachineMotion:
     def at(self, time: Floats) -> Floats:
         """Return the rate of the machine (m/s) at times (s)."""
         n, xi = self._placed(time)
-        return _horner(self.rate[n], xi)
+        return horner(self.rate[n], xi)
 
     def way(self, low: Floats, high: Floats) -> Floats:
         """Return how far (m) the machine moves between times (s)."""
@@ -94,12 +95,12 @@ class MachineMotion:
 
     def work(self, begin: float, end: float) -> float:
         """Return the work (J/m^2) of gains and far stress on the machine between two times (s)."""
-        return self._integrated(lambda n, xi: _horner(self.motor[n], xi) * _horner(self.rate[n], xi), begin, end)
+        return self._integrated(lambda n, xi: horner(self.motor[n], xi) * horner(self.rate[n], xi), begin, end)
 
     def dissipated(self, begin: float, end: float) -> float:
         """Return the energy (J/m^2) that the proportional gain takes up between two times (s)."""
         gain = self.problem.body.driver_impedance
-        return gain * self._integrated(lambda n, xi: (_horner(self.rate[n], xi) - _horner(self.pull[n], xi)) ** 2, begin, end)
+        return gain * self._integrated(lambda n, xi: (horner(self.rate[n], xi) - horner(self.pull[n], xi)) ** 2, begin, end)
 
     @cached_property
     def _ways(self) -> Floats:
@@ -181,8 +182,8 @@ def _start_in(problem: Problem, store: Store, machine: Machine) -> tuple[Floats,
     arrives, leaped = np.array([time]), float(store.trip[n] - store.trip[source] - 1)
     wave = 2.0 * body.impedance * store.rate[source] - store.load[source]
     powers = np.arange(1, TERMS)
-    left = float(_horner(wave[None], xi)[0]) - leaped * 2.0 * body.impedance * float(settled_rate(problem, arrives - trip_time)[0])
-    turns = float(_horner((wave[1:] * powers)[None], xi)[0]) / (speed + 2.0 * bend * xi[0])
+    left = float(horner(wave[None], xi)[0]) - leaped * 2.0 * body.impedance * float(settled_rate(problem, arrives - trip_time)[0])
+    turns = float(horner((wave[1:] * powers)[None], xi)[0]) / (speed + 2.0 * bend * xi[0])
     rate = (store.load[n, 0] + left) / (2.0 * body.impedance)
     faster = (store.load[n, 1] / store.speed[n] + turns) / (2.0 * body.impedance)
     push = machine.weight * faster + machine.resists * rate - float(inflow_of(problem).at(arrives)[0]) - left
@@ -287,12 +288,5 @@ def _restricted(series: Floats, begin: Floats, width: Floats) -> Floats:
 def _primitive(series: Floats, speed: Floats, bend: Floats, xi: Floats) -> Floats:
     """Return the integral of polynomials in time up to places xi."""
     powers = np.arange(1, TERMS + 1)
-    straight = xi * _horner(speed[:, None] * series / powers, xi)
-    return np.asarray(straight + xi**2 * _horner(2.0 * bend[:, None] * series / (powers + 1), xi))
-
-
-def _horner(series: Floats, xi: Floats) -> Floats:
-    value = series[:, -1].copy()
-    for k in range(TERMS - 2, -1, -1):
-        value = value * xi + series[:, k]
-    return np.asarray(value)
+    straight = xi * horner(speed[:, None] * series / powers, xi)
+    return np.asarray(straight + xi**2 * horner(2.0 * bend[:, None] * series / (powers + 1), xi))

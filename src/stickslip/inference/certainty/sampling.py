@@ -21,8 +21,12 @@ MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
 WALKERS = 4
 """Number of walkers for each free number; at least 16 in all."""
-FORGET = 0.3
-"""Steps in which the walkers forget where they began, as a share of the steps that are kept."""
+FORGET = 0.1
+"""Steps in which the walkers forget where they began, as a share of the steps that are kept: two correlation times of the shortest
+walk that is long enough."""
+JUMPS, FREEDOM = 0.7, 10.0
+"""Share of steps in which walkers jump to places drawn from the fit, and degrees of freedom of the distribution of these places:
+its tails are wider than those of a normal one. In the other steps walkers move by differences of others, whatever the fit is."""
 FEW_TIMES = 20.0
 """Walks shorter than this many correlation times have too few samples."""
 
@@ -82,8 +86,11 @@ def sample(
     walkers += walkers % 2
     steps = -(-count // walkers)
     forget = max(20, math.ceil(FORGET * steps)) if before is None else 0
-    posterior = _Posterior(found, float(np.max(sure.excess**2)))
-    sampler: Any = emcee().EnsembleSampler(walkers, dimensions, posterior)
+    library, posterior = emcee(), _Posterior(found, float(np.max(sure.excess**2)))
+    moves, jumps = [(library.moves.DEMove(), 1.0 - JUMPS)], FromFit.of(found, sure, posterior.tempered)
+    if jumps is not None:
+        moves.append((library.moves.MHMove(jumps), JUMPS))
+    sampler: Any = library.EnsembleSampler(walkers, dimensions, posterior, moves=moves)
     if before is None:
         begin, kept = _begun(found, sure, walkers, np.random.default_rng(seed)), []
         sampler.random_state = np.random.RandomState(seed).get_state()
@@ -95,7 +102,7 @@ def sample(
         for moved in sampler.sample(begin, iterations=left) if left > 0 else ():
             if posterior.stopped:  # in the middle of this step
                 break
-            state, new[done] = emcee().State(moved, copy=True), moved.coords
+            state, new[done] = library.State(moved, copy=True), moved.coords
             if done % 10 == 0:
                 tell(f"sampling: step {done + 1} of {left}, {walkers} runs each")
             done += 1
@@ -106,6 +113,36 @@ def sample(
     return PosteriorWalk(np.concatenate([*kept, new[forget:done]]), state, count, posterior.stopped)
 
 
+@dataclass(frozen=True)
+class FromFit:
+    """Proposals from Student's distribution around the best fit, with the covariance that the posterior has where runs are linear.
+
+    They do not depend on where a walker is, so that a walker that takes one forgets where it was. The posterior itself decides
+    which are taken (Metropolis and Hastings): samples are exact however wrong the fit is.
+    """
+
+    centre: Floats
+    factor: Floats
+    """The covariance is `factor @ factor.T`."""
+
+    @classmethod
+    def of(cls, found: Estimate, sure: Certainty, tempered: float) -> FromFit | None:
+        """Return the proposals, or None if the record does not determine all numbers inside their bounds."""
+        if not np.all(np.isfinite(sure.widths) & (sure.widths > 0.0)):
+            return None
+        return cls(found.searched, math.sqrt(tempered) * np.linalg.inv(np.linalg.qr(sure.slopes, mode="r")))
+
+    def __call__(self, places: Floats, random: np.random.RandomState) -> tuple[Floats, Floats]:
+        """Return a new place for each walker, and the logarithm of the density of its old place over that of the new one."""
+        wide = np.sqrt(FREEDOM / random.chisquare(FREEDOM, len(places)))[:, None]
+        new = self.centre + wide * random.standard_normal(places.shape) @ self.factor.T
+        return new, self._log_density(places) - self._log_density(new)
+
+    def _log_density(self, places: Floats) -> Floats:
+        apart = np.linalg.solve(self.factor, (places - self.centre).T)
+        return np.asarray(-0.5 * (FREEDOM + len(self.centre)) * np.log1p(np.sum(apart**2, axis=0) / FREEDOM))
+
+
 class _Posterior:
     """The logarithm of the posterior density; after Ctrl-C it is `stopped` and runs nothing more.
 
@@ -114,7 +151,7 @@ class _Posterior:
     """
 
     def __init__(self, found: Estimate, tempered: float) -> None:
-        self._found, self._tempered, self.stopped = found, tempered, False
+        self._found, self.tempered, self.stopped = found, tempered, False
 
     def __call__(self, x: Floats) -> float:
         model, (low, high) = self._found.model, self._found.model.limits
@@ -122,7 +159,7 @@ class _Posterior:
             if self.stopped or np.any(x < low) or np.any(x > high):
                 return -math.inf
             rest = model.residual(np.asarray(x, float))
-            return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, self._found.loss) / self._tempered
+            return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, self._found.loss) / self.tempered
         except KeyboardInterrupt:
             self.stopped = True
             return -math.inf
