@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -129,10 +128,6 @@ Door = Callable[[Scenario], object]
 REFUSALS: dict[str, tuple[Door, str]] = {
     "schemes": (lambda one: ss.studies.schemes(one), "schemes: a {} has no grid: they are of an ElasticSlab"),
     "planar": (lambda one: ss.PlanarSlab(one.problem, 64, 1e3), "PlanarSlab: "),
-    "ground": (
-        lambda one: replace(one.problem, pull_rate=0.0, ground_velocity=ss.loading.Sinusoidal(0.0, 0.1, 1.0)),
-        "Problem: ground that moves is not followed under a {}",
-    ),
     "creep": (lambda one: ss.simulate(one, creep_rtol=1e-6), "simulate: creep_rtol"),
 }
 """Where bodies of layers are refused, and how the message begins, with the name of the body."""

@@ -176,7 +176,14 @@ def far_at_first(problem: Problem) -> Any:
     body, rate = problem.body, problem.rate
     if not isinstance(body, OfLayers):
         return far_excess(problem)
-    return far_excess(problem) + float(body.stacks[0].held(rate, rate + problem.initial_shear)[-1])
+    held = float(body.stacks[0].held(rate, rate + problem.initial_shear)[-1])
+    return share_of_first(problem) * far_excess(problem) + held
+
+
+def share_of_first(problem: Problem) -> float:
+    """Return the share (1) of the load, and of the far stress, that the first side of a body bears."""
+    body = problem.body
+    return body.stacks[0].stiffness / body.stiffness if isinstance(body, OfLayers) and body.is_joined else 1.0
 
 
 def steady_inflow(problem: Problem) -> tuple[float, float]:
@@ -284,15 +291,15 @@ def _shaken_block(problem: Problem, ground: Ground) -> Inflow:
 def _through_changes(problem: Problem) -> Inflow:
     """Return the inflow through a driver that changes."""
     (pull, pull_tone), (far, far_tone) = (_in_parts(value) for value in (problem.pull_rate, problem.far_stress))
-    body, steps = problem.body, np.array(problem.driver_steps)
+    body, steps, bears = problem.body, np.array(problem.driver_steps), share_of_first(problem)
     start = np.unique(np.concatenate([pull[0], far[0], steps[:, 0]]))
     share = steps[np.searchsorted(steps[:, 0], start, side="right") - 1, 1]
-    of_pull, of_far = body.impedance * (1.0 - share), 1.0 + share
+    of_pull, of_far = body.last_impedance * (1.0 - share), 1.0 + share
     pulled, stressed = (_straight(one, start) for one in (pull, far))
-    beyond = far_excess(problem) if problem.far_stress is None else stressed[0] - problem.strength
-    value = of_pull * pulled[0] + of_far * (beyond + problem.far_stress_rate * start)
-    slope = of_pull * pulled[1] + of_far * (stressed[1] + problem.far_stress_rate)
-    tone, gain = (far_tone, of_far) if pull_tone is SILENT else (pull_tone, of_pull)
+    beyond = far_at_first(problem) if problem.far_stress is None else bears * (stressed[0] - problem.strength)
+    value = of_pull * pulled[0] + of_far * (beyond + bears * problem.far_stress_rate * start)
+    slope = of_pull * pulled[1] + of_far * bears * (stressed[1] + problem.far_stress_rate)
+    tone, gain = (far_tone, of_far * bears) if pull_tone is SILENT else (pull_tone, of_pull)
     made = _inflow([Segment(*one) for one in zip(start, value, slope, strict=True)], tone, body.inflow_delay, problem)
     return replace(made, reflection=share, gain=gain)
 

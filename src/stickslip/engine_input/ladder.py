@@ -50,7 +50,7 @@ def ladder_of(problem: Problem) -> at.Floats:
     for table, pulled in zip(tables, _pulled(problem, body), strict=True):
         cells = LadderCell.of(table)
         cells.pulled[-1] = pulled
-        if problem.loading_varies:
+        if pulled != 0.0:
             cells.inflow[-1] = cells.inflow_rate[-1] = 0.0
     return np.concatenate(tables)
 
@@ -76,15 +76,19 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
 
 
 def _pulled(problem: Problem, body: OfLayers) -> list[float]:
-    """Return the share in a varying inflow, that of the first driver, of each driver. Raises InputError if it is unclear."""
+    """Return the share in a varying inflow, that of the first driver, of each driver: 0 if it is loaded steadily.
+
+    Raises InputError if it is unclear.
+    """
     if not problem.loading_varies:
         return [0.0] * len(body.stacks)
     if len(body.stacks) == 1:
         return [1.0]
-    far = isinstance(problem.far_stress, LoadingHistory)
-    if not body.is_driven_rigidly:
-        what = "far_stress" if far else "pull_rate"
-        raise InputError(f"Problem: {what} that varies needs rigid drivers on both sides of a {type(body).__name__}")
+    varies = [name for name in ("pull_rate", "far_stress") if isinstance(getattr(problem, name), LoadingHistory)]
+    if not varies:  # the first driver changes
+        return [1.0, 0.0]
+    if problem.driver_changes or not body.is_driven_rigidly:
+        raise InputError(f"Problem: {varies[0]} that varies needs rigid drivers on both sides of a {type(body).__name__}")
     first, other = (one.impedances[-1] for one in body.stacks)
     return [1.0, other / first if body.is_joined else 0.0]
 

@@ -30,7 +30,7 @@ from stickslip.engine_input.forcing import (
 )
 from stickslip.engine_input.ladder import first_pieces, ladder_of, set_counts
 from stickslip.engine_input.limits import set_length, set_lumping
-from stickslip.engine_input.shaking import force_steps, shaking_of, tone_of
+from stickslip.engine_input.shaking import force_steps, put_ground, shaking_of, tone_of
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.loading import LoadingHistory
@@ -125,7 +125,7 @@ def parameters_of(problem: Problem) -> Params:
         params.stiffness = body.stiffness
     if problem.varies:
         params.tone_frequency = tone_of(problem).frequency
-        params.inflow_from = 0.0 if problem.ground is not None else body.inflow_delay
+        params.inflow_from = 0.0 if problem.ground is not None and body.is_uniform else body.inflow_delay
     elif not body.has_waves:
         params.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
@@ -249,23 +249,28 @@ def loading_of(problem: Problem) -> at.Floats:
     if not problem.varies:
         return NOT_VARYING
     inflow, pressing = inflow_of(problem), pressing_of(problem)
-    shaken = shaking_of(problem) if problem.ground is not None and problem.body.has_waves else None
+    ground, body = problem.ground, problem.body
+    shaken = shaking_of(problem) if ground is not None and body.has_waves and body.is_uniform else None
     start = np.union1d(inflow.start if shaken is None else shaken.start, pressing.start)
+    if ground is not None and not body.is_uniform:
+        start = np.union1d(start, ground.start)
     table = LoadingSegment.table(len(start))
     segments = LoadingSegment.of(table)
-    segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, problem.ground is not None), strict=True)
+    segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, ground is not None), strict=True)
     segments.tone, segments.tone_phase = inflow.tone.amplitude, inflow.tone.phase
     _set_driver(segments, inflow, start, problem)
     straight: list[tuple[Any, str, str]] = [(pressing, "pressing", "pressing_rate")]
-    if problem.body.has_machine:
+    if body.has_machine:
         straight.append((pull_of(problem), "pull", "pull_slope"))
     if shaken is None:
         straight.append((inflow, "value", "slope"))
     else:
         shaken.put(segments, start)
-    if problem.ground is not None and not problem.body.has_waves:
+    if ground is not None and not body.has_waves:
         segments.step = force_steps(problem, start)
         segments.jump[1:] = segments.step[1:] != 0.0
+    elif ground is not None and not body.is_uniform:
+        put_ground(segments, ground, start)
     for one, value, slope in straight:
         of = np.searchsorted(one.start, start, side="right") - 1
         begins, grows = one.value[of] + one.slope[of] * (start - one.start[of]), one.slope[of]

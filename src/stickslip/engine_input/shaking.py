@@ -3,7 +3,8 @@
 A block's load gains -m a(t), with a the acceleration of the ground: its growth is in `forcing.Inflow`, and its jumps are here. At
 the contact of a slab m d(v + v_g)/dt + Z (v + v_g) + tau = beta, with m its mass, if it has one, v the slip rate and v_g the
 velocity of the ground. The load of the engine is beta - Z v_g - m v_g', so that its inflow gains that and, from the wave 2 Z (v +
-v_g) - beta that comes back, r (Z v_g - m v_g')(t - R): parabolas and a sinusoid.
+v_g) - beta that comes back, r (Z v_g - m v_g')(t - R): parabolas and a sinusoid. Under layers, whose echoes are many, the engine
+takes the velocity of the ground itself (`engine.waves.shaken_ladder`).
 """
 
 from __future__ import annotations
@@ -65,6 +66,18 @@ class Shaking:
         segments.slope, segments.curve = self.slope[of] + 2.0 * since * self.curve[of], self.curve[of]
         segments.tone, segments.tone_phase = np.abs(self.phasor)[of], np.angle(self.phasor)[of]
         segments.jump, segments.shakes = np.where(since == 0.0, self.jump[of], 0.0), self.shakes[of]
+
+
+def put_ground(segments: Any, ground: Ground, start: Floats) -> None:
+    """Write the velocity of the ground under layers into segments (`LoadingSegment.of` a table) that begin at times (s).
+
+    The starts of the ground's pieces are among these.
+    """
+    middle = start + 0.5 * np.diff(np.append(start, start[-1] + 1.0))
+    (value, slope, curve), _, phasor, segments.shakes = _moved(ground, start, middle)
+    segments.ground, segments.ground_slope, segments.ground_curve = value, slope, curve
+    segments.ground_tone, segments.ground_phase = np.abs(phasor), np.angle(phasor)
+    segments.jump = np.maximum(segments.jump, _jumps(start, np.array([value, slope, curve]), phasor, ground.tone))
 
 
 def shaking_of(problem: Problem) -> Shaking:

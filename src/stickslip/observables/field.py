@@ -64,6 +64,9 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
     if isinstance(layers := history.problem.body, OfLayers):
         at_contact = np.broadcast_to(slip(t), time.shape)
+        if (ground := history.problem.ground) is not None:
+            begun = history.epoch.trip * layers.round_trip_time + history.epoch.offset
+            at_contact = at_contact + ground.displacement_at(begun + time) - ground.displacement_at(begun)
         check_side(side)
         inside = field_of_layers(history, layers, at_contact.ravel(), x=place.ravel(), t=time.ravel(), side=side)
         return Field(*(np.reshape(values, place.shape) for values in inside))

@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.bodies import OfLayers
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.foundation.errors import InputError
-from stickslip.observables.layer_replay import MOVED, MOVED_IN_TRIP
+from stickslip.observables.layer_records import MOVED, MOVED_IN_TRIP
 from stickslip.observables.layers import MOST, LayerWaves
 from stickslip.trajectory.history import History, Side
 

@@ -8,103 +8,28 @@ same recursion, and gives displacements without a quadrature.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.state.layout import Floats, Integers
-
-Flags = NDArray[np.bool_]
-
-VALUE, TOTAL, PULL = 0, 1, 2
-"""What drivers send: a load where it joins the waves (Pa), its integral in the round trip (Pa s), and the driver's rate (m/s)."""
-MOVED, MOVED_IN_TRIP, WORK, RADIATED, DRAGGED = range(5)
-"""Sums of a replay: how far the face of the second side has moved (m), since the start and since that of the round trip, and the
-work of the drivers, the energy radiated through them, and what drag has taken (J/m^2), integrated over time at one phase:
-J/(m^2 s). Drag acts at odd places, T before the phase.
-"""
-SUMS = 5
-"""Number of these sums (1)."""
-
-
-class SlipPieces(NamedTuple):
-    """The slip of the contact, as arrays over the pieces of the history: see `layout.Store`."""
-
-    trip: Integers
-    phase_from: Floats
-    phase_to: Floats
-    speed: Floats
-    bend: Floats
-    rate: Floats
-    grown: Floats
-    """Slip in the whole piece (m)."""
-    moves: Flags
-    """False for rest."""
-
-
-class LadderCells(NamedTuple):
-    """The cells, as arrays; see `layout.LadderCell`."""
-
-    impedance: Floats
-    reflection: Floats
-    beyond: Floats
-    """That for waves from the other side."""
-    drag: Floats
-    """Stress over velocity (Pa s/m) that drag takes at the far end of each cell."""
-    ramp: Floats
-    """Growth of the wave in a round trip of a settled rest (Pa)."""
-    wave: Floats
-    growth: Floats
-    starts: Integers
-    """First cell of each side, and the number of cells."""
-    driver: Floats
-    """Impedance of the driver of each side (Pa s/m)."""
-    strength: Floats
-    """Reference strength (Pa) of each side."""
-    joined: int
-    delay: float
-    """Time (s) from the driver to the place where waves are followed."""
-    time: float
-    """Time (s) of a cell."""
-
-
-class FollowedTrips(NamedTuple):
-    """Round trips that are replayed one by one, at several phases (s) together."""
-
-    phase: Floats
-    trip: Integers
-    sent: Floats
-    """What drivers send: array over sides, VALUE, TOTAL and PULL, round trips and phases."""
-
-
-class WaveQueries(NamedTuple):
-    """What is asked of a replay, and where the answers go."""
-
-    asked: Integers
-    """Round trip (at least -1) of each query, in order."""
-    which: Integers
-    """Phase of each query."""
-    rows: Floats
-    """E in each cell, and its integral, for each query; none if they are not asked for."""
-    sums: Floats
-
-
-class FollowedWaves(NamedTuple):
-    """How far a replay has come: arrays whose last axis is that of the phases."""
-
-    wave: Floats
-    """E in each cell, and its integral behind it if that is followed, too."""
-    sums: Floats
-    growth: Floats
-    """What each round trip of a settled rest adds to the sums."""
-    slope: Floats
-    """By how much the power of the drivers grows in each of these round trips."""
-    slip: Floats
-    """Slip rate of the contact (m/s), and its slip since the start of the round trip (m)."""
-    counts: Integers
-    """Round trip, next piece of the history, next query."""
+from stickslip.engine.state.layout import Floats
+from stickslip.foundation.constants import RIGID
+from stickslip.observables.layer_records import (
+    DRAGGED,
+    MOVED,
+    MOVED_IN_TRIP,
+    PULL,
+    RADIATED,
+    SHARE,
+    SUMS,
+    TOTAL,
+    VALUE,
+    WORK,
+    FollowedTrips,
+    FollowedWaves,
+    LadderCells,
+    SlipPieces,
+    WaveQueries,
+)
 
 
 @kernel
@@ -118,7 +43,9 @@ def replay(contact: SlipPieces, ladder: LadderCells, steps: FollowedTrips, place
             rest(ladder, steps, place, more)
         place.counts[0] = trip
         move(contact, steps, place)
-        step(ladder, place, steps.sent[:, :, k])
+        if steps.ground.shape[1] > 0:
+            place.slip[:] += steps.ground[:, k]
+        step(ladder, place, steps.sent[:, :, k], changes_in(steps.turned, trip))
         if trip == 0:
             leave_out(ladder, steps, place)
         place.sums[MOVED_IN_TRIP] = 0.0
@@ -210,7 +137,16 @@ def motion(contact: SlipPieces, piece: int, phase: float) -> tuple[float, float]
 
 
 @kernel
-def step(ladder: LadderCells, place: FollowedWaves, sent: Floats) -> None:
+def changes_in(turned: Floats, trip: int) -> Floats:
+    """Return the changes of the first driver in a round trip."""
+    first = past = np.searchsorted(turned[:, 0], trip)
+    while past < len(turned) and turned[past, 0] == trip:
+        past += 1
+    return turned[first:past]
+
+
+@kernel
+def step(ladder: LadderCells, place: FollowedWaves, sent: Floats, turned: Floats) -> None:
     """Let waves and integrals of one round trip ago cross two cells, and the contact answer with its slip rate and slip.
 
     Write the powers of the drivers (W/m^2) and of drag, the way (m) of the second side's face, and by how much the power of the
@@ -225,7 +161,9 @@ def step(ladder: LadderCells, place: FollowedWaves, sent: Floats) -> None:
             for parity in range(2):
                 for cell in range(first + parity, past, 2):
                     if cell == past - 1:
+                        more = met_before(place, level, cell, turned if side == 0 else turned[:0])
                         meet_driver(ladder, place, level, side, sent[side])
+                        wave[cell] += more
                     else:
                         meet(ladder, wave[cell], wave[cell + 1], cell, place.growth[DRAGGED] if level == VALUE else wave[cell, :0])
         answer_of_contact(ladder, place, level)
@@ -246,21 +184,39 @@ def meet(ladder: LadderCells, away: Floats, back: Floats, cell: int, dragged: Fl
 
 
 @kernel
+def met_before(place: FollowedWaves, level: int, cell: int, turned: Floats) -> Floats:
+    """Return what changes of the driver in this round trip add to the integral of what comes back, whose share is the last one.
+
+    Up to a change, the share is the one before it.
+    """
+    wave = place.wave[level, cell]
+    more = np.zeros(len(wave))
+    if level == TOTAL:
+        for n in range(len(turned)):
+            at, by = int(turned[n, 1]), turned[n, 2]
+            for u in range(len(wave)):
+                if place.phase[u] >= place.phase[at]:
+                    more[u] += by * wave[at]
+    return more
+
+
+@kernel
 def meet_driver(ladder: LadderCells, place: FollowedWaves, level: int, side: int, sent: Floats) -> None:
     """Let the wave in the last cell of a side meet its driver."""
     cell = ladder.starts[side + 1] - 1
-    wave, share, doubled = place.wave[level, cell], ladder.reflection[cell], 2.0 * ladder.impedance[cell]
+    wave, share, doubled = place.wave[level, cell], sent[SHARE], 2.0 * ladder.impedance[cell]
     if level == VALUE:
         grows = -abs(ladder.ramp[cell]) * np.sign(ladder.ramp[ladder.starts[side]])
         for u in range(len(wave)):
-            back = share * wave[u] + sent[VALUE, u]
+            back = share[u] * wave[u] + sent[VALUE, u]
             velocity = (wave[u] + back) / doubled
             place.growth[WORK, u] += (0.5 * (back - wave[u]) + ladder.strength[side]) * velocity
             place.slope[u] += grows * velocity
-            if ladder.driver[side] < np.inf:
-                place.growth[RADIATED, u] += ladder.driver[side] * (velocity - sent[PULL, u]) ** 2
+            if share[u] > RIGID:
+                driver = ladder.impedance[cell] * (1.0 - share[u]) / (1.0 + share[u])
+                place.growth[RADIATED, u] += driver * (velocity - sent[PULL, u]) ** 2
     for u in range(len(wave)):
-        wave[u] = share * wave[u] + sent[level, u]
+        wave[u] = share[u] * wave[u] + sent[level, u]
 
 
 @kernel

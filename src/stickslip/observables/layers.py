@@ -11,6 +11,8 @@ that are asked for; one that answers many moments costs hardly more than one for
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from stickslip.bodies import OfLayers
@@ -18,8 +20,9 @@ from stickslip.engine.state.layout import Floats, Integers, LadderCell
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.engine_input.ladder import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
-from stickslip.observables.layer_replay import (
+from stickslip.observables.layer_records import (
     PULL,
+    SHARE,
     SUMS,
     TOTAL,
     VALUE,
@@ -28,9 +31,8 @@ from stickslip.observables.layer_replay import (
     LadderCells,
     SlipPieces,
     WaveQueries,
-    answer,
-    replay,
 )
+from stickslip.observables.layer_replay import answer, replay
 from stickslip.trajectory.history import History, Positions
 
 MOST = 1 << 19
@@ -69,7 +71,6 @@ class LayerWaves:
             wave=np.array(cells.wave, float),
             growth=np.array(cells.growth, float),
             starts=self.starts.astype(np.int64),
-            driver=np.array([side.layers.driver_impedance for side in sides], float),
             strength=strength,
             joined=int(body.is_joined),
             delay=float(body.inflow_delay),
@@ -82,6 +83,8 @@ class LayerWaves:
         self._before = np.array(cells.inflow_before[self.last], float)
         self._pulled = np.array(cells.pulled[self.last], float)
         self._is_pulled = np.array([1.0] + [float(body.is_joined)] * (len(sides) - 1))
+        self.shares = inflow_of(self.problem) if self.problem.driver_changes else None
+        """The inflow through a driver that changes, which knows the share that is sent back; None if it stays."""
         trips = np.unique(self.contact.trip)
         self._steps = np.union1d(trips, trips + 1)
 
@@ -102,8 +105,24 @@ class LayerWaves:
         late = phase >= self.time
         return self.clipped(np.where(late, trip, trip - 1), np.where(late, phase - self.time, phase + self.time))
 
+    @cached_property
+    def turned(self) -> tuple[Integers, Floats, Floats]:
+        """The changes of the driver in order: round trips and phases (s) of its new waves, and the share before less that after."""
+        if self.shares is None:
+            return np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
+        trips, phases = np.array(self.shares.breaks()).T
+        by = -np.diff(self.shares.reflection, prepend=self.shares.reflection[0])
+        changes = by != 0.0
+        return trips[changes].astype(np.int64), phases[changes], by[changes]
+
+    @cached_property
+    def _met_at_changes(self) -> Floats:
+        """The integral of the wave that the first driver met, from the start of the round trip to each change (Pa s)."""
+        trip, phase, _ = self.turned
+        return self.rows(trip - 1, phase)[:, TOTAL, self.last[0]]
+
     def sent(self, trip: Integers, phase: Floats) -> Floats:
-        """Return what each driver sends that joins the waves at these places in time: axes sides, and VALUE, TOTAL, PULL.
+        """Return what each driver does at these places in time: axes sides, and VALUE, TOTAL, PULL and SHARE.
 
         Until the first wave of the run has come from a driver that is behind an odd number of cells, it keeps the initial state.
         """
@@ -113,10 +132,10 @@ class LayerWaves:
             np.asarray(begin + known, float),
             phase - known,
         )  # and not time - low, which is rounded to the digits of the time
-        found = np.empty((len(self._before), 3, *time.shape))
+        found = np.empty((len(self._before), 4, *time.shape))
         for side, last in enumerate(self.last):
-            if self.problem.loading_varies:
-                inflow, weight = inflow_of(self.problem), self._pulled[side]
+            if (weight := self._pulled[side]) != 0.0:
+                inflow = inflow_of(self.problem)
                 value = weight * inflow.at(time)
                 whole = weight * inflow.total(low, time) + value * (lasting - (time - low))
             else:
@@ -124,6 +143,8 @@ class LayerWaves:
                 value, whole = first + slope * time, (first + 0.5 * slope * (low + time)) * lasting
             wave, growth = self.ladder.wave[last], self.ladder.growth[last]
             kept = RIGID - self.ladder.reflection[last]  # it reflects all, and the recursion lets it reflect its share
+            changes = self.shares if side == 0 else None
+            found[side, SHARE] = self.ladder.reflection[last] if changes is None else changes.reflection_at(time)
             of_start = kept * (wave + growth * phase) + self._before[side]
             found[side, VALUE] = np.where(early & (phase < before), of_start, value)
             found[side, TOTAL] = whole + known * (kept * (wave + 0.5 * growth * known) + self._before[side])
@@ -169,20 +190,40 @@ class LayerWaves:
 
     def _at_first(self, phase: Floats, levels: int) -> FollowedWaves:
         """Return the place one round trip before the start."""
+        phase = self._with_changes(phase, levels)
         wave, growth, many = self.ladder.wave[:, None], self.ladder.growth[:, None] * phase, len(phase)
         both = [wave + growth, (wave + 0.5 * growth) * phase]
         sums, slip = (np.zeros((number, many)) for number in (SUMS, 2))
-        return FollowedWaves(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]))
+        return FollowedWaves(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]), phase)
 
-    def _replay_together(self, phase: Floats, place: FollowedWaves, queries: WaveQueries) -> None:
-        """Answer queries at some phases, in the order of their round trips."""
+    def _with_changes(self, phase: Floats, levels: int) -> Floats:
+        """Return phases (s) with those of changes of the driver behind them, if integrals are followed."""
+        return np.append(phase, self.turned[1]) if levels > TOTAL else phase
+
+    def _ground(self, trip: Integers, phase: Floats) -> Floats:
+        """Return the velocity of moving ground (m/s) at these places in time, and its way in the round trip (m); else nothing."""
+        if (ground := self.problem.ground) is None:
+            return np.empty((2, 0, 0))
+        begin = trip * self.round
+        time = begin + phase
+        return np.array([ground.velocity_at(time), ground.displacement_at(time) - ground.displacement_at(begin)])
+
+    def _replay_together(self, asked: Floats, place: FollowedWaves, queries: WaveQueries) -> None:
+        """Answer queries at the phases asked for, in the order of their round trips."""
+        phase = place.phase
+        turned = np.zeros((0, 3))
+        if len(phase) > len(asked):
+            changes, _, by = self.turned
+            turned = np.column_stack([changes, np.arange(len(asked), len(phase)), by])
         last = int(queries.asked[-1])
         trips, block = self._steps[self._steps <= max(last, 0)], max(MOST // (6 * len(phase)), 1)
         for low in range(0, len(trips), block):
             part = trips[low : low + block]
-            sent = self.sent(*np.broadcast_arrays(part[:, None], phase))
-            replay(self.contact, self.ladder, FollowedTrips(phase, part, sent), place, queries)
-        answer(self.ladder, FollowedTrips(phase, trips[:0], np.empty((0, 0, 0, 0))), place, queries, last + 1)
+            when = np.broadcast_arrays(part[:, None], phase)
+            steps = FollowedTrips(phase, part, self.sent(*when), self._ground(*when), turned)
+            replay(self.contact, self.ladder, steps, place, queries)
+        nothing = FollowedTrips(phase, trips[:0], np.empty((0, 0, 0, 0)), np.empty((2, 0, 0)), turned)
+        answer(self.ladder, nothing, place, queries, last + 1)
 
     def odd(self, rows: Floats, trip: Integers, phase: Floats) -> Floats:
         """Return O and its integral at times T after those of rows of E, whose places in time are given."""
@@ -193,5 +234,13 @@ class LayerWaves:
             found[..., near] = share * away + (1.0 + share) * back
             found[..., near + 1] = (1.0 + beyond) * away + beyond * back
             if (last - self.starts[side]) % 2 == 0:
-                found[..., last] = self.ladder.reflection[last] * rows[..., last] + sent[side, : rows.shape[1]].T
+                found[..., last] = sent[side, SHARE][:, None] * rows[..., last] + sent[side, : rows.shape[1]].T
+                if side == 0 and rows.shape[1] > TOTAL and len(self.turned[0]):
+                    found[:, TOTAL, last] += self._met_before_changes(trip + 1, phase)
         return found
+
+    def _met_before_changes(self, trip: Integers, phase: Floats) -> Floats:
+        """Return what changes of the driver in these round trips, up to these phases (s), take off what it sends back (Pa s)."""
+        changes, at, by = self.turned
+        passed = (changes == trip[:, None]) & (at <= phase[:, None])
+        return np.asarray(passed @ (by * self._met_at_changes))

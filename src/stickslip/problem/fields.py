@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics
+from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics, OfLayers
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
@@ -144,8 +144,9 @@ class ProblemFields(CheckedArguments):
             self._check_driver(self.driver_reflection)
 
     def _check_ground(self, ground: Ground) -> None:
-        if not self.body.is_uniform:
-            raise InputError(f"Problem: ground that moves is not followed under a {type(self.body).__name__}: give an ElasticSlab")
+        if isinstance(self.body, OfLayers) and len(self.body.stacks) > 1 and not self.body.is_joined:
+            apart = f"{type(self.body).__name__} whose sides are apart"
+            raise InputError(f"Problem: ground that moves is not followed under a {apart}: each of them is the ground of the other")
         if self.body.has_machine:
             cure = "set driver_inertia and driver_integral_gain to 0, or leave the ground at rest"
             raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: {cure}")
@@ -172,9 +173,9 @@ class ProblemFields(CheckedArguments):
 
     def _check_driver(self, history: LoadingHistory) -> None:
         body, name = self.body, "Problem: driver_reflection"
-        if not (body.has_waves and body.is_uniform):
-            why = "has layers" if body.has_waves else "sends no waves to its driver"
-            raise InputError(f"{name} is not followed behind a {type(body).__name__}, which {why}: give a uniform slab or string")
+        if not body.has_waves:
+            why = "which sends no waves to its driver: give a slab or a string"
+            raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
         if body.has_machine:
             cure = "set driver_inertia and driver_integral_gain to 0, or leave driver_reflection out"
             raise InputError(f"{name} is not followed for {MACHINE}: {cure}")
@@ -238,7 +239,8 @@ class ProblemFields(CheckedArguments):
             object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
     def _check_far_side(self) -> None:
-        if not self.body.is_driven_rigidly:
+        at_first = self.body.is_driven_rigidly or (self.driver_changes and self.body.reflection == RIGID)
+        if not at_first:
             return
         if self.driver_changes and self.far_stress is None:
             unit = self.unit_of("far_stress")

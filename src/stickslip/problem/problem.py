@@ -104,12 +104,13 @@ class Problem(ProblemFields):
 
     Where the ground moves, slip and slip rate are relative to it. A block's spring hangs on the ground, and its load gains -m a(t);
     `initial_load` is the load before the ground moves. The driver and the far stress of a slab do not move with the ground: the
-    load of its contact is beta - Z v_ground - m a_ground, in which beta is the wave that arrives and m the contact mass.
+    load of its contact is beta - Z v_ground - m a_ground, in which beta is the wave that arrives and m the contact mass. So it is
+    under layers of one side, or of two that are joined; sides that are apart have no ground.
 
     `driver_reflection` is the share r = (Z - Zd) / (Z + Zd) of a wave that the driver sends back, for its impedance Zd: -1 if it is
     rigid, 0 if it is matched, 1 if the far end is set free. A wave meets the driver of the moment, and its echo is at the contact
     h/c later: r w + Z (1 - r) V + (1 + r) far_stress. Where the driver is rigid at first, `far_stress` must be given: 0 if nothing
-    holds the far end that is set free.
+    holds the far end that is set free. Behind layers Z is that of the last one; of two drivers, the first one changes.
 
     See Also
     --------

@@ -30,7 +30,15 @@ from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab import PulseTrain
 from stickslip.scenarios.entries import key_of
-from stickslip.scenarios.examine_layers import first_echo, given_layers, layer_facts, of_layers, rest_warning, smallest_modulus
+from stickslip.scenarios.examine_layers import (
+    first_echo,
+    given_layers,
+    layer_facts,
+    of_layers,
+    rest_warning,
+    smallest_modulus,
+    to_driver,
+)
 from stickslip.scenarios.facts import Fact
 from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.schema import quantities_in
@@ -165,7 +173,8 @@ def _derived(problem: Problem) -> list[Fact]:
             *start,
         ]
     if not body.is_uniform:
-        return [*layer_facts(of_layers(body), body.stiffness * problem.first_pull_rate), *start, *_pulses(problem)]
+        layers = layer_facts(of_layers(body), body.stiffness * problem.first_pull_rate, problem.driver_changes)
+        return [*layers, *_later_drivers(problem), *start, *_pulses(problem)]
     of = "of sharp fronts" if body.has_machine else "of waves"
     begins = " at first" if problem.driver_changes else ""
     waves = as_waves(body)
@@ -188,8 +197,9 @@ def _later_drivers(problem: Problem) -> list[Fact]:
     facts, unit = [], problem.unit_of("impedance")
     for start, share in problem.driver_steps[1 : MOST_DRIVERS + 1]:
         now = "rigid" if share == RIGID else "set free" if share == DEAD_LOAD else ""
-        now = now or f"of impedance {brief(problem.body.impedance * (1.0 - share) / (1.0 + share), unit)}"
-        facts.append(Fact(f"r from {start:g} s", share, "1", f"the driver is then {now}, as the contact feels h/c later"))
+        now = now or f"of impedance {brief(problem.body.last_impedance * (1.0 - share) / (1.0 + share), unit)}"
+        later = "h/c" if problem.body.is_uniform else f"{to_driver(of_layers(problem.body)):.6g} s"
+        facts.append(Fact(f"r from {start:g} s", share, "1", f"the driver is then {now}, as the contact feels {later} later"))
     return facts
 
 
@@ -295,12 +305,14 @@ def _slab_warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
             f"friction heals instantly and the {body.noun} has no {body.mass_field}:"
             " under slow loading it creeps in tiny slips after the first event"
         )
-    if problem.driver_changes and scenario.duration < (felt := problem.driver_steps[1][0] + body.inflow_delay):
-        found.append(f"the run ends before the contact feels that the driver changes, at {felt:.6g} s")
+    if problem.driver_changes:
+        felt = problem.driver_steps[1][0] + (body.inflow_delay if body.is_uniform else to_driver(of_layers(body)))
+        if scenario.duration < felt:
+            found.append(f"the run ends before the contact feels that the driver changes, at {felt:.6g} s")
     if scenario.duration < echo:
         found.append(f"the run ends before the first echo returns at R = {echo:.6g} s")
     if not body.is_uniform:
-        found += rest_warning(of_layers(body), scenario.duration, problem.friction.sticks)
+        found += rest_warning(of_layers(body), scenario.duration, problem.friction.sticks and not problem.driver_changes)
     if contact.plateaus:
         found.append("a continuum of slip rates solves the contact equation at one load: no rule picks one of them")
     if contact.window is not None:

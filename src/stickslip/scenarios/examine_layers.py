@@ -33,15 +33,18 @@ def given_layers(body: BodyOnCharacteristics) -> list[Fact]:
     return facts
 
 
-def layer_facts(body: OfLayers, load_rate: float) -> list[Fact]:
-    """Return what follows from the numbers of a body of layers; `load_rate` is the rate of loading at first (Pa/s)."""
+def layer_facts(body: OfLayers, load_rate: float, changes: bool = False) -> list[Fact]:
+    """Return what follows from the numbers of a body of layers; `load_rate` is the rate of loading at first (Pa/s).
+
+    `changes` says that the first driver changes.
+    """
     cells, together = body.cells, "side by side" if body.is_joined else "in series"
     sides = ", that of both sides" if len(body.stacks) > 1 else ""
     unit = {name: si_unit(name, body.load_unit) for name in ("impedance", "stiffness", "load_rate")}
     symbol, slip = ("GJ", "radian") if body.load_unit == TURNS else ("G", "metre")
     found = [Fact("Z", body.impedance, unit["impedance"], f"impedance at the contact{sides}")]
     for side, one in zip(_names(body), body.stacks, strict=True):
-        found += _of_side(side, one, body, unit["impedance"])
+        found += _of_side(side, one, body, unit["impedance"], " at first" if changes and not side else "")
     return [
         *found,
         Fact("R", body.two_way_time, "s", f"longest two-way travel time to a driver, through all {body.part}s"),
@@ -66,14 +69,14 @@ def _counts(counts: Sequence[int]) -> str:
     return " + ".join(str(one) for one in counts)
 
 
-def _of_side(side: str, one: Layers, body: OfLayers, unit: str) -> Iterator[Fact]:
+def _of_side(side: str, one: Layers, body: OfLayers, unit: str, first: str) -> Iterator[Fact]:
     for i, (impedance, count) in enumerate(zip(one.impedances, one.counts, strict=True), 1):
         name, two_way = f"{side}{body.part} {i}", f"two-way time {2.0 * count * one.time:.6g} s"
         yield Fact(f"Z of {name}", impedance, unit, f"impedance {body.impedance_formula}; {two_way}")
     for i, share in enumerate(one.interface_reflections, 1):
         meet = f"where {body.part} {i} meets {body.part} {i + 1}"
         yield Fact(f"r of {side}{i}, {i + 1}", share, "1", f"reflection of {KINDS[body.load_unit].loads} {meet}, from the contact")
-    yield Fact(f"{side}r", one.reflection, "1", "reflection of waves at the driver: -1 rigid, 0 matched, +1 dead load")
+    yield Fact(f"{side}r", one.reflection, "1", f"reflection of waves at the driver{first}: -1 rigid, 0 matched, +1 dead load")
 
 
 def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:
@@ -86,6 +89,11 @@ def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:
         f" {trips:.2g} pieces, each of {sum(body.cells.counts)} cells;"
         " under long loading give drag, or a driver of finite impedance"
     ]
+
+
+def to_driver(body: OfLayers) -> float:
+    """Return the time (s) that a wave takes between the contact and the (first) driver."""
+    return sum(body.stacks[0].counts) * body.stacks[0].time
 
 
 def smallest_modulus(body: OfLayers) -> float:

@@ -46,6 +46,7 @@ COMPILED_FILES = (
     "engine_input/branch_table.py",
     "foundation/constants.py",
     "friction/formula/expression.py",
+    "observables/layer_records.py",
     "observables/layer_replay.py",
     "trajectory/history.py",
     "trajectory/machine_motion.py",

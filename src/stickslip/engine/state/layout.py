@@ -58,7 +58,9 @@ class Params(MemoryRecord):
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
     tone_frequency: float  # rad/s: angular frequency of the tone in an inflow (`LoadingSegment.tone`)
-    inflow_from: float  # s: phase of the first round trip from which a slab's inflow is added: h/c, or 0 where the ground moves
+    inflow_from: (
+        float  # s: phase of the first round trip from which a slab's inflow is added: h/c, or 0 where the ground under it moves
+    )
     pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
     pressing_frequency: float  # rad/s: angular frequency of that tone
     pressing_phase: float  # rad: phase of that tone at t = 0
@@ -398,8 +400,13 @@ class LoadingSegment(MemoryRecord):
     step: float  # N: by how much the load of a block jumps where the segment begins
     tone: float  # Pa (slab) or N/s (block): amplitude of a tone in the inflow, tone sin(tone_frequency t + tone_phase)
     tone_phase: float  # rad: phase of the tone at t = 0
-    shakes: float  # 1 while the ground under a slab moves, or its motion is on its way back, else 0
+    shakes: float  # 1 while the ground under a slab or layers moves, or its motion is on its way back in a slab, else 0
     reflection: float  # 1: `Params.reflection` while the segment holds
+    ground: float  # m/s: velocity of the ground under layers there, but for its tone (`waves.shaken_ladder`)
+    ground_slope: float  # m/s^2: how fast it grows
+    ground_curve: float  # m/s^3: half its second derivative
+    ground_tone: float  # m/s: amplitude of its tone, ground_tone sin(tone_frequency t + ground_phase)
+    ground_phase: float  # rad: phase of that tone at t = 0
 
 
 class LadderCell(MemoryRecord):

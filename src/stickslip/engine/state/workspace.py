@@ -97,6 +97,8 @@ class Run(MemoryRecord):
     machine_pull: Floats = floats_inside(TERMS)  # m/s: of its pull rate
     machine_rate: Floats = floats_inside(TERMS)  # m/s: of its rate
     machine_push: Floats = floats_inside(TERMS)  # Pa: of the force of its integral gain
+    ground_rate: Floats = floats_inside(TERMS)  # m/s: series of the velocity of the ground under layers (`waves.shaken_ladder`)
+    ground_push: Floats = floats_inside(TERMS)  # Pa: of its acceleration times the mass of the contact
     stage_rate: Floats = floats_inside(TERMS)  # m/s: slip rate at Radau's points of an implicit step
     stage_state: Floats = floats_inside(STATES * TERMS)  # states of the law at these points
     some_state: Floats = floats_inside(TERMS)  # states of the law at one place

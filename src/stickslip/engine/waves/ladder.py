@@ -21,15 +21,23 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import span_of_load
-from stickslip.engine.folds.fold import share_described, square_variable
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, fill, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats, Task
-from stickslip.engine.state.workspace import FIRST_ROW, Run
+from stickslip.engine.state.workspace import Run
+from stickslip.engine.waves.ladder_rows import (
+    AIR,
+    ASIDE,
+    cut_waves,
+    row_of,
+    share_of_waves,
+    side_of,
+    wave_in,
+    write_from_fold,
+    write_to_fold,
+)
+from stickslip.engine.waves.shaken_ladder import follow_ground, shake, shakes
 from stickslip.foundation.constants import RIGID
 
-AIR, ASIDE = 0, 1
-"""Rows of the piece of load that the contact meets, and of one that is set aside next to a fold."""
 STILL = 4e-15
 """Waves have settled when they differ from those one round trip ago, but for the ramp, by less than this share (1) of the loads."""
 JUMP = 1e-12
@@ -58,24 +66,6 @@ def serve(run: Run, task: int, number: float) -> float:
     else:
         return 1.0 if is_settled(run) else 0.0
     return 0.0
-
-
-@kernel
-def wave_in(run: Run, row: int, cell: int) -> Floats:
-    """Return the wave (Pa, minus that of the reference strength) in a cell, of one row."""
-    return ahead(run.waves, (row * run.counts.cells + cell) * TERMS)
-
-
-@kernel
-def row_of(run: Run, n: int) -> int:
-    """Return the row of piece n of the history."""
-    return FIRST_ROW + (n + run.counts.wave_shift) % run.wave_rows
-
-
-@kernel
-def side_of(run: Run, side: int) -> tuple[int, int]:
-    """Return the first cell of a side of the contact (0 or 1), and the one behind its last."""
-    return (0, run.counts.first_side) if side == 0 else (run.counts.first_side, run.counts.cells)
 
 
 # ---- what arrives -----------------------------------------------------------------------------------------------------------
@@ -132,10 +122,13 @@ def meet(run: Run, first: int, past: int, parity: int) -> None:
 
 @kernel
 def meet_driver(run: Run, cell: int) -> None:
-    """Let the wave in the last cell meet the driver, which at first keeps the initial state as it is."""
+    """Let the wave in the last cell meet the driver, which at first keeps the initial state as it is.
+
+    The driver of the first side may change (`far_end`).
+    """
     wave, one = wave_in(run, AIR, cell), run.ladder_cells[cell]
     begins = run.counts.trip == 0 and run.state.phase_from < run.params.inflow_from
-    share = RIGID if begins else one.reflection
+    share = RIGID if begins else run.params.reflection if cell < run.counts.first_side else one.reflection
     for k in range(TERMS):
         wave[k] *= share
     if begins:
@@ -156,6 +149,8 @@ def send_in(run: Run) -> None:
         if past > first:
             put_in(run, first, past - 1, sent)
     arrive_at_contact(run)
+    if shakes(run):
+        shake(run)
 
 
 @kernel
@@ -195,6 +190,9 @@ def jumps_here(run: Run) -> bool:
     if last < 0 or run.history[last].trip < run.counts.trip - 1:
         return False
     before, now = total(run.history[last].load), run.load[0]
+    if shakes(run):  # the load of the last piece is without what the ground needs
+        follow_ground(run, run.state.phase_from, 0.0, 0.0)
+        now -= run.params.impedance * run.ground_rate[0] + run.ground_push[0]
     return abs(now - before) > JUMP * max(abs(now), abs(before), abs(run.params.reference))
 
 
@@ -209,6 +207,9 @@ def keep_waves(run: Run, xi_to: float) -> None:
     for cell in range(run.counts.cells):
         restrict(wave_in(run, AIR, cell), xi, xi_to - xi, wave_in(run, row, cell))
     load, rate, impedance = piece.load, piece.rate, run.params.impedance
+    moved = shakes(run)
+    if moved:
+        follow_ground(run, piece.phase_from, piece.speed, piece.bend)
     for side in range(2):
         first, past = side_of(run, side)
         if past == first:
@@ -218,53 +219,15 @@ def keep_waves(run: Run, xi_to: float) -> None:
             own = 2.0 * run.ladder_cells[first].impedance
             for k in range(TERMS):
                 wave[k] = own * rate[k] - wave[k]
+            if moved:
+                for k in range(TERMS):
+                    wave[k] += own * run.ground_rate[k]
         else:
             for k in range(TERMS):
                 wave[k] -= 2.0 * (load[k] - impedance * rate[k])
-
-
-# ---- parts of a piece, and folds --------------------------------------------------------------------------------------------
-
-
-@kernel
-def cut_waves(run: Run, end: float) -> None:
-    """Restrict the waves to the part of the piece of load from the present place to `end`."""
-    begin = run.state.xi
-    for cell in range(run.counts.cells):
-        wave = wave_in(run, AIR, cell)
-        restrict(wave, begin, end - begin, run.trial)
-        copy(run.trial, wave, TERMS)
-
-
-@kernel
-def share_of_waves(run: Run, width: float) -> float:
-    """Return the share of the way (in xi) back from a fold that is `width` ahead, on which all waves fit the root of time."""
-    share = 1.0
-    for cell in range(run.counts.cells):
-        restrict(wave_in(run, AIR, cell), run.state.xi + width, -width, run.spare)
-        share = min(share, share_described(run.spare))
-    return share
-
-
-@kernel
-def write_to_fold(run: Run, width: float) -> None:
-    """Set the waves aside, and write those up to the fold `width` (in xi) ahead in the root of the time left."""
-    copy(wave_in(run, AIR, 0), wave_in(run, ASIDE, 0), run.counts.cells * TERMS)
-    for cell in range(run.counts.cells):
-        wave = wave_in(run, AIR, cell)
-        restrict(wave, run.state.xi + width, -width, run.trial)
-        square_variable(run.trial, run.spare)
-        restrict(run.spare, 1.0, -1.0, wave)
-
-
-@kernel
-def write_from_fold(run: Run, width: float) -> None:
-    """Set the waves aside, and write those from the fold on, over `width` (in xi), in the root of the time since."""
-    copy(wave_in(run, AIR, 0), wave_in(run, ASIDE, 0), run.counts.cells * TERMS)
-    for cell in range(run.counts.cells):
-        wave = wave_in(run, AIR, cell)
-        restrict(wave, run.state.xi, width, run.trial)
-        square_variable(run.trial, wave)
+            if moved:
+                for k in range(TERMS):
+                    wave[k] -= 2.0 * run.ground_push[k]
 
 
 # ---- rest -------------------------------------------------------------------------------------------------------------------

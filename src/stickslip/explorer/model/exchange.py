@@ -131,11 +131,11 @@ def _with_body(setting: Setting, kind: str) -> Setting:
         slab_name = OF_LAYERS.get(kind, slab_name)
         body = dict(tomllib.loads(library.text(slab_name))["body"])
     made = {"kind": kind} | _began(setting, "body", kind, body)
-    # a far stress acts on a driver that gives way, ground that moves is not followed under layers, another driver changes otherwise
+    # a far stress acts on a driver that gives way, no ground is under sides that are apart, another driver changes otherwise
     missing = (
         "driver_reflection",
         *("far_stress",) * ("driver_impedance" not in made),
-        *("ground_",) * (not BODIES[kind].is_uniform),
+        *("ground_",) * (kind == "two-slabs" and made.get("sides") != "joined"),
     )
     loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith(missing)}
     setting = setting.with_value("loading", loading)

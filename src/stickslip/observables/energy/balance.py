@@ -172,11 +172,11 @@ def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Fl
 def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[str, Floats]:
     """Return the energies of a body of layers at positions, without heat; see `energies`."""
     energy, now = LayerEnergy(history, body), epochs(history, at)
-    contact = 0.5 * body.inertia * history.rate(at) ** 2
+    contact = 0.5 * body.inertia * speed(history, at) ** 2
     stored, moving, trapped = np.array(energy.inside(now)).reshape(-1, 3).T
     work, radiated, dragged = energy.passed(now)
     return {
-        "work": work,
+        "work": work + shaken(history, at),
         "stored": stored + contact,
         "elastic": stored - moving,
         "kinetic": moving + contact,

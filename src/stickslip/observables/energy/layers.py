@@ -14,7 +14,8 @@ import numpy as np
 from stickslip.bodies import OfLayers
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.forcing import inflow_of
-from stickslip.observables.layer_replay import DRAGGED, RADIATED, SUMS, VALUE, WORK
+from stickslip.foundation.constants import RIGID
+from stickslip.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
 from stickslip.observables.layers import MOST, LayerWaves
 from stickslip.observables.quadrature import NODES, WEIGHTS
 from stickslip.trajectory.history import Epoch, History
@@ -101,7 +102,10 @@ class LayerEnergy:
         """
         body, waves = self.body, self.waves
         pulled = self.history.problem.pull_rate_at(now.trip * waves.round + now.offset)
-        rate = float(pulled) if body.is_driven_rigidly else 0.0
+        rigid = body.is_driven_rigidly
+        if rigid and waves.shares is not None:
+            rigid = waves.shares.reflection_at(np.array(now.trip * waves.round + now.offset + waves.ladder.delay)) == RIGID
+        rate = float(pulled) if rigid else 0.0
         found, held = [], []
         for n, layers in enumerate(body.stacks):
             driver = rate if n == 0 or body.is_joined else 0.0
