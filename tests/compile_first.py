@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import stickslip as ss
+from stickslip.engine.on_demand import PARTS, part_at
 from stickslip.scenarios.examine import examine
 
 SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block", "stress-pulse-slab", "second-event-perfect-delay")
-"""Runs that use, together, each part of the engine."""
+"""Runs that use, together, what is compiled for most problems."""
 
 
 def main() -> None:
     """Run, check and sweep; the machine code stays in the cache on disk."""
+    for part in PARTS.values():
+        part_at(part)
     for name in SCENARIOS:
         scenario = ss.load_scenario(name)
         repr(ss.simulate(scenario))  # with events and all else that a summary compiles

@@ -41,7 +41,7 @@ def slip_on_staggered_grid(parts: int, duration: float, excess: float) -> float:
         # the friction at the contact, by the slip half a step later: a contraction
         inert, lost = shares * mass / step, 0.5 * shares * DRAG * THICKNESS / parts
         friction, old = 0.0, rate[:-1].copy()
-        for _ in range(40):
+        for _ in range(12):
             force[0] = stress[0] - friction
             new = ((inert - lost) * old + force) / (inert + lost)
             friction = NORMAL * float(WEAKENING.coefficient(slip + 0.25 * step * (old[0] + new[0]), 0.0))

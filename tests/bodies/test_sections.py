@@ -58,7 +58,7 @@ def test_sections_of_equal_impedance_are_one_string(lengths: tuple[float, ...], 
 
 
 @pytest.mark.parametrize(
-    "change", [{}, {"inertia": 50.0}, {"drag": [0.05, 0.02]}, {"length": [120.0, 1800.0], "density": [7850.0, 2700.0]}]
+    "change", [{}, {"inertia": 50.0}, {"drag": [0.05, 0.02]}, {"length": [120.0, 1841.5], "density": [7850.0, 2700.0]}]
 )
 def test_a_string_moves_as_the_slab_with_its_numbers(change: dict[str, Any]) -> None:
     string = ss.SectionedString(**(TWO | change))

@@ -32,7 +32,7 @@ load = 0.0
 duration = "60 s"
 """
 RECORD = "time (s),slip (mm),torque (N m)\n" + "".join(f"{n / 10},{n},{5 + n % 3}\n" for n in range(40))
-SHORT = ("--duration", "8 s")
+SHORT = ("--duration", "4 s")
 SLIDES = re.compile(r"(?<!N )\bm/s\b|\d[kMG]? ?Pa\b|\bslab\b|\bG/h\b|\bslip \(m\)")
 """What is said of contacts that slide."""
 TAKEN = ""
@@ -56,8 +56,8 @@ DOORS: dict[str, tuple[tuple[str, ...], str, str]] = {
     ),
     "compare": (("compare", "other.toml", *SHORT, "--out", "a.csv", "--figure", "a.png"), TAKEN, TAKEN),
     "find": (("find", "--duration", "20 s", "--within", "0.1", "--figure", "a.png"), TAKEN, TAKEN),
-    "sweep": (("sweep", "--set", "duration=8 s", "-v", "pull_rate=20rpm..60rpm:2", "--figure", "a.png"), TAKEN, TAKEN),
-    "one at a time": (("sweep", "--set", "duration=8 s", "-v", "static=0.7,0.8", "-q", "severity", "-q", "heat"), TAKEN, TAKEN),
+    "sweep": (("sweep", "--set", "duration=4 s", "-v", "pull_rate=20rpm..60rpm:2", "--figure", "a.png"), TAKEN, TAKEN),
+    "one at a time": (("sweep", "--set", "duration=4 s", "-v", "static=0.7,0.8", "-q", "severity", "-q", "heat"), TAKEN, TAKEN),
     "analogy": (
         ("analogy", *SHORT, "--map", "static=0.7..0.8:2", "--map", "dynamic=0.4..0.5:2", "--figure", "a.png"),
         TAKEN,
