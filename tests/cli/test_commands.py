@@ -16,7 +16,6 @@ from stickslip import __version__
 from stickslip.cli.app import app
 from stickslip.cli.options import (
     CHOICES,
-    STARTERS,
     complete_law,
     complete_pull,
     complete_rule,
@@ -341,10 +340,6 @@ def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.Monke
     assert complete_scenario("s") == [name for name in library.names() if name.startswith("s")] + ["sub/"]
     assert complete_scenario("sub/") == ["sub/deep.toml"]
     assert complete_scenario("nowhere/") == []
-
-
-def test_the_completed_starters_are_those_that_exist():
-    assert set(STARTERS) == set(templates.STARTERS)
 
 
 def test_the_suffixes_of_files_are_those_that_can_be_written():

@@ -11,7 +11,7 @@ import pytest
 from stickslip.cli.options import complete_fitted, complete_table
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import load_scenario
-from stickslip.scenarios.templates import STARTERS, with_law
+from stickslip.scenarios.templates import with_law
 from tests.problems import RATE_LAW, measured
 
 
@@ -78,7 +78,7 @@ def test_the_scenario_is_checked_and_run_as_it_is(command, points, how):
     assert Path("mine.toml").read_text().startswith("# data.csv: ")
 
 
-@pytest.mark.parametrize("name", [*STARTERS, *library.in_1d()])
+@pytest.mark.parametrize("name", [*library.STARTERS, *library.in_1d()])
 def test_every_body_takes_the_law_and_keeps_all_else(name):
     scenario = load_scenario_text(with_law(name, RATE_LAW, ["a\x1b title", "more"]))
     assert scenario.problem.friction == RATE_LAW

@@ -14,7 +14,7 @@ from stickslip.bodies import BODIES
 from stickslip.foundation.quantities import LawField, NumberSeries, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.scenarios import templates
+from stickslip.scenarios import library, templates
 from stickslip.scenarios.entries import describe
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import entries_in, quantities_in
@@ -79,11 +79,11 @@ def test_a_new_law_needs_only_its_registration(monkeypatch: pytest.MonkeyPatch) 
     assert '# kind = "stribeck"' in templates.template("slab")
 
 
-@pytest.mark.parametrize("name", templates.STARTERS)
+@pytest.mark.parametrize("name", library.STARTERS)
 def test_starters_explain_every_key_and_run_as_they_are(name: str) -> None:
     text = templates.template(name)
     scenario = read_scenario(text, name)
-    example = load_scenario(templates.STARTERS[name])
+    example = load_scenario(library.STARTERS[name].example)
     assert scenario.problem == example.problem
     body = type(scenario.problem.body)
     for table, kind in (("body", body), ("friction", type(scenario.problem.friction)), ("loading", body), ("initial", body)):
@@ -92,7 +92,7 @@ def test_starters_explain_every_key_and_run_as_they_are(name: str) -> None:
     assert all(f'kind = "{law}"' in text for law in LAWS)
 
 
-@pytest.mark.parametrize("name", templates.STARTERS)
+@pytest.mark.parametrize("name", library.STARTERS)
 @pytest.mark.parametrize("law", LAWS.values())
 def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[FrictionLaw]) -> None:
     text = templates.template(name, law.kind)
@@ -110,7 +110,7 @@ def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[Fr
 
 def test_bundled_templates_are_the_bundled_files() -> None:
     for name in templates.template_names():
-        if name not in templates.STARTERS:
+        if name not in library.STARTERS:
             assert templates.template(name) == load_scenario(name).source
     with pytest.raises(InputError, match=r"^no scenario 'slob'; did you mean 'slab'\?$"):
         templates.template("slob")

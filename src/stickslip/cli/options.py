@@ -10,9 +10,6 @@ from typing import Annotated, Any
 import typer
 from typer import Context  # typer evaluates the annotation at run time
 
-STARTERS = ("slab", "lab-slab", "block", "string", "sectioned-string", "layered-slab", "two-slabs")
-"""Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
-
 RESULT_FILES = (".nc", ".csv", ".parquet")
 """Suffixes of the files that hold results of runs and catalogues."""
 
@@ -121,7 +118,7 @@ def complete_template(incomplete: str) -> list[str]:
     """Return the starters and bundled scenarios that begin with what is typed."""
     from stickslip.scenarios import library
 
-    return [name for name in [*STARTERS, *library.names()] if name.startswith(incomplete)]
+    return [name for name in [*library.STARTERS, *library.names()] if name.startswith(incomplete)]
 
 
 def complete_vary(context: Context, incomplete: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The scenarios that come with the package: names, texts, and one line on each."""
+"""The scenarios that come with the package: names, texts, and one line on each; and the starters, which explain every key."""
 
 from __future__ import annotations
 
@@ -16,6 +16,24 @@ class BundledEntry(NamedTuple):
 
     title: str
     description: str
+
+
+class Starter(NamedTuple):
+    """What a starter shows, and the bundled scenario whose values it has."""
+
+    meaning: str
+    example: str
+
+
+STARTERS = {
+    "slab": Starter("an elastic slab", "fig6-slab"),
+    "lab-slab": Starter("the same in the size of a laboratory", "granite-slab"),
+    "block": Starter("a block on a spring", "fig6-block-reconstructed"),
+    "string": Starter("a drill string", "drill-string"),
+    "sectioned-string": Starter("a drill string of pipe and collars", "pipe-and-collar"),
+    "layered-slab": Starter("a slab of layers", "low-velocity-zone"),
+    "two-slabs": Starter("slabs on both sides of a contact", "steel-on-granite"),
+}
 
 
 def _folder() -> Traversable:

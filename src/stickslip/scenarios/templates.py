@@ -26,17 +26,6 @@ from stickslip.scenarios.parameter_paths import find_parameter, put_into
 from stickslip.scenarios.scenario import scenario_of
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
-STARTERS = {
-    "slab": "fig6-slab",
-    "lab-slab": "granite-slab",
-    "block": "fig6-block-reconstructed",
-    "string": "drill-string",
-    "sectioned-string": "pipe-and-collar",
-    "layered-slab": "low-velocity-zone",
-    "two-slabs": "steel-on-granite",
-}
-"""Names of the generic starters, each with the bundled scenario whose values it shows."""
-
 _HEADER = """\
 # A scenario for stickslip: what slides, what resists, how it is loaded, where it starts, how long to run.
 # Every quantity is a number in SI or a text with a unit: "10 km", "0.05 m/year" (Julian year), "100 MPa".
@@ -58,22 +47,22 @@ _ABOUT = {
 
 def template_names() -> list[str]:
     """Return every name that `template` accepts."""
-    return [*STARTERS, *library.names()]
+    return [*library.STARTERS, *library.names()]
 
 
 def template(name: str, friction: str | None = None, pull: str | None = None) -> str:
-    """Return a commented scenario as TOML text: a starter, one of `STARTERS`, or a bundled scenario.
+    """Return a commented scenario as TOML text: a starter, one of `library.STARTERS`, or a bundled scenario.
 
     `friction` and `pull` are kinds of another law, which then has plausible values, and of a loading history for the pull rate of a
     starter. Raises InputError for unknown names, and if a bundled scenario is to have another law or pull rate.
     """
-    if name in STARTERS:
-        return _starter(tomllib.loads(library.text(STARTERS[name])), friction, pull)
+    if name in library.STARTERS:
+        return _starter(tomllib.loads(library.text(library.STARTERS[name].example)), friction, pull)
     if name not in template_names():
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
     if friction is not None or pull is not None:
         chosen = "pull rate" if friction is None else "friction law"
-        raise InputError(f"new: only {', '.join(STARTERS)} take a {chosen}; {name} has its own")
+        raise InputError(f"new: only {', '.join(library.STARTERS)} take a {chosen}; {name} has its own")
     return library.text(name)
 
 
@@ -81,7 +70,7 @@ def check_takes_law(name: str) -> None:
     """Raise InputError unless `with_law` knows the name."""
     if name not in template_names():
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
-    if name not in (*STARTERS, *library.in_1d()):
+    if name not in (*library.STARTERS, *library.in_1d()):
         raise InputError(f"{name} has a [contact] of many nodes, which takes no other law: name another scenario")
 
 
@@ -93,7 +82,7 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[
     name, and for values that the scenario cannot have.
     """
     check_takes_law(name)
-    example = tomllib.loads(library.text(STARTERS.get(name, name)))
+    example = tomllib.loads(library.text(library.STARTERS[name].example if name in library.STARTERS else name))
     of_body = KINDS_OF_BODIES[kind_of("body", example["body"], name).load_unit]  # type: ignore[attr-defined] # registered
     if law.slips_in not in ("", of_body.slip):
         raise InputError(f"{name}: the points are in {law.slips_in}, but its contact {of_body.moves}: name another scenario")

@@ -15,10 +15,7 @@ from stickslip.foundation.errors import InputError
 def new(
     name: Annotated[
         str | None,
-        argument(
-            "slab, lab-slab, block, string, sectioned-string, layered-slab, two-slabs, or the name of a bundled scenario.",
-            complete_template,
-        ),
+        argument("A starter, such as slab, block or string, or the name of a bundled scenario.", complete_template),
     ] = None,
     *,
     friction: Annotated[str | None, option("A friction law to put into a starter.", autocompletion=complete_law)] = None,
@@ -27,16 +24,16 @@ def new(
 ) -> None:
     r"""Print a commented scenario to start from.
 
-    "slab", "lab-slab", "block", "string", "sectioned-string", "layered-slab" and "two-slabs" are
-    starters that explain every key, its unit and its range; the others are bundled runs. Redirect
-    the text into a file, edit it, and hand it to `stickslip check` and `stickslip run`.
+    Starters, such as "slab", "block", "string" and "layered-slab", explain every key, its unit and
+    its range; the others are bundled runs. Redirect the text into a file, edit it, and hand it to
+    `stickslip check` and `stickslip run`.
 
     \b
       stickslip new slab > mine.toml
       stickslip new block --friction exponential-stribeck
       stickslip new slab --pull hold-and-slide
       stickslip new fig6-slab
-      stickslip new              (lists the names, as --list does)
+      stickslip new              (lists all names, as --list does)
     """
     if show_list or (name is None and friction is None and pull is None):
         _print_list()
@@ -53,13 +50,8 @@ def _print_list() -> None:
     from stickslip.loading import HISTORIES
     from stickslip.scenarios import library
 
-    screen, rows = console(), [("slab", "starter: an elastic slab, every key explained")]
-    rows.append(("lab-slab", "starter: the same in the size of a laboratory"))
-    rows.append(("block", "starter: a block on a spring, every key explained"))
-    rows.append(("string", "starter: a drill string, every key explained"))
-    rows.append(("sectioned-string", "starter: a drill string of pipe and collars, every key explained"))
-    rows.append(("layered-slab", "starter: a slab of layers, every key explained"))
-    rows.append(("two-slabs", "starter: slabs on both sides of a contact, every key explained"))
+    screen, every = console(), "every key explained"
+    rows = [(name, f"starter: {one.meaning}, {every}") for name, one in library.STARTERS.items()]
     rows += [(name, f"{entry.title}. {entry.description}") for name, entry in library.entries().items()]
     print_words(screen, ("name", "what it shows"), rows)
     registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))

@@ -24,10 +24,8 @@ from stickslip.problem.problem import written_out
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
-from stickslip.scenarios.templates import STARTERS, example_of
+from stickslip.scenarios.templates import example_of
 
-OF_LAYERS = {"layered-slab": "low-velocity-zone", "two-slabs": "steel-on-granite", "sectioned-string": "pipe-and-collar"}
-"""Bundled scenarios whose bodies of layers take the place of another body."""
 RIGID_DRIVER = {
     "driver_impedance": math.inf,
     "other_driver_impedance": math.inf,
@@ -127,8 +125,8 @@ def _with_body(setting: Setting, kind: str) -> Setting:
         whole = replace(own, **{name: value for name, value in RIGID_DRIVER.items() if name in known})
         body = to_table(cast(BodyWithWaves, whole).equivalent_block())
     else:
-        slab_name = STARTERS["string"] if own.load_unit == TURNS else slab_of_figure(setting.name) or STARTERS["slab"]
-        slab_name = OF_LAYERS.get(kind, slab_name)
+        starter = kind if kind in library.STARTERS else "string" if own.load_unit == TURNS else "slab"  # of layers, or uniform
+        slab_name = (slab_of_figure(setting.name) if starter == "slab" else None) or library.STARTERS[starter].example
         body = dict(tomllib.loads(library.text(slab_name))["body"])
     made = {"kind": kind} | _began(setting, "body", kind, body)
     # a far stress acts on a driver that gives way, no ground is under sides that are apart, another driver changes otherwise
