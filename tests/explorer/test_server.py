@@ -25,6 +25,7 @@ import panel as pn
 import pytest
 from bokeh.document import Document
 from bokeh.events import DocumentReady
+from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest, HTTPResponse
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
@@ -311,6 +312,16 @@ def test_what_comes_before_the_browser_has_the_page_waits_for_it_in_order() -> N
         document.callbacks.trigger_event(DocumentReady())
         delivery.take(partial(called.append, 3))
     assert called == [1, 2, 3]
+
+
+def test_what_one_call_changes_on_a_page_waits_until_its_end() -> None:
+    """Then all changes are one message: each message costs a walk through all models of the page."""
+    document, held = Document(), list[Any]()
+    delivery = serving.DeliveryToTab(document)
+    with patch.object(document, "add_next_tick_callback", lambda call: call()), set_curdoc(document):
+        delivery.take(lambda: held.append(document.callbacks.hold_value))
+        delivery.begin()
+    assert (held, document.callbacks.hold_value) == (["combine"], None)
 
 
 def test_nothing_of_a_closed_page_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from functools import cache
 from typing import Any, NamedTuple
 
 from stickslip.explorer.model.controls import Control, ControlGroup, controls_of
@@ -73,9 +74,11 @@ def faults() -> list[str]:
     return [name for name in others if Setting.bundled(name).value("contact.width") is None]
 
 
+@cache
 def offered() -> tuple[Offered, ...]:
     """Return all bundled scenarios in 1D in the order of the menu, section by section."""
-    known = {name: library.entries()[name] for name in library.in_1d()}
+    entries = library.entries()
+    known = {name: entries[name] for name in library.in_1d()}
     sections = {section: [name for name in names if name in known] for section, names in _SECTIONS.items()}
     named = {name for names in sections.values() for name in names}
     sections[OTHERS] = [name for name in known if name not in named]

@@ -295,7 +295,8 @@ class DeliveryToTab:
 
     All of it runs in the event loop itself: Bokeh loses callbacks that another thread adds while a session is being made, or while
     the changes of its document are held back. It also loses changes that are made after the page was sent and before the browser
-    has put it together, so that the page would wait for ever for a first answer that comes in this time.
+    has put it together, so that the page would wait for ever for a first answer that comes in this time. What one call changes goes
+    to the browser as one message: Bokeh goes through all models of the page for each.
     """
 
     def __init__(self, document: Any) -> None:
@@ -315,4 +316,4 @@ class DeliveryToTab:
         while self._waiting:
             call = self._waiting.popleft()
             if document is not None:
-                document.add_next_tick_callback(call)
+                document.add_next_tick_callback(pn.io.hold()(call))

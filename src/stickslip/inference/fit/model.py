@@ -13,7 +13,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free
 from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
-from stickslip.inference.fit.part import Part, approached, changed
+from stickslip.inference.fit.part import Part, approached, changed, not_begun
 from stickslip.inference.record.record import SHEAR
 from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.problem.problem import Problem
@@ -79,7 +79,7 @@ class Model:
         values = self.values(searched)
         own = {one.name: v for one, v in zip(self.free, values, strict=True) if one.part in (None, part)}
         first = {name: v for name, v in own.items() if name not in (LOAD, STATE)}
-        begun = self.parts[part].begun(changed(self.problem, first))
+        begun = self.parts[part].begun(changed(self.problem, first, not_begun))
         if own.get(SERVO, 0.0) > 0.0:
             begun = replace(begun, pull_rate=approached(begun.pull_rate, own[SERVO]))
         return changed(begun, {name: v for name, v in own.items() if name in (LOAD, STATE)})

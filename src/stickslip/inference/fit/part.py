@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity
 from stickslip.inference.record.loading import later, loading_of
 from stickslip.inference.record.noise import first_value, noise_of
@@ -170,9 +171,14 @@ def approached(pull: LoadingHistory | float, time: float) -> LoadingHistory | fl
     return PiecewiseLinear(times, rates)
 
 
-def changed(problem: Problem, values: Mapping[str, float]) -> Problem:
+def changed(problem: Problem, values: Mapping[str, float], make: Callable[..., Any] = replace) -> Problem:
     """Return a problem with other numbers, by their full names; numbers of the record are ignored. Raises InputError."""
-    return put_many(problem, {name: value for name, value in values.items() if not name.startswith("record.")})
+    return put_many(problem, {name: value for name, value in values.items() if not name.startswith("record.")}, make)
+
+
+def not_begun(owner: Any, **numbers: Any) -> Any:
+    """Return a body, a law or a loading with other numbers, or a problem that is not checked because it is to begin elsewhere."""
+    return (unchecked if isinstance(owner, Problem) else replace)(owner, **numbers)
 
 
 def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
