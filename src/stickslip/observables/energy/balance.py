@@ -12,7 +12,7 @@ smooth functions of s up to its ends.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,6 +39,8 @@ LONG_NAMES = {
     "radiated": "energy radiated through a driver of finite impedance; work is net of it",
     "balance": "work - stored - heat - damped: zero for an exact solution",
     "trapped": "energy of the waves inside the body, beyond a state of uniform stress",
+    "elastic_in_layer": "elastic energy in each layer",
+    "kinetic_in_layer": "kinetic energy in each layer, without that of a contact mass",
 }
 """Long names of the energies in a dataset."""
 MOST_REPLAYED = 300_000
@@ -53,9 +55,10 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     """Return the energies of a run at times (s) since the history's epoch, as differences from their values at an origin (s).
 
     The origin is by default the start of the run. The dataset holds work, stored (elastic + kinetic), elastic, kinetic, heat,
-    damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). Work is the energy input of the driver,
-    net of the energy radiated through a driver of finite impedance. Balance is work - stored - heat - damped, zero for an exact
-    solution. Trapped is the part of the stored energy that travels to and fro in waves.
+    damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). For layers it has elastic_in_layer and
+    kinetic_in_layer, too, along a dimension `layer`: 1 is that at the contact, and -1 that on its other side. Work is the energy
+    input of the driver, net of the energy radiated through a driver of finite impedance. Balance is work - stored - heat - damped,
+    zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in waves.
 
     Raises InputError for times outside the run, and for times in a leap over creep or within a round trip after it: the waves that
     left the contact there are not known.
@@ -68,8 +71,23 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
     since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
     unit = in_files(history.problem.unit_of("energy"))
-    variables = {name: ("time", since[name], {"units": unit, "long_name": text}) for name, text in LONG_NAMES.items()}
-    return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
+    places: dict[str, Any] = {"time": ("time", time, {"units": "s"})}
+    if isinstance(body := history.problem.body, OfLayers):
+        places["layer"] = (
+            "layer",
+            _numbers_of(body),
+            {"long_name": f"{body.part} from the contact outwards, < 0 on the other side"},
+        )
+    texts = {name: text for name, text in LONG_NAMES.items() if name in since}
+    variables = {
+        name: (tuple(places)[: since[name].ndim], since[name], {"units": unit, "long_name": texts[name]}) for name in texts
+    }
+    return xr.Dataset(variables, coords=places)
+
+
+def _numbers_of(body: OfLayers) -> list[int]:
+    """Return the number of each layer: 1 at the contact, or -1 on the other side of it."""
+    return [sign * n for sign, one in zip((1, -1), body.stacks, strict=False) for n in range(1, len(one.counts) + 1)]
 
 
 def event_energies(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
@@ -144,7 +162,7 @@ def trapped_note(history: History) -> str:
     elif len(history) * sum(body.cells.counts) > MOST_REPLAYED:
         return ""
     else:
-        energy = LayerEnergy(history, body).inside([end])[0].trapped
+        energy = float(LayerEnergy(history, body).inside([end]).trapped[0])
     holds = history.problem.strength**2 / (2.0 * body.stiffness)
     energy_unit = history.problem.unit_of("energy").replace("^", "")
     share = f", {100.0 * energy / holds:.2g} % of what the {body.noun} holds at its static strength" if holds > 0.0 else ""
@@ -173,7 +191,8 @@ def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[
     """Return the energies of a body of layers at positions, without heat; see `energies`."""
     energy, now = LayerEnergy(history, body), epochs(history, at)
     contact = 0.5 * body.inertia * speed(history, at) ** 2
-    stored, moving, trapped = np.array(energy.inside(now)).reshape(-1, 3).T
+    layers = energy.inside(now)
+    stored, moving = layers.stored.sum(axis=1), layers.kinetic.sum(axis=1)
     work, radiated, dragged = energy.passed(now)
     return {
         "work": work + shaken(history, at),
@@ -182,7 +201,9 @@ def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[
         "kinetic": moving + contact,
         "damped": dragged,
         "radiated": radiated,
-        "trapped": trapped,
+        "trapped": layers.trapped,
+        "elastic_in_layer": layers.stored - layers.kinetic,
+        "kinetic_in_layer": layers.kinetic,
     }
 
 

@@ -25,12 +25,12 @@ CURVED = NODES**2 * (3.0 - 2.0 * NODES), 6.0 * NODES * (1.0 - NODES) * WEIGHTS
 
 
 class InsideLayers(NamedTuple):
-    """Energies of the waves in the layers at a moment (J/m^2)."""
+    """Energies of the waves in each layer at some moments, shape (moments, layers), and trapped in all of them (J/m^2)."""
 
-    stored: float
-    """Up to a constant."""
-    kinetic: float
-    trapped: float
+    stored: Floats
+    """Elastic and kinetic energy, up to a constant."""
+    kinetic: Floats
+    trapped: Floats
 
 
 class LayerEnergy:
@@ -42,14 +42,17 @@ class LayerEnergy:
 
     # ---- what the waves store -----------------------------------------------------------------------------------------------
 
-    def inside(self, moments: list[Epoch]) -> list[InsideLayers]:
+    def inside(self, moments: list[Epoch]) -> InsideLayers:
         """Return the energies of the waves at each moment, from one replay of them all."""
         places = [self._cells_at(now) for now in moments]
         left = self._left(moments, [ago for ago, _ in places])
-        return [self._at(*one) for one in zip(moments, places, left, strict=True)]
+        counts = [count for one in self.body.stacks for count in one.counts]
+        cells = np.array([self._at(*one) for one in zip(moments, places, left, strict=True)]).reshape(len(moments), 3, sum(counts))
+        stored, kinetic, trapped = np.add.reduceat(cells, np.cumsum([0, *counts[:-1]]), axis=2).transpose(1, 0, 2)
+        return InsideLayers(stored, kinetic, trapped.sum(axis=1))
 
-    def _at(self, now: Epoch, places: tuple[Floats, Floats], left: tuple[Floats, Floats]) -> InsideLayers:
-        """Return the energies of the waves at a moment.
+    def _at(self, now: Epoch, places: tuple[Floats, Floats], left: tuple[Floats, Floats]) -> tuple[Floats, Floats, Floats]:
+        """Return the energies of the waves in each cell at a moment: stored, kinetic, trapped.
 
         The trapped energy is that beyond a state of even stress: on each side, if the sides are joined. Under rigid drivers it is
         sheared at their rates, and the velocity changes with the compliance passed, and the stress by what drag takes; else it is
@@ -65,7 +68,7 @@ class LayerEnergy:
         even_rates, mean = impedance * rates, self._mean(weight @ (0.5 * (g - f) / impedance))
         mean += held - self._mean(held * waves.time / impedance)
         trapped = weight @ (((f - even_rates + mean) ** 2 + (g - even_rates - mean) ** 2) / (4.0 * impedance))
-        return InsideLayers(float(stored.sum()), float(moving.sum()), float(trapped.sum()))
+        return stored, moving, trapped
 
     def _cells_at(self, now: Epoch) -> tuple[Floats, Floats]:
         """Return travel times (s) from the near side of a cell, symmetric about its middle, and the weights of an integral (s)."""
