@@ -173,3 +173,36 @@ def test_two_drivers_that_give_way_are_one():
         assert together * one.rate + one.traction == pytest.approx(load + together * pull, rel=1e-12)
         run = ss.simulate(ss.Problem(body, law, pull_rate=pull, initial_load=load), "200 s")
         assert run.slip_rate(200.0) == pytest.approx(one.rate, rel=1e-6)
+
+
+# ---- drag behind drivers that give way --------------------------------------------------------------------------------------
+
+STRENGTHENS = ss.friction.FromExpression("0.6 + 0.05*tanh(v/0.5)")
+DRAGGED = {"driver_impedance": 5e6, "drag": [300.0, 100.0]}
+ON_BOTH = {"other_driver_impedance": 8e6, "other_drag": [200.0]}
+
+
+@pytest.mark.parametrize("far", [None, "66 MPa"])
+@pytest.mark.parametrize(
+    "body",
+    [
+        soft(**DRAGGED),
+        soft(**DRAGGED | {"driver_impedance": 0.0}),
+        two("apart", **DRAGGED | ON_BOTH),
+        two("joined", **DRAGGED | ON_BOTH),
+        two("joined", **DRAGGED | ON_BOTH | {"driver_impedance": 0.0}),
+        two("apart", **DRAGGED | ON_BOTH | {"driver_impedance": math.inf}),
+        two("apart", **DRAGGED | ON_BOTH | {"other_driver_impedance": math.inf}),
+    ],
+)
+def test_a_run_comes_to_the_steady_sliding_against_drag(body: OfLayers, far: str | None):
+    """To 1e-9 after 800 s; and the far stress that is said to keep the pull rate does so, to 1e-12."""
+    problem = ss.Problem(body, STRENGTHENS, pull_rate=1.0, initial_excess=0.0, far_stress=far)
+    found = steady_slidings(problem)
+    (sliding,) = found.slidings
+    assert sliding.stable
+    assert float(ss.simulate(problem, 800.0).slip_rate(800.0)) == pytest.approx(sliding.rate, rel=1e-9, abs=0.0)
+    assert abs(sliding.rate - 1.0) > 1e-3
+    if body.driver_impedance:
+        kept = ss.Problem(body, STRENGTHENS, pull_rate=1.0, initial_excess=0.0, far_stress=found.traction_at_pull_rate)
+        assert steady_slidings(kept).slidings[0].rate == pytest.approx(1.0, rel=1e-12, abs=0.0)

@@ -66,12 +66,31 @@ def _of_side(layers: Layers, s: Complex) -> Quotient:
     return Quotient(np.asarray(above * last), np.asarray(below))
 
 
-def driver_together(body: OfLayers) -> float:
-    """Return the impedance of the drivers together (Pa s/m), as sliding at a steady rate meets it: inf if they hold that rate."""
+class SteadyDrive(NamedTuple):
+    """What drives a contact at a steady slip rate v, pulled at a rate V: traction = far stresses + by_pull V - resists v."""
+
+    resists: float
+    """Impedance of drivers and drag of layers together (Pa s/m); inf if the drivers hold the rate."""
+    by_pull: float
+    """Impedance through which the pull acts (Pa s/m)."""
+    shares: tuple[float, ...] = (1.0,)
+    """Share (1) in the traction of the far stress on each side."""
+
+
+def driven_steadily(body: OfLayers) -> SteadyDrive:
+    """Return what drives a contact of layers at a steady rate, at which all of a side moves alike."""
     drivers = [one.driver_impedance for one in body.stacks]
+    resists = [driver + float(one.drags.sum()) for driver, one in zip(drivers, body.stacks, strict=True)]
     if body.is_joined or len(drivers) == 1:
-        return sum(drivers)
-    return 0.0 if min(drivers) == 0.0 else 1.0 / sum(1.0 / one for one in drivers) if math.isfinite(min(drivers)) else math.inf
+        return SteadyDrive(sum(resists), sum(drivers), (1.0,) * len(drivers))
+    if min(resists) == 0.0:
+        free = [one == 0.0 for one in resists]
+        return SteadyDrive(0.0, 0.0, tuple(one / sum(free) for one in free))
+    if math.isinf(min(resists)):
+        return SteadyDrive(math.inf, math.inf, (0.0, 0.0))
+    whole = 1.0 / sum(1.0 / one for one in resists)
+    held = 1.0 if math.isinf(drivers[0]) else drivers[0] / resists[0]
+    return SteadyDrive(whole, whole * held, tuple(whole / one for one in resists))
 
 
 def taken_by_layers(body: OfLayers) -> float:

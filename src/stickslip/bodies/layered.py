@@ -130,6 +130,16 @@ class OfLayers(WithWaves, ABC):
         """The reflection coefficient of the (first) driver for waves in the last layer."""
         return self.stacks[0].reflection
 
+    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
+        """Return the velocities (m/s, towards forward slip) of the contact and of the driver on each side.
+
+        The contact slips at `rate`, and the drivers move apart by `shear` faster than that; sides that are apart share this.
+        """
+        if len(self.stacks) == 1 or self.is_joined:
+            return [(rate, rate + shear)] * len(self.stacks)
+        first, other = (shear * self.stiffness / one.stiffness for one in self.stacks)
+        return [(rate + shear - first, rate + shear), (-other, 0.0)]
+
     def slow_limit(self) -> tuple[float, float]:
         """Return the mass and the damping (SI) of the layers in slow motion, under rigid drivers.
 

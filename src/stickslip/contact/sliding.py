@@ -153,7 +153,7 @@ class SteadySlidings:
     why_none: str = ""
     """Reason why there is no steady sliding; "" if there is."""
     traction_at_pull_rate: float = math.nan
-    """Friction in steady sliding at the pull rate: the far stress with which a driver that gives way keeps its rate."""
+    """The far stress (Pa) with which a contact slides at the pull rate behind a driver that gives way: friction and drag there."""
     unit: str = "Pa"
     """Unit of tractions."""
     is_calm: bool = False
@@ -227,8 +227,8 @@ class SteadySlidings:
             return ""
         far, pull = brief(self.far_stress, self.unit), brief(self.pull_rate, self._rate)
         return (
-            f"not at the pull rate of {pull}, because the driver gives way: the far stress, which is the initial load unless given,"
-            f' is {far}; far_stress = "{brief(self.traction_at_pull_rate, self.unit, 9)}" makes it slide at the pull rate'
+            f"not at the pull rate of {pull}, because the driver gives way: the far stress, which holds the initial load unless"
+            f' given, is {far}; far_stress = "{brief(self.traction_at_pull_rate, self.unit, 9)}" makes it slide at the pull rate'
         )
 
     def _changes(self) -> str:

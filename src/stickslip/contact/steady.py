@@ -6,9 +6,10 @@ far stress s if
     Zd v + S mu(v) = s + Zd V
 
 so it slides at the pull rate V if the driver is rigid, or moves a block's spring, and in general at another rate if the driver
-gives way. Without states a disturbance fades if and only if friction falls with the slip rate less steeply than the body damps,
-S mu'(v) > -D: D is the damping of a block, 0 under a rigid driver, and min(Zd, Z^2/Zd) of any other driver under a contact without
-mass. The critical rates are then the turns of D v + S mu(v). All of them are found, with proof.
+gives way. Drag of layers adds to Zd on the left, not on the right. Without states a disturbance fades if and only if friction falls
+with the slip rate less steeply than the body damps, S mu'(v) > -D: D is the damping of a block, 0 under a rigid driver, and
+min(Zd, Z^2/Zd) of any other driver under a contact without mass. The critical rates are then the turns of D v + S mu(v). All of
+them are found, with proof.
 
 Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343; Campillo et al. 1996, eqs (7)-(13), for the slab.
 """
@@ -25,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.bodies import OfLayers
-from stickslip.bodies.layer_response import driver_together, response_of, taken_by_layers
+from stickslip.bodies.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
@@ -78,15 +79,16 @@ class _Steady:
     @cached_property
     def is_soft(self) -> bool:
         """True if the driver gives way in the long run: an integral gain does not."""
-        return (
-            math.isfinite(self.driver) and not self.problem.body.is_driven_rigidly and self.problem.body.driver_integral_gain == 0.0
-        )
+        body = self.problem.body
+        return math.isfinite(self.driver.resists) and not body.is_driven_rigidly and body.driver_integral_gain == 0.0
 
     @cached_property
-    def driver(self) -> float:
-        """The impedance Zd of the driver, or of both drivers of two slabs together (Pa s/m)."""
+    def driver(self) -> SteadyDrive:
+        """What driver, far stress and drag do to a contact at a steady rate."""
         body = self.problem.body
-        return driver_together(body) if isinstance(body, OfLayers) else body.driver_impedance
+        if isinstance(body, OfLayers):
+            return driven_steadily(body)
+        return SteadyDrive(body.driver_impedance + body.damping - body.impedance, body.driver_impedance)
 
     @property
     def varies(self) -> bool:
@@ -95,13 +97,26 @@ class _Steady:
 
     @cached_property
     def far_stress(self) -> float | None:
-        """The stress far beyond the driver (Pa); None if the driver is rigid, or if the contact starts in steady sliding."""
+        """The stress far beyond the driver (Pa); None if the driver is rigid, or if the contact starts in steady sliding.
+
+        Unless it is given it holds the load of the start, and what drag takes then.
+        """
         far, problem = self.problem.far_stress, self.problem
         if not self.is_soft or (far is None and self._starts_steadily):
             return None
         if far is None:
-            return problem.stress
+            return problem.stress + self._held_at_start
         return far.first if isinstance(far, LoadingHistory) else far
+
+    @property
+    def _held_at_start(self) -> float:
+        """The stress (Pa) that drag takes between the contact and the far stresses at the start."""
+        problem, body = self.problem, self.problem.body
+        if not isinstance(body, OfLayers):
+            return 0.0
+        rates = body.rates_at_start(problem.rate, problem.initial_shear)
+        held = [float(one.held(*both)[-1]) for one, both in zip(body.stacks, rates, strict=True)]
+        return sum(share * one for share, one in zip(self.driver.shares, held, strict=True))
 
     @property
     def _starts_steadily(self) -> bool:
@@ -111,13 +126,7 @@ class _Steady:
     def drive(self) -> float:
         """The load that steady sliding balances, with its sign: s + Zd V (Pa), or V (m/s) if the contact slides at that rate."""
         pull = self.problem.first_pull_rate
-        return pull if self.far_stress is None else self.far_stress + self.driver * pull
-
-    @cached_property
-    def gives_way(self) -> float:
-        """The growth of the driver's resistance with the slip rate (Pa s/m)."""
-        body = self.problem.body
-        return self.driver + body.damping - body.impedance
+        return pull if self.far_stress is None else self.far_stress + self.driver.by_pull * pull
 
     def found(self) -> SteadySlidings:
         problem, why = self.problem, self.why_none()
@@ -128,7 +137,7 @@ class _Steady:
         changes, proven = ((), False) if why else self.changes()
         far = self.far_stress
         if self.is_soft and far is None and slidings:
-            far = slidings[0].traction
+            far = slidings[0].traction + self._lost * slidings[0].rate
         strength = problem.strength if problem.friction.sticks else 0.0
         rests = self.far_stress is not None and abs(self.drive) <= strength
         damped = bool(problem.friction.states) or self.taken_away > 0.0
@@ -169,8 +178,6 @@ class _Steady:
         first = " at first" if problem.loading_varies else ""
         if problem.far_stress_rate:
             return "the far stress keeps changing"
-        if self.is_soft and isinstance(problem.body, OfLayers) and problem.body.has_drag:  # it takes stress from steady sliding too
-            return "behind a driver that gives way, steady sliding against drag is not sought"
         if self.drive == 0.0:
             return f"nothing pulls{first}"
         if law.states and law.steady_state(1.0) is None:
@@ -184,9 +191,14 @@ class _Steady:
         formulas += [(tree, law.numbers(self.pieces[0])) for tree in law.state_trees()]
         return any(value_and_slopes(tree, numbers, slips, 1.0, *states)[1][0].any() for tree, numbers in formulas)
 
+    @property
+    def _lost(self) -> float:
+        """The stress over velocity (Pa s/m) that drag takes while a driver that gives way moves at the pull rate."""
+        return self.driver.resists - self.driver.by_pull if self.is_soft else 0.0
+
     def _at_pull_rate(self) -> float:
         pull = self.problem.first_pull_rate
-        return math.copysign(self.traction(abs(pull)), pull) if pull else math.nan
+        return math.copysign(self.traction(abs(pull)), pull) + self._lost * pull if pull else math.nan
 
     # ---- the law --------------------------------------------------------------------------------------------------------------
 
@@ -257,7 +269,7 @@ class _Steady:
         """Return the slip rates (m/s) of steady sliding, ascending."""
         if self.far_stress is None:
             return [abs(self.drive)]
-        load, slope = abs(self.drive), self.gives_way
+        load, slope = abs(self.drive), self.driver.resists
         fastest = min(2.0 * load / slope, RATES[-1]) if slope > 0.0 else RATES[-1]
         proof = None if self.problem.friction.states else self.turns(slope)
         turns = RATES.tolist() if proof is None else proof.rates
@@ -381,10 +393,10 @@ class _Steady:
         if self.far_stress is None:
             return rate
         driver = self.driver
-        if driver == 0.0:
+        if driver.by_pull == 0.0:
             return None
         sign = math.copysign(1.0, self.drive)
-        return (sign * (self.gives_way * rate + self.traction(rate)) - self.far_stress) / driver
+        return (sign * (driver.resists * rate + self.traction(rate)) - self.far_stress) / driver.by_pull
 
 
 def _largest(holds: Callable[[float], bool], high: float) -> float:

@@ -57,22 +57,15 @@ def ladder_of(problem: Problem) -> at.Floats:
 
 def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
     """Yield the sides of the contact as they are at the start."""
-    shear, rate, pull = problem.initial_shear, problem.rate, problem.first_pull_rate
     stress, growth = far_excess(problem), problem.far_stress_rate
     given = problem.far_stress
     assert problem.varies or not isinstance(given, LoadingHistory)
     far = None if given is None or isinstance(given, LoadingHistory) else given - problem.strength
-    whole = body.stiffness
-    for n, layers in enumerate(body.stacks):
-        if body.is_joined:
-            share = layers.stiffness / whole
-            own = None if far is None else share * far
-            yield StartingSide(layers, rate, rate + shear, pull, share * stress, own, share * growth, share)
-        elif n == 0:
-            driver = rate + shear
-            yield StartingSide(layers, driver - shear * whole / layers.stiffness, driver, pull, stress, far, growth, 1.0)
-        else:
-            yield StartingSide(layers, -shear * whole / layers.stiffness, 0.0, 0.0, stress, far, growth, 1.0)
+    rates = body.rates_at_start(problem.rate, problem.initial_shear)
+    for n, (layers, (contact, driver)) in enumerate(zip(body.stacks, rates, strict=True)):
+        share = layers.stiffness / body.stiffness if body.is_joined else 1.0
+        own, pulled = None if far is None else share * far, problem.first_pull_rate if n == 0 or body.is_joined else 0.0
+        yield StartingSide(layers, contact, driver, pulled, share * stress, own, share * growth, share)
 
 
 def _pulled(problem: Problem, body: OfLayers) -> list[float]:
