@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
@@ -121,6 +121,7 @@ _ACCELERATIONS = {"g": Fraction(980_665, 100_000), "gal": Fraction(1, 100), "Gal
 """Units of acceleration whose names mean another thing elsewhere: g is also a gram, and pint's gal is a gallon."""
 
 
+@lru_cache(maxsize=256)  # a page of the explorer reads the same units again at each move of a slider
 def si_factor(unit: str, si: str) -> Fraction:
     """Return the exact factor that converts a value in `unit` to a value in `si`. A year is the Julian year of 31 557 600 s.
 

@@ -96,6 +96,8 @@ class Parameters(Mapping[str, Parameter[P]], Generic[P]):
     def __getitem__(self, name: str) -> Parameter[P]:
         if not isinstance(name, str):
             raise InputError(f'parameters: a name must be text such as "friction.alpha", got {shown(name)}')
+        if name in self._found:
+            return self._found[name]
         known = self._found | {one.name: one for one in self._derived() if one.name not in self._found}
         return known[full_name(name, known, "parameter ", "is unknown")]
 

@@ -40,9 +40,14 @@ def _folder() -> Traversable:
     return resources.files("stickslip.scenarios") / "bundled"
 
 
+@cache
+def _names() -> tuple[str, ...]:
+    return tuple(sorted(file.name.removesuffix(".toml") for file in _folder().iterdir() if file.name.endswith(".toml")))
+
+
 def names() -> list[str]:
     """Return the sorted names of the bundled scenarios."""
-    return sorted(file.name.removesuffix(".toml") for file in _folder().iterdir() if file.name.endswith(".toml"))
+    return list(_names())
 
 
 def text(name: str) -> str:
