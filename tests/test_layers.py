@@ -82,7 +82,7 @@ ROOMS = {
         ("examine_contact", "templates"),
     ),
     "observables": (
-        ("layer_records", "planar", "predictability", "severity", "proof", "quadrature", "rule_influence"),
+        ("layer_machine", "layer_records", "planar", "predictability", "severity", "proof", "quadrature", "rule_influence"),
         ("layer_replay",),
         ("layers", "waves"),
         ("inside_layers",),

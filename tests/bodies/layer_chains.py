@@ -35,6 +35,8 @@ class Chain:
     drags: np.ndarray | None = None
     follows: Callable[[Floats], tuple[Floats, Floats, Floats]] | None = None
     """The driver's impedance (Pa s/m), its rate (m/s) and the stress behind it (Pa) at times (s), if they change."""
+    moves: Callable[[Floats], Floats] | None = None
+    """The rate (m/s) of a driver that is a machine, from the waves that meet it at one phase after another, each asked for once."""
 
     def begin(self, before: np.ndarray, time: float, contact: float, end: float, stress: float) -> None:
         """Set the waves that entered the cells at times `before` (s, negative), of a velocity that is straight in compliance."""
@@ -66,6 +68,8 @@ class Chain:
             soft = np.where(rigid, 0.0, driver)
             inside = np.where(rigid, rate, (away[-1] + soft * rate + far) / (last + soft))
             self.back[-1] = 2.0 * last * inside - away[-1]
+        elif self.moves is not None:
+            self.back[-1] = 2.0 * last * self.moves(away[-1]) - away[-1]
         elif math.isinf(self.driver):
             self.back[-1] = 2.0 * last * self.rate - away[-1]
         else:

@@ -4,9 +4,9 @@ A cell of impedance Z is crossed in the time T. From behind it, where the stress
 
     Z (W + Z tanh(s T)) / (Z + W tanh(s T))
 
-and at the driver W is the driver's impedance. W is kept as a quotient of two functions of s without poles, so that a rigid driver
-needs no exception and slow disturbances, which meet springs in series, lose no digits. Cells of one layer are crossed at once; with
-drag two by two, between which it adds its stress over velocity to W.
+and at the driver W is the driver's impedance, or M s + kp + ki/s of a machine. W is kept as a quotient of two functions of s
+without poles, so that a rigid driver needs no exception and slow disturbances, which meet springs in series, lose no digits. Cells
+of one layer are crossed at once; with drag two by two, between which it adds its stress over velocity to W.
 """
 
 from __future__ import annotations
@@ -46,10 +46,13 @@ def response_of(body: OfLayers, s: NDArray[Any]) -> Quotient:
 
 
 def _of_side(layers: Layers, s: Complex) -> Quotient:
-    rigid = math.isinf(layers.driver_impedance)
-    above = np.full(s.shape, 1.0 if rigid else layers.driver_impedance / layers.impedances[-1], complex)
+    rigid, last = math.isinf(layers.driver_impedance), layers.impedances[-1]
+    above = np.full(s.shape, 1.0 if rigid else layers.driver_impedance / last, complex)
     below = np.full(s.shape, 0.0 if rigid else 1.0, complex)
-    last = layers.impedances[-1]
+    if layers.driver_inertia > 0.0:
+        above += layers.driver_inertia * s / last
+    if layers.driver_gain > 0.0:
+        above, below = above * s + layers.driver_gain / last, s.copy()
     drags = np.cumsum((0, *layers.counts[:-1]))
     for z, count, dragged in zip(*map(reversed, (layers.impedances, layers.counts, layers.drags[drags].tolist())), strict=True):
         above *= last / z  # above / below is W over the impedance of the present layer

@@ -10,18 +10,20 @@ from functools import cached_property
 from typing import ClassVar, cast
 
 from stickslip.bodies.cells import CellCut
-from stickslip.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_equivalent
+from stickslip.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_driver, check_equivalent
 from stickslip.bodies.layers import (
     Layers,
     cells_for,
     check_lengths,
     drag_of_layers,
+    driver_of,
+    even,
     given_drag,
     longest_cell,
     of_layers,
     travel_times,
 )
-from stickslip.bodies.sliding import SpringBlock
+from stickslip.bodies.sliding import DRIVER_INERTIA, DRIVER_INTEGRAL_GAIN, SpringBlock
 from stickslip.foundation.conversion import Number, Numbers, OptionalNumbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity, declare, quantity
@@ -50,8 +52,6 @@ class OfLayers(WithWaves, ABC):
     untimed: ClassVar[str] = "densities"  # words for lists that do not
     impedance_formula: ClassVar[str] = "rho c"
     is_uniform: ClassVar[bool] = False
-    driver_inertia: ClassVar[float] = 0.0
-    driver_integral_gain: ClassVar[float] = 0.0
     travel_time_error: Number
 
     @property
@@ -119,6 +119,11 @@ class OfLayers(WithWaves, ABC):
     def is_driven_rigidly(self) -> bool:
         """True if no driver gives way."""
         return all(math.isinf(one.driver_impedance) for one in self.stacks)
+
+    @property
+    def has_machine(self) -> bool:
+        """True if the driver has a motion of its own: a mass or an integral gain. It is an even number of cells away."""
+        return any(one.driver_inertia > 0.0 or one.driver_gain > 0.0 for one in self.stacks)
 
     @property
     def distance(self) -> float:
@@ -191,6 +196,8 @@ class LayeredSlab(Declared, OfSlabs):
     With `drag` D, such as that of mud on a pipe, rho dv/dt = dsigma/dx - D v, with velocities v relative to the other side of the
     contact: waves die, and stress at rest stays. Drag is lumped in the middle of cells, so finely that none of these places takes
     more than the share `drag_step` of a wave. At the start the stress grows outwards by what drag takes while the driver pulls.
+
+    With `driver_inertia` or `driver_integral_gain` the driver is a machine, as that of an `ElasticSlab` can be.
     """
 
     kind: ClassVar[str] = "layered-slab"
@@ -205,9 +212,12 @@ class LayeredSlab(Declared, OfSlabs):
     travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
     drag: OptionalNumbers = declare(drag_of_layers(), None)
     drag_step: Number = declare(DRAG_STEP, 0.02)
+    driver_inertia: Number = declare(DRIVER_INERTIA, 0.0)
+    driver_integral_gain: Number = declare(DRIVER_INTEGRAL_GAIN, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)
+        check_driver(self)
         check_stacks(self, [LISTS], self.drag_step)
         _ = self.cells
 
@@ -215,13 +225,19 @@ class LayeredSlab(Declared, OfSlabs):
     def cells(self) -> CellCut:
         """The cells of equal travel time that the layers are cut into."""
         times, longest = travel_times(self.thickness, self.wave_speed), longest_cell(self.density, self.drag, self.drag_step)
-        return cells_for(type(self).__name__, times, self.travel_time_error, longest)
+        found = cells_for(type(self).__name__, times, self.travel_time_error, longest)
+        return even(found) if any(self._driver[1:]) else found
+
+    @property
+    def _driver(self) -> tuple[float, float, float]:
+        return driver_of(self.driver_impedance, self.driver_inertia, self.driver_integral_gain)
 
     @cached_property
     def stacks(self) -> tuple[Layers, ...]:
         """The layers with their cells."""
         counts, time, drag = self.cells.counts, self.cells.time, given_drag(self.drag)
-        return (Layers(tuple(self.density), tuple(self.wave_speed), counts, time, self.driver_impedance, drag),)
+        driver, *machine = self._driver
+        return (Layers(tuple(self.density), tuple(self.wave_speed), counts, time, driver, drag, *machine),)
 
 
 @dataclass(frozen=True)
@@ -237,6 +253,8 @@ class TwoSlabs(Declared, OfSlabs):
     """
 
     kind: ClassVar[str] = "two-slabs"
+    driver_inertia: ClassVar[float] = 0.0
+    driver_integral_gain: ClassVar[float] = 0.0
     source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
 
     thickness: Numbers = declare(of_layers("m", "thickness h"))

@@ -48,6 +48,10 @@ class Layers:
     driver_impedance: float
     drag: tuple[float, ...] | None = None
     """Drag of each layer (Pa s/m^2), if there is any."""
+    driver_inertia: float = 0.0
+    """Mass of a driver that is a machine (kg/m^2)."""
+    driver_gain: float = 0.0
+    """Its integral gain (Pa/m)."""
 
     @property
     def drags(self) -> Floats:
@@ -124,6 +128,17 @@ class Layers:
         It is above 0 in front of a stiffer layer.
         """
         return tuple((beyond - near) / (beyond + near) for near, beyond in pairwise(self.impedances))
+
+
+def driver_of(impedance: float, inertia: float, gain: float) -> tuple[float, float, float]:
+    """Return impedance, mass and integral gain of a driver: one of infinite mass is rigid."""
+    return (math.inf, 0.0, 0.0) if math.isinf(inertia) else (impedance, inertia, gain)
+
+
+def even(found: CellCut) -> CellCut:
+    """Return cells whose number is even: half as long ones if it is odd."""
+    odd = sum(found.counts) % 2 == 1
+    return CellCut(tuple(2 * count for count in found.counts), 0.5 * found.time, found.error) if odd else found
 
 
 def travel_times(thickness: Sequence[float], wave_speed: Sequence[float]) -> tuple[float, ...]:

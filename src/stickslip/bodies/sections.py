@@ -8,12 +8,14 @@ from functools import cached_property
 from typing import ClassVar
 
 from stickslip.bodies.cells import CellCut
-from stickslip.bodies.contract import check_body
+from stickslip.bodies.contract import check_body, check_driver
 from stickslip.bodies.layered import DRAG_STEP, OfLayers, check_stacks
-from stickslip.bodies.layers import Layers, cells_for, given_drag, longest_cell, travel_times
+from stickslip.bodies.layers import Layers, cells_for, driver_of, even, given_drag, longest_cell, travel_times
 from stickslip.bodies.turning import (
     BIT_RADIUS,
     DRIVE,
+    DRIVE_INERTIA,
+    DRIVE_INTEGRAL_GAIN,
     INNER,
     NORMAL_TORQUE,
     OUTER,
@@ -49,8 +51,9 @@ class SectionedString(Declared, OnBit, OfLayers):
     equal times; their travel times are rounded to whole numbers of cells, as those of a `LayeredSlab` are.
 
     With `drag` D, such as that of mud, rho J dv/dt = dM/dx - D v, with the torque M: D is the torque that a metre meets for each
-    rad/s. Raises InputError if a number is out of range, if an inner diameter is not below the outer one, if the lists differ in
-    length, or if no more than 4096 cells can be as exact as `travel_time_error`.
+    rad/s. With `driver_inertia` or `driver_integral_gain` the drive is a machine, as that of a `TorsionalString` can be. Raises
+    InputError if a number is out of range, if an inner diameter is not below the outer one, if the lists differ in length, or if no
+    more than 4096 cells can be as exact as `travel_time_error`.
     """
 
     kind: ClassVar[str] = "sectioned-string"
@@ -76,9 +79,12 @@ class SectionedString(Declared, OnBit, OfLayers):
     travel_time_error: Number = quantity("1", "largest relative error of a section's travel time", above=0, default=1e-3)
     drag: OptionalNumbers = declare(_from_zero("N s", "drag on each section: torque over rotation rate for each metre"), None)
     drag_step: Number = declare(DRAG_STEP, 0.02)
+    driver_inertia: Number = declare(DRIVE_INERTIA, 0.0)
+    driver_integral_gain: Number = declare(DRIVE_INTEGRAL_GAIN, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)
+        check_driver(self)
         check_stacks(self, [LISTS], self.drag_step)
         for i, (outer, inner) in enumerate(zip(self.outer_diameter, self.inner_diameter, strict=True)):
             check_pipe(type(self).__name__, outer, inner, f"[{i}]")
@@ -100,13 +106,19 @@ class SectionedString(Declared, OnBit, OfLayers):
     def cells(self) -> CellCut:
         """The cells of equal travel time that the sections are cut into."""
         longest = longest_cell(self.inertia_per_length, self.drag, self.drag_step)
-        return cells_for(type(self).__name__, travel_times(self.length, self.wave_speeds), self.travel_time_error, longest)
+        found = cells_for(type(self).__name__, travel_times(self.length, self.wave_speeds), self.travel_time_error, longest)
+        return even(found) if any(self._driver[1:]) else found
+
+    @property
+    def _driver(self) -> tuple[float, float, float]:
+        return driver_of(self.driver_impedance, self.driver_inertia, self.driver_integral_gain)
 
     @cached_property
     def stacks(self) -> tuple[Layers, ...]:
         """The sections with their cells, as layers."""
         counts, time, drag = self.cells.counts, self.cells.time, given_drag(self.drag)
-        return (Layers(self.inertia_per_length, self.wave_speeds, counts, time, self.driver_impedance, drag),)
+        driver, *machine = self._driver
+        return (Layers(self.inertia_per_length, self.wave_speeds, counts, time, driver, drag, *machine),)
 
     def equivalent_block(self) -> RotatingBlock:
         """Return the rotating block to which the string is equivalent in slow motion, with the bit.

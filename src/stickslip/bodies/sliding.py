@@ -10,8 +10,17 @@ from stickslip.bodies.contract import BodyOnCharacteristics, OnSpring, WithWaves
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
-from stickslip.foundation.quantities import quantity
+from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
+
+DRIVER_INERTIA = Quantity(
+    "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid"
+)
+"""Mass of a driver that is a machine."""
+DRIVER_INTEGRAL_GAIN = Quantity(
+    "Pa/m", "stress with which the driver makes up for each metre that it lags behind its pull rate", at_least=0
+)
+"""Integral gain of such a driver."""
 
 
 @dataclass(frozen=True)
@@ -72,12 +81,8 @@ class ElasticSlab(Declared, WithWaves):
     p_wave_speed: OptionalNumber = quantity(
         "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
     )
-    driver_inertia: Number = quantity(
-        "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid", default=0.0
-    )
-    driver_integral_gain: Number = quantity(
-        "Pa/m", "stress with which the driver makes up for each metre that it lags behind its pull rate", at_least=0, default=0.0
-    )
+    driver_inertia: Number = declare(DRIVER_INERTIA, 0.0)
+    driver_integral_gain: Number = declare(DRIVER_INTEGRAL_GAIN, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)

@@ -23,6 +23,10 @@ NORMAL_TORQUE = Quantity("N m", "torque of the bit if mu is 1, in place of weigh
 DRIVE = Quantity(
     "N m s", "impedance Zd of the drive: inf for a stiff drive, 0 for a constant torque", at_least=0, infinite=True, word="rigid"
 )
+DRIVE_INERTIA = Quantity("kg m^2", "moment of inertia of the drive: inf for a stiff drive", at_least=0, infinite=True, word="rigid")
+DRIVE_INTEGRAL_GAIN = Quantity(
+    "N m/rad", "torque with which the drive makes up for each radian that it lags behind its pull rate", at_least=0
+)
 LOADED_BY = "give either normal_torque, or weight_on_bit and bit_radius"
 """How a string is pressed onto its contact."""
 
@@ -118,12 +122,8 @@ class TorsionalString(Declared, OnBit, WithWaves):
     bit_radius: OptionalNumber = declare(BIT_RADIUS, None)
     normal_torque: OptionalNumber = declare(NORMAL_TORQUE, None)
     driver_impedance: Number = declare(DRIVE, math.inf)
-    driver_inertia: Number = quantity(
-        "kg m^2", "moment of inertia of the drive: inf for a stiff drive", at_least=0, infinite=True, word="rigid", default=0.0
-    )
-    driver_integral_gain: Number = quantity(
-        "N m/rad", "torque with which the drive makes up for each radian that it lags behind its pull rate", at_least=0, default=0.0
-    )
+    driver_inertia: Number = declare(DRIVE_INERTIA, 0.0)
+    driver_integral_gain: Number = declare(DRIVE_INTEGRAL_GAIN, 0.0)
     inertia: Number = quantity("kg m^2", "moment of inertia of bit and collars", at_least=0, default=0.0)
 
     def __post_init__(self) -> None:

@@ -178,6 +178,8 @@ class _Steady:
         first = " at first" if problem.loading_varies else ""
         if problem.far_stress_rate:
             return "the far stress keeps changing"
+        if problem.body.has_machine and not problem.body.is_uniform:
+            return "behind a driver with a mass or an integral gain, steady sliding of layers is not sought"
         if self.drive == 0.0:
             return f"nothing pulls{first}"
         if law.states and law.steady_state(1.0) is None:

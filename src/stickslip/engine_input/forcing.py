@@ -191,13 +191,13 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
     body = problem.body
     if not body.has_waves:
         return body.stiffness * problem.first_pull_rate, 0.0
-    if not body.is_uniform:
+    if not (body.is_uniform or body.has_machine):
         return 0.0, 0.0  # each driver behind layers has its own, in `ladder`
     if body.is_driven_rigidly:
         return 2.0 * body.impedance * problem.first_pull_rate, 0.0
     gain, far = gain_of(body), problem.far_stress
     assert not isinstance(far, LoadingHistory)
-    excess = far_excess(problem) if far is None else far - problem.strength
+    excess = far_at_first(problem) if far is None else far - problem.strength
     growth, delay = problem.far_stress_rate, body.inflow_delay
     return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
 
@@ -227,12 +227,16 @@ def machine_at_first(problem: Problem) -> tuple[float, float]:
     far, push = problem.far_stress, 0.0
     if body.driver_integral_gain > 0.0 and far is not None:
         first = far.first if isinstance(far, LoadingHistory) else far
-        push = far_excess(problem) - (first - problem.strength)
+        push = far_at_first(problem) - (first - problem.strength)
     if body.driver_inertia > 0.0:
         return problem.first_pull_rate, push
-    force = float(inflow_of(problem).at(np.array(0.5 * body.round_trip_time)))
-    left = body.impedance * problem.initial_shear - wave_before(problem)
-    return (force + push + left) / (body.impedance + body.driver_impedance), push
+    if isinstance(body, OfLayers):
+        force = float(inflow_of(problem).at(np.array(0.0)))
+        left = body.last_impedance * (problem.rate + problem.initial_shear) - far_at_first(problem)
+    else:
+        force = float(inflow_of(problem).at(np.array(0.5 * body.round_trip_time)))
+        left = body.impedance * problem.initial_shear - wave_before(problem)
+    return (force + push + left) / (body.last_impedance + body.driver_impedance), push
 
 
 def settled_rate(problem: Problem, time: Floats) -> Floats:
@@ -243,14 +247,21 @@ def settled_rate(problem: Problem, time: Floats) -> Floats:
     body, pull, driven = problem.body, pull_of(problem), inflow_of(problem)
     gain = body.driver_integral_gain
     grows = driven.slope[driven.segment(time)] - body.driver_impedance * pull.slope[pull.segment(time)]
-    stiffness = 2.0 * body.impedance / problem.round_trip_time
+    stiffness = ramp_per_rate(problem) / problem.round_trip_time
     return np.asarray((gain * pull.value[pull.segment(time)] + grows) / (gain + stiffness))
+
+
+def ramp_per_rate(problem: Problem) -> Any:
+    """Return the growth of the load at rest in one round trip over the rate of the driver (Pa s/m)."""
+    body = problem.body
+    return 2.0 * body.impedance if body.is_uniform else body.stiffness * body.round_trip_time
 
 
 def pull_of(problem: Problem) -> Inflow:
     """Return the pull rate (m/s) of a machine, as it arrives at the contact."""
     if isinstance(problem.pull_rate, LoadingHistory):
-        return _inflow(*_scaled(problem.pull_rate, 1.0), 0.5 * problem.round_trip_time, problem)
+        delay = 0.5 * problem.round_trip_time if problem.body.is_uniform else 0.0
+        return _inflow(*_scaled(problem.pull_rate, 1.0), delay, problem)
     return _inflow([Segment(0.0, problem.pull_rate, 0.0)], SILENT, 0.0, problem)
 
 

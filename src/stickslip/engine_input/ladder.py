@@ -17,6 +17,7 @@ from stickslip.bodies.layers import Layers
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
 from stickslip.engine_input.forcing import far_excess
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
@@ -50,8 +51,10 @@ def ladder_of(problem: Problem) -> at.Floats:
     for table, pulled in zip(tables, _pulled(problem, body), strict=True):
         cells = LadderCell.of(table)
         cells.pulled[-1] = pulled
-        if pulled != 0.0:
+        if pulled != 0.0 or body.has_machine:
             cells.inflow[-1] = cells.inflow_rate[-1] = 0.0
+        if body.has_machine:  # what its own motion sends is added (`waves.driver`)
+            cells.reflection[-1] = RIGID
     return np.concatenate(tables)
 
 
@@ -76,7 +79,7 @@ def _pulled(problem: Problem, body: OfLayers) -> list[float]:
     if not problem.loading_varies:
         return [0.0] * len(body.stacks)
     if len(body.stacks) == 1:
-        return [1.0]
+        return [0.0 if body.has_machine else 1.0]
     varies = [name for name in ("pull_rate", "far_stress") if isinstance(getattr(problem, name), LoadingHistory)]
     if not varies:  # the first driver changes
         return [1.0, 0.0]
@@ -129,6 +132,7 @@ def set_counts(counts: Counts, problem: Problem) -> None:
     if isinstance(body, OfLayers):
         cells = [sum(one.counts) for one in body.stacks]
         counts.cells, counts.first_side, counts.joined = sum(cells), cells[0], body.is_joined
+        counts.slots = counts.cells + body.has_machine
 
 
 def first_pieces(problem: Problem) -> at.Floats:

@@ -88,7 +88,7 @@ def check_machine(problem: Problem) -> None:
     body = problem.body
     if not body.has_machine:
         return
-    heavy, resists = body.driver_inertia > 0.0, body.driver_impedance + body.impedance
+    heavy, resists = body.driver_inertia > 0.0, body.driver_impedance + body.last_impedance
     changes = body.driver_integral_gain / resists
     if heavy:
         changes = resists / body.driver_inertia + math.sqrt(body.driver_integral_gain / body.driver_inertia)
@@ -136,6 +136,7 @@ def parameters_of(problem: Problem) -> Params:
         params.reflection = RIGID
         params.driver_inertia, params.driver_impedance = body.driver_inertia, body.driver_impedance
         params.driver_gain = body.driver_integral_gain
+        params.driver_spring = 0.0 if body.is_uniform else body.stiffness
         pulled = isinstance(problem.pull_rate, LoadingHistory) and body.driver_impedance > 0.0
         params.pull_share = 1.0 / body.driver_impedance if pulled else 0.0
     if problem.normal_varies:

@@ -228,8 +228,8 @@ def _history(solution: Solution) -> dict[str, Variable]:
             "long_name": "leaps over creep",
         }
         variables["history_creep"] = Variable(("creep_leap", "creep_column"), history.creep, about)
-    if solution.problem.contact_law.states:
-        about = {"long_name": "states as the law's formulas see them, Taylor coefficients"}
+    if solution.problem.kept_series:
+        about = {"long_name": "states as the law's formulas see them, and rate of a machine behind layers: Taylor coefficients"}
         variables["history_state"] = Variable(("piece", "state_variable", "term"), store.state, about)
     return variables
 

@@ -119,7 +119,7 @@ def _shapes_of_columns(columns: dict[str, NDArray[Any]]) -> Iterator[Fault]:
 
 def _shapes_of_history(history: History) -> Iterator[Fault]:
     store, pieces = history.store, len(history)
-    states = len(history.problem.contact_law.states)
+    states = history.problem.kept_series
     yield "number of pieces of the history", pieces < 1
     yield "shape or type of history_state", not _is(store.state, (pieces if states else 0, states, at.TERMS), "f")
     yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")
@@ -178,7 +178,7 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     for name, shape in shapes.items():
         yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
     count = Counts(checkpoint.count)
-    rows = (max(len(checkpoint.waves), FIRST_ROW + 1), int(count.cells), at.TERMS) if count.cells > 0 else NO_WAVES.shape
+    rows = (max(len(checkpoint.waves), FIRST_ROW + 1), int(count.slots), at.TERMS) if count.cells > 0 else NO_WAVES.shape
     yield "shape or type of engine_waves", not _is(checkpoint.waves, rows, "f")
     yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
 

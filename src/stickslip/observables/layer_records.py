@@ -48,14 +48,16 @@ class LadderCells(NamedTuple):
     """That for waves from the other side."""
     drag: Floats
     """Stress over velocity (Pa s/m) that drag takes at the far end of each cell."""
-    ramp: Floats
-    """Growth of the wave in a round trip of a settled rest (Pa)."""
+    ramp_share: Floats
+    """Growth of the wave in a round trip of a settled rest, over that of the load."""
     wave: Floats
     growth: Floats
     starts: Integers
     """First cell of each side, and the number of cells."""
     strength: Floats
     """Reference strength (Pa) of each side."""
+    gain: float
+    """Proportional gain of a driver that is a machine (Pa s/m); 0 if it is none."""
     joined: int
     delay: float
     """Time (s) from the driver to the place where waves are followed."""
@@ -72,6 +74,8 @@ class FollowedTrips(NamedTuple):
     """What drivers do: array over sides, VALUE, TOTAL, PULL and SHARE, round trips and phases."""
     ground: Floats
     """Velocity (m/s) of moving ground, and its way in the round trip (m): array over both, round trips and phases, or empty."""
+    ramp: Floats
+    """Growth of the load (Pa) in each round trip of the settled rest before each of these, and behind the last one."""
     turned: Floats
     """Changes of the first driver in order, one per row: round trip, which phase it is, and the share before less the one after."""
 
@@ -97,10 +101,12 @@ class FollowedWaves(NamedTuple):
     growth: Floats
     """What each round trip of a settled rest adds to the sums."""
     slope: Floats
-    """By how much the power of the drivers grows in each of these round trips."""
+    """By how much the power of the drivers grows in each of these round trips, over the growth of the load."""
     slip: Floats
     """Slip rate of the contact (m/s), and its slip since the start of the round trip (m)."""
     counts: Integers
     """Round trip, next piece of the history, next query."""
     phase: Floats
     """Phases (s)."""
+    ramp: Floats
+    """Growth of the load (Pa) in each round trip of the present settled rest: one number."""

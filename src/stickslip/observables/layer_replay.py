@@ -37,6 +37,7 @@ def replay(contact: SlipPieces, ladder: LadderCells, steps: FollowedTrips, place
     """Follow the waves through the round trips given, and answer what is asked before them."""
     for k in range(len(steps.trip)):
         trip = steps.trip[k]
+        place.ramp[0] = steps.ramp[k]
         answer(ladder, steps, place, queries, trip)
         more = float(trip - 1 - place.counts[0])
         if more > 0.0:
@@ -64,10 +65,10 @@ def answer(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, quer
             for level in range(levels):
                 grown = more * (1.0 if level == VALUE else steps.phase[u])
                 for cell in range(cells):
-                    queries.rows[q, level, cell] = place.wave[level, cell, u] + grown * ladder.ramp[cell]
+                    queries.rows[q, level, cell] = place.wave[level, cell, u] + grown * place.ramp[0] * ladder.ramp_share[cell]
         for n in range(SUMS):
             queries.sums[q, n] = place.sums[n, u] + more * place.growth[n, u]
-        queries.sums[q, WORK] += 0.5 * more * (more + 1.0) * place.slope[u]
+        queries.sums[q, WORK] += 0.5 * more * (more + 1.0) * place.ramp[0] * place.slope[u]
         q += 1
     place.counts[2] = q
 
@@ -76,11 +77,12 @@ def answer(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, quer
 def rest(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, more: float) -> None:
     """Leap over round trips of a settled rest."""
     for cell in range(place.wave.shape[1]):
-        place.wave[VALUE, cell] += more * ladder.ramp[cell]
+        ramp = place.ramp[0] * ladder.ramp_share[cell]
+        place.wave[VALUE, cell] += more * ramp
         if place.wave.shape[0] > TOTAL:
-            place.wave[TOTAL, cell] += more * ladder.ramp[cell] * steps.phase
+            place.wave[TOTAL, cell] += more * ramp * steps.phase
     place.sums[:] += more * place.growth
-    place.sums[WORK] += 0.5 * more * (more + 1.0) * place.slope
+    place.sums[WORK] += 0.5 * more * (more + 1.0) * place.ramp[0] * place.slope
 
 
 @kernel
@@ -206,7 +208,7 @@ def meet_driver(ladder: LadderCells, place: FollowedWaves, level: int, side: int
     cell = ladder.starts[side + 1] - 1
     wave, share, doubled = place.wave[level, cell], sent[SHARE], 2.0 * ladder.impedance[cell]
     if level == VALUE:
-        grows = -abs(ladder.ramp[cell]) * np.sign(ladder.ramp[ladder.starts[side]])
+        grows = -abs(ladder.ramp_share[cell]) * np.sign(ladder.ramp_share[ladder.starts[side]])
         for u in range(len(wave)):
             back = share[u] * wave[u] + sent[VALUE, u]
             velocity = (wave[u] + back) / doubled
@@ -215,6 +217,8 @@ def meet_driver(ladder: LadderCells, place: FollowedWaves, level: int, side: int
             if share[u] > RIGID:
                 driver = ladder.impedance[cell] * (1.0 - share[u]) / (1.0 + share[u])
                 place.growth[RADIATED, u] += driver * (velocity - sent[PULL, u]) ** 2
+            elif ladder.gain > 0.0:
+                place.growth[RADIATED, u] += ladder.gain * (velocity - sent[PULL, u]) ** 2
     for u in range(len(wave)):
         wave[u] = share[u] * wave[u] + sent[level, u]
 

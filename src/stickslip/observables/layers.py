@@ -17,9 +17,10 @@ import numpy as np
 
 from stickslip.bodies import OfLayers
 from stickslip.engine.state.layout import Floats, Integers, LadderCell
-from stickslip.engine_input.forcing import inflow_of
+from stickslip.engine_input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.engine_input.ladder import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
+from stickslip.observables.layer_machine import LayerMachine
 from stickslip.observables.layer_records import (
     PULL,
     SHARE,
@@ -67,11 +68,12 @@ class LayerWaves:
             reflection=np.array(cells.reflection, float),
             beyond=np.array(cells.reflection_beyond, float),
             drag=np.concatenate([side.layers.drags for side in sides]),
-            ramp=np.array(cells.ramp_share * history.ramp, float),
+            ramp_share=np.array(cells.ramp_share, float),
             wave=np.array(cells.wave, float),
             growth=np.array(cells.growth, float),
             starts=self.starts.astype(np.int64),
             strength=strength,
+            gain=float(body.stacks[0].driver_impedance) if body.has_machine else 0.0,
             joined=int(body.is_joined),
             delay=float(body.inflow_delay),
             time=self.time,
@@ -83,6 +85,8 @@ class LayerWaves:
         self._before = np.array(cells.inflow_before[self.last], float)
         self._pulled = np.array(cells.pulled[self.last], float)
         self._is_pulled = np.array([1.0] + [float(body.is_joined)] * (len(sides) - 1))
+        self.machine = LayerMachine(history) if body.has_machine else None
+        """The motion of a driver that is a machine; None if it is none."""
         self.shares = inflow_of(self.problem) if self.problem.driver_changes else None
         """The inflow through a driver that changes, which knows the share that is sent back; None if it stays."""
         trips = np.unique(self.contact.trip)
@@ -133,6 +137,7 @@ class LayerWaves:
             phase - known,
         )  # and not time - low, which is rounded to the digits of the time
         found = np.empty((len(self._before), 4, *time.shape))
+        doubled = 2.0 * self.body.last_impedance
         for side, last in enumerate(self.last):
             if (weight := self._pulled[side]) != 0.0:
                 inflow = inflow_of(self.problem)
@@ -141,6 +146,9 @@ class LayerWaves:
             else:
                 first, slope = self._inflow[:, side]
                 value, whole = first + slope * time, (first + 0.5 * slope * (low + time)) * lasting
+            if self.machine is not None:
+                rate, way = self.machine.motion(trip, phase)
+                value, whole = doubled * rate, doubled * way
             wave, growth = self.ladder.wave[last], self.ladder.growth[last]
             kept = RIGID - self.ladder.reflection[last]  # it reflects all, and the recursion lets it reflect its share
             changes = self.shares if side == 0 else None
@@ -194,11 +202,19 @@ class LayerWaves:
         wave, growth, many = self.ladder.wave[:, None], self.ladder.growth[:, None] * phase, len(phase)
         both = [wave + growth, (wave + 0.5 * growth) * phase]
         sums, slip = (np.zeros((number, many)) for number in (SUMS, 2))
-        return FollowedWaves(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]), phase)
+        return FollowedWaves(
+            np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]), phase, np.zeros(1)
+        )
 
     def _with_changes(self, phase: Floats, levels: int) -> Floats:
         """Return phases (s) with those of changes of the driver behind them, if integrals are followed."""
         return np.append(phase, self.turned[1]) if levels > TOTAL else phase
+
+    def _ramp(self, trip: Integers) -> Floats:
+        """Return the growth of the load (Pa) in a round trip of a settled rest, under the loading of round trips."""
+        if self.machine is None:
+            return np.full(len(trip), self.history.ramp)
+        return np.asarray(ramp_per_rate(self.problem) * settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float)))
 
     def _ground(self, trip: Integers, phase: Floats) -> Floats:
         """Return the velocity of moving ground (m/s) at these places in time, and its way in the round trip (m); else nothing."""
@@ -220,9 +236,11 @@ class LayerWaves:
         for low in range(0, len(trips), block):
             part = trips[low : low + block]
             when = np.broadcast_arrays(part[:, None], phase)
-            steps = FollowedTrips(phase, part, self.sent(*when), self._ground(*when), turned)
+            steps = FollowedTrips(phase, part, self.sent(*when), self._ground(*when), self._ramp(part - 1), turned)
             replay(self.contact, self.ladder, steps, place, queries)
-        nothing = FollowedTrips(phase, trips[:0], np.empty((0, 0, 0, 0)), np.empty((2, 0, 0)), turned)
+        after = self._ramp(trips[-1:] if len(trips) else np.array([-1]))
+        place.ramp[0] = after[0]
+        nothing = FollowedTrips(phase, trips[:0], np.empty((0, 0, 0, 0)), np.empty((2, 0, 0)), after, turned)
         answer(self.ladder, nothing, place, queries, last + 1)
 
     def odd(self, rows: Floats, trip: Integers, phase: Floats) -> Floats:

@@ -282,6 +282,11 @@ class Problem(ProblemFields):
         return (*self.states, 0.0, grows / self.normal)
 
     @property
+    def kept_series(self) -> int:
+        """The number of series that a run keeps with each piece: those of states, and of the rate of a machine behind layers."""
+        return len(self.contact_law.states) + (self.body.has_machine and not self.body.is_uniform)
+
+    @property
     def states(self) -> tuple[float, ...]:
         """The initial states in the form that the formulas use (`FrictionLaw.inner_state`); none for a law without one."""
         if self.has_initial_rate:

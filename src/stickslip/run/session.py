@@ -64,7 +64,7 @@ class Session:
         if self.leaps is not None:
             self.leaps.begin(self.count)
         if self.count.cells > 0 and not len(self.waves):
-            self.waves = np.zeros((FIRST_ROW + FIRST_ROWS, int(self.count.cells), at.TERMS))
+            self.waves = np.zeros((FIRST_ROW + FIRST_ROWS, int(self.count.slots), at.TERMS))
         lend_history(self.memory, self.store, self.echoes, self.waves)
         lend_parts_at_hand(self.memory)
 
@@ -73,7 +73,7 @@ class Session:
         """Return a run at t = 0."""
         setup, memory = prepare(problem, options.rtol, options.shortest_event)
         capacity = min(FIRST_CAPACITY, options.most_pieces + SPARE)
-        store = at.new_store(capacity, len(problem.contact_law.states))
+        store = at.new_store(capacity, problem.kept_series)
         tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
         leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
         return cls(problem, options, setup, memory, store, EchoNode.table(capacity), leaps)

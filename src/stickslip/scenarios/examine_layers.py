@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.bodies.layers import Layers
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.names import KINDS, TURNS, si_unit
 from stickslip.foundation.quantities import Choice, NumberSeries, fields_of
 from stickslip.scenarios.facts import Fact
@@ -76,7 +77,8 @@ def _of_side(side: str, one: Layers, body: OfLayers, unit: str, first: str) -> I
     for i, share in enumerate(one.interface_reflections, 1):
         meet = f"where {body.part} {i} meets {body.part} {i + 1}"
         yield Fact(f"r of {side}{i}, {i + 1}", share, "1", f"reflection of {KINDS[body.load_unit].loads} {meet}, from the contact")
-    yield Fact(f"{side}r", one.reflection, "1", f"reflection of waves at the driver{first}: -1 rigid, 0 matched, +1 dead load")
+    of, share = ("sharp fronts" if body.has_machine else "waves"), (RIGID if one.driver_inertia > 0.0 else one.reflection)
+    yield Fact(f"{side}r", share, "1", f"reflection of {of} at the driver{first}: -1 rigid, 0 matched, +1 dead load")
 
 
 def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:

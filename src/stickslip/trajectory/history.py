@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Integers, Store
-from stickslip.engine_input.forcing import inflow_of, settled_rate
+from stickslip.engine_input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
@@ -314,7 +314,7 @@ class History:
         offset = self.store.phase_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
         if self.problem.body.has_machine:
             after = (self.store.trip[at.piece] + 1.0) * self.round_trip_time
-            return np.asarray(at.leaped * 2.0 * self.problem.body.impedance * settled_rate(self.problem, after))
+            return np.asarray(at.leaped * ramp_per_rate(self.problem) * settled_rate(self.problem, after))
         return inflow_of(self.problem).gathered(self.store.trip[at.piece].astype(float), offset, at.leaped)
 
     def rate(self, at: Positions) -> Floats:

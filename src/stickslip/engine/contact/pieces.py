@@ -44,8 +44,9 @@ def note_degree(run: Run) -> None:
 @kernel
 def keep_state(run: Run, length: float) -> None:
     """Store the states' series in run.state_jet, up to `length` (in their unit), in the history, and move the states to its end."""
+    series = run.counts.states + (1 if run.counts.slots > run.counts.cells else 0)  # behind them, the rate of a machine
     for n in range(run.counts.states):
-        kept = ahead(run.history_state, TERMS * (run.counts.states * run.counts.length + n))
+        kept = ahead(run.history_state, TERMS * (series * run.counts.length + n))
         copy(ahead(run.state_jet, TERMS * n), kept, TERMS)
         if length != 1.0:
             scale_low(kept, TERMS - 1, length)

@@ -67,6 +67,7 @@ class Params(MemoryRecord):
     driver_inertia: float  # kg/m^2: mass of a driver that is a machine (`waves.driver`)
     driver_impedance: float  # Pa s/m: its proportional gain
     driver_gain: float  # Pa/m: its integral gain
+    driver_spring: float  # Pa/m: stiffness of all layers before it, of a body of layers
     pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative
@@ -176,6 +177,7 @@ class Counts(MemoryRecord):
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
     cells: int  # number of cells of a body of layers (`waves.ladder`); 0 for any other body
     first_side: int  # number of those on the first side of the contact
+    slots: int  # number of waves in a row of these: one for each cell, and the rate of a driver that is a machine
     joined: int  # 1 if both sides move with the contact, as the two parts of a bowed string; 0 if slip is between them
     wave_shift: int  # row of waves of piece n: n + wave_shift, modulo their number
     folds_follow_slip: int  # 1 if the branches change with slip

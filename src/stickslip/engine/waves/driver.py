@@ -7,6 +7,9 @@ later, beta = 2 Z Vd - w. The equations are linear with constant coefficients, s
 series of Vd and of q term by term. The series of a piece of load ends with its last term K; the sum of what it leaves out is at
 most the next term over 1 - A / (K + 2), where A = ((kp + Z) / M + sqrt(ki / M)) dt, or ki dt / (kp + Z) without mass, is kept
 below 1. Where the load would be off by more than the tolerance, the piece of load is cut.
+
+Behind layers, w is the wave that left the last cell, the driver is an even number of cells away from the contact, and what it sends
+joins the waves in the last cell at once. Its rate goes with the rows of waves, as if it were a cell beyond the last one.
 """
 
 from __future__ import annotations
@@ -15,8 +18,9 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import phase_at
-from stickslip.engine.series.polynomial import RECIPROCAL, total
-from stickslip.engine.state.layout import TERMS
+from stickslip.engine.memory.addresses import ahead
+from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
+from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.driver_at_rest import settled_rate
 from stickslip.engine.waves.tone import tone_series
@@ -28,9 +32,9 @@ HALVINGS = 60
 
 @kernel
 def drive(run: Run) -> float:
-    """Add what the machine sends to the piece of load, which is its echo so far; return the share of the piece that is kept."""
+    """Add what the machine sends to the wave that a rigid driver would send back; return the share of the piece that is kept."""
     leap(run)
-    pace = pace_of(run)
+    pace, met, doubled = pace_of(run), wave_at_driver(run), 2.0 * impedance_at_driver(run)
     share = 1.0 / max(math.ceil(pace * (abs(run.state.speed) + 2.0 * abs(run.state.bend))), 1.0)
     shorten(run, share)
     for _ in range(HALVINGS):
@@ -41,11 +45,25 @@ def drive(run: Run) -> float:
         shorten(run, 0.5)
     settled, swing = settled_rate(run, run.counts.segment), 0.0
     for k in range(TERMS):
-        run.load[k] += 2.0 * run.params.impedance * run.machine_rate[k]
+        met[k] += doubled * run.machine_rate[k]
         swing += abs(run.machine_rate[k] - (settled if k == 0 else 0.0))
     run.state.driver_swing = max(run.state.driver_swing, swing)
     run.state.driver_rate, run.state.driver_push = total(run.machine_rate), total(run.machine_push)
+    if run.counts.cells > 0:
+        copy(run.machine_rate, ahead(run.waves, run.counts.cells * TERMS), TERMS)
     return share
+
+
+@kernel
+def wave_at_driver(run: Run) -> Floats:
+    """Return the series of the wave that comes back from the machine (Pa): the load of a slab, or the wave in the last cell."""
+    return ahead(run.waves, (run.counts.first_side - 1) * TERMS) if run.counts.cells > 0 else run.load
+
+
+@kernel
+def impedance_at_driver(run: Run) -> float:
+    """Return the impedance before the machine (Pa s/m)."""
+    return run.ladder_cells[run.counts.first_side - 1].impedance if run.counts.cells > 0 else run.params.impedance
 
 
 @kernel
@@ -56,7 +74,8 @@ def leap(run: Run) -> None:
     params, before = run.params, run.counts.trip_segment
     settled = settled_rate(run, before)
     leaped = float(run.counts.trip - 1 - run.history[run.counts.echo_of].trip)
-    run.load[0] += 2.0 * params.impedance * settled * leaped
+    if run.counts.cells == 0:  # waves in layers have been carried over them by the ladder
+        run.load[0] += 2.0 * params.impedance * settled * leaped
     if run.counts.driver_trip < run.counts.trip:
         trips = float(run.counts.trip - 1 - run.counts.driver_trip)
         run.state.driver_push += params.driver_gain * (run.loading[before].pull - settled) * trips * params.round_trip_time
@@ -66,10 +85,10 @@ def leap(run: Run) -> None:
 @kernel
 def pace_of(run: Run) -> float:
     """Return how fast (1/s) the motion of a machine may change by its own size."""
-    params = run.params
+    params, before = run.params, impedance_at_driver(run)
     if params.driver_inertia == 0.0:
-        return params.driver_gain / (params.driver_impedance + params.impedance)
-    damped = (params.driver_impedance + params.impedance) / params.driver_inertia
+        return params.driver_gain / (params.driver_impedance + before)
+    damped = (params.driver_impedance + before) / params.driver_inertia
     return damped + math.sqrt(params.driver_gain / params.driver_inertia)
 
 
@@ -85,9 +104,9 @@ def force_machine(run: Run) -> None:
     """Write the series of what drives the machine, without its own motion, and of its pull rate, along the piece of load."""
     params, segment = run.params, run.loading[run.counts.segment]
     since = (run.counts.trip - segment.trip) * params.round_trip_time + (run.state.phase_from - segment.offset)
-    force, pull = run.machine_force, run.machine_pull
+    force, pull, met = run.machine_force, run.machine_pull, wave_at_driver(run)
     for k in range(TERMS):
-        force[k], pull[k] = -run.load[k], 0.0
+        force[k], pull[k] = -met[k], 0.0
     force[0] += segment.value + segment.slope * since
     force[1] += segment.slope * run.state.speed
     force[2] += segment.slope * run.state.bend
@@ -105,7 +124,8 @@ def move_machine(run: Run, pace: float) -> bool:
     """Write the series of the machine's rate and of its integral force along the piece; return False if they end too early."""
     params, speed, bend = run.params, run.state.speed, 2.0 * run.state.bend
     force, pull, rate, push = run.machine_force, run.machine_pull, run.machine_rate, run.machine_push
-    weight, resists = params.driver_inertia, params.driver_impedance + params.impedance
+    before, met = impedance_at_driver(run), wave_at_driver(run)
+    weight, resists = params.driver_inertia, params.driver_impedance + before
     rate[0], push[0] = run.state.driver_rate, run.state.driver_push
     faster = faster_before = growth = growth_before = 0.0
     for k in range(TERMS):
@@ -124,5 +144,5 @@ def move_machine(run: Run, pace: float) -> bool:
     along = pace * (abs(speed) + abs(bend)) / (TERMS + 1)
     changes = 0.0
     for k in range(1, TERMS):
-        changes += abs(run.load[k]) + 2.0 * params.impedance * abs(rate[k])
-    return 2.0 * params.impedance * next_term <= (1.0 - along) * params.tolerance * changes
+        changes += abs(met[k]) + 2.0 * before * abs(rate[k])
+    return 2.0 * before * next_term <= (1.0 - along) * params.tolerance * changes

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.contact.far_end import has_faded
 from stickslip.engine.state.layout import NEVER
 from stickslip.engine.state.workspace import Run
 
@@ -19,8 +20,22 @@ STILL = 1e-13
 @kernel
 def settled_rate(run: Run, segment: int) -> float:
     """Return the rate (m/s) that a machine tends to while the contact rests, if its pull rate stays as in a segment."""
-    stiffness, gain = 2.0 * run.params.impedance / run.params.round_trip_time, run.params.driver_gain
+    stiffness, gain = spring_before(run), run.params.driver_gain
     return (gain * run.loading[segment].pull + run.loading[segment].slope) / (gain + stiffness)
+
+
+@kernel
+def spring_before(run: Run) -> float:
+    """Return the stiffness G/h (Pa/m) of the slab, or of all layers together."""
+    return run.params.driver_spring if run.counts.cells > 0 else 2.0 * run.params.impedance / run.params.round_trip_time
+
+
+@kernel
+def ramp_of_machine(run: Run, segment: int) -> float:
+    """Return the growth (Pa) of the load in a round trip at rest at that rate."""
+    if run.counts.cells > 0:
+        return run.params.driver_spring * run.params.round_trip_time * settled_rate(run, segment)
+    return 2.0 * run.params.impedance * settled_rate(run, segment)
 
 
 @kernel
@@ -36,7 +51,9 @@ def trips_of_machine(run: Run, limit: float, room: float, top: float, bottom: fl
     swings = 2.0 * params.impedance * run.state.driver_swing > STILL * (abs(params.reference) + max(abs(top), abs(bottom)))
     if varies or swings or run.counts.trips_at_rest < 2:
         return 0
-    ramp = 2.0 * params.impedance * settled_rate(run, segment)
+    if run.counts.cells > 0 and not has_faded(run):
+        return 0
+    ramp = ramp_of_machine(run, segment)
     if ramp == 0.0:
         return int(max(room, 0.0))
     free = limit - top if ramp > 0.0 else limit + 2.0 * params.reference - bottom

@@ -21,9 +21,11 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import span_of_load
+from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, fill, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run
+from stickslip.engine.waves.driver_at_rest import ramp_of_machine
 from stickslip.engine.waves.ladder_rows import (
     AIR,
     ASIDE,
@@ -62,7 +64,7 @@ def serve(run: Run, task: int, number: float) -> float:
     elif task == Task.WAVES_FROM_FOLD:
         write_from_fold(run, number)
     elif task == Task.WAVES_GO_ON:
-        copy(wave_in(run, ASIDE, 0), wave_in(run, AIR, 0), run.counts.cells * TERMS)
+        copy(wave_in(run, ASIDE, 0), wave_in(run, AIR, 0), run.counts.slots * TERMS)
     else:
         return 1.0 if is_settled(run) else 0.0
     return 0.0
@@ -86,11 +88,12 @@ def cross_cells(run: Run) -> bool:
             wave[1] = one.growth * run.state.speed
     else:
         source = run.counts.echo_of
-        copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), run.counts.cells * TERMS)
+        copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), run.counts.slots * TERMS)
         leaped = run.counts.trip - run.history[source].trip - 1
         if leaped > 0:
+            ramp = ramp_at_rest(run, run.counts.trip_segment)
             for cell in range(run.counts.cells):
-                wave_in(run, AIR, cell)[0] += run.ladder_cells[cell].ramp_share * leaped * run.params.ramp
+                wave_in(run, AIR, cell)[0] += run.ladder_cells[cell].ramp_share * leaped * ramp
     for side in range(2):
         first, past = side_of(run, side)
         meet(run, first, past, 0)
@@ -204,8 +207,10 @@ def keep_waves(run: Run, xi_to: float) -> None:
     """Keep the waves from the present place up to `xi_to` with the piece of the history that is being written."""
     n = run.counts.length
     row, xi, piece = row_of(run, n), run.state.xi, run.history[n]
-    for cell in range(run.counts.cells):
-        restrict(wave_in(run, AIR, cell), xi, xi_to - xi, wave_in(run, row, cell))
+    for slot in range(run.counts.slots):
+        restrict(wave_in(run, AIR, slot), xi, xi_to - xi, wave_in(run, row, slot))
+    if run.counts.driven == 1:
+        keep_machine(run, wave_in(run, row, run.counts.cells))
     load, rate, impedance = piece.load, piece.rate, run.params.impedance
     moved = shakes(run)
     if moved:
@@ -230,7 +235,20 @@ def keep_waves(run: Run, xi_to: float) -> None:
                     wave[k] -= 2.0 * run.ground_push[k]
 
 
+@kernel
+def keep_machine(run: Run, rate: Floats) -> None:
+    """Keep the rate of a machine with the piece of the history that is being written, behind the states of the law."""
+    row = (run.counts.states + 1) * run.counts.length + run.counts.states
+    copy(rate, ahead(run.history_state, TERMS * row), TERMS)
+
+
 # ---- rest -------------------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def ramp_at_rest(run: Run, segment: int) -> float:
+    """Return the growth (Pa) of the load at rest in one round trip, under the loading of a segment."""
+    return ramp_of_machine(run, segment) if run.counts.driven == 1 else run.params.ramp
 
 
 @kernel
@@ -239,7 +257,7 @@ def is_settled(run: Run) -> bool:
     if run.counts.trips_at_rest < 2:
         return False
     least, most = span_of_load(run)
-    largest = max(abs(run.params.reference), most, -least)
+    largest, ramp = max(abs(run.params.reference), most, -least), ramp_at_rest(run, run.counts.segment)
     for n in range(run.counts.trip_from, run.counts.length):
         source = run.history[n].echo_of
         if source < run.counts.previous_from or run.history[source].phase_from != run.history[n].phase_from:
@@ -248,7 +266,7 @@ def is_settled(run: Run) -> bool:
             return False
         for cell in range(run.counts.cells):
             before, now = wave_in(run, row_of(run, source), cell), wave_in(run, row_of(run, n), cell)
-            change = abs(now[0] - before[0] - run.ladder_cells[cell].ramp_share * run.params.ramp)
+            change = abs(now[0] - before[0] - run.ladder_cells[cell].ramp_share * ramp)
             for k in range(1, TERMS):
                 change += abs(now[k] - before[k])
             if change > STILL * largest:

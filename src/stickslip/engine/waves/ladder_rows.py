@@ -16,7 +16,7 @@ AIR, ASIDE = 0, 1
 @kernel
 def wave_in(run: Run, row: int, cell: int) -> Floats:
     """Return the wave (Pa, minus that of the reference strength) in a cell, of one row."""
-    return ahead(run.waves, (row * run.counts.cells + cell) * TERMS)
+    return ahead(run.waves, (row * run.counts.slots + cell) * TERMS)
 
 
 @kernel
@@ -35,7 +35,7 @@ def side_of(run: Run, side: int) -> tuple[int, int]:
 def cut_waves(run: Run, end: float) -> None:
     """Restrict the waves to the part of the piece of load from the present place to `end`."""
     begin = run.state.xi
-    for cell in range(run.counts.cells):
+    for cell in range(run.counts.slots):
         wave = wave_in(run, AIR, cell)
         restrict(wave, begin, end - begin, run.trial)
         copy(run.trial, wave, TERMS)
@@ -45,7 +45,7 @@ def cut_waves(run: Run, end: float) -> None:
 def share_of_waves(run: Run, width: float) -> float:
     """Return the share of the way (in xi) back from a fold that is `width` ahead, on which all waves fit the root of time."""
     share = 1.0
-    for cell in range(run.counts.cells):
+    for cell in range(run.counts.slots):
         restrict(wave_in(run, AIR, cell), run.state.xi + width, -width, run.spare)
         share = min(share, share_described(run.spare))
     return share
@@ -54,8 +54,8 @@ def share_of_waves(run: Run, width: float) -> float:
 @kernel
 def write_to_fold(run: Run, width: float) -> None:
     """Set the waves aside, and write those up to the fold `width` (in xi) ahead in the root of the time left."""
-    copy(wave_in(run, AIR, 0), wave_in(run, ASIDE, 0), run.counts.cells * TERMS)
-    for cell in range(run.counts.cells):
+    copy(wave_in(run, AIR, 0), wave_in(run, ASIDE, 0), run.counts.slots * TERMS)
+    for cell in range(run.counts.slots):
         wave = wave_in(run, AIR, cell)
         restrict(wave, run.state.xi + width, -width, run.trial)
         square_variable(run.trial, run.spare)
@@ -65,8 +65,8 @@ def write_to_fold(run: Run, width: float) -> None:
 @kernel
 def write_from_fold(run: Run, width: float) -> None:
     """Set the waves aside, and write those from the fold on, over `width` (in xi), in the root of the time since."""
-    copy(wave_in(run, AIR, 0), wave_in(run, ASIDE, 0), run.counts.cells * TERMS)
-    for cell in range(run.counts.cells):
+    copy(wave_in(run, AIR, 0), wave_in(run, ASIDE, 0), run.counts.slots * TERMS)
+    for cell in range(run.counts.slots):
         wave = wave_in(run, AIR, cell)
         restrict(wave, run.state.xi, width, run.trial)
         square_variable(run.trial, wave)

@@ -39,8 +39,13 @@ def take_loading(run: Run) -> None:
     if begin > 0.0 or end < 1.0:
         cut(run, begin, end, phase, phase_to)
     if run.counts.cells > 0:
+        if run.counts.driven == 1:
+            kept = call_part(run.driver, run, Task.DRIVE, 0.0)
+            if kept < 1.0:
+                end, phase_to = begin + kept * (end - begin), run.state.phase_to
         fill(run.load, 0.0)
-        add_loading(run)
+        if run.counts.driven == 0:
+            add_loading(run)
         call_part(run.ladder, run, Task.SEND_IN, 0.0)
     elif run.counts.driven == 0:
         add_loading(run)

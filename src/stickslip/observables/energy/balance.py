@@ -194,6 +194,9 @@ def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[
     layers = energy.inside(now)
     stored, moving = layers.stored.sum(axis=1), layers.kinetic.sum(axis=1)
     work, radiated, dragged = energy.passed(now)
+    if (machine := energy.waves.machine) is not None:  # its gains and the far stress move the layers and itself
+        heavy = np.array([machine.kinetic(one) for one in now])
+        work, contact = work + heavy, contact + heavy
     return {
         "work": work + shaken(history, at),
         "stored": stored + contact,
