@@ -20,6 +20,7 @@ MISSING = {
         "import numba.core.types as m; m.Function.get_call_type = lambda self, args: None",
         "<lambda> takes self, args",
     ),
+    "an attribute of an object": ("import numba, llvmlite.binding.ffi as m; del m.lib._lock._cblist", "_LLVMLock has no _cblist"),
 }
 
 

@@ -14,10 +14,15 @@ from typing import Any
 import numpy as np
 import pytest
 from numba import njit, types
+from numba.core.compiler import run_frontend
 from numba.core.errors import TypingError
 
 from stickslip.engine.compile.cache import compiled_sources, key_of, read_sealed, remembered_key, write_sealed
+from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.numba_privates import LLVM_LOCK
 from stickslip.engine.compile.one_module import LeanCompiler
+from stickslip.engine.compile.shortcuts import _variables_in
+from stickslip.trajectory.turning_points import search_history
 from tests.engine.uncompiled_runs import RUNS, results
 
 TEXT = b'''"""Say what this is."""
@@ -96,6 +101,30 @@ def test_search_for_operators_and_collection_of_garbage_are_as_before_also_after
         njit((types.float64,), pipeline_class=LeanCompiler)(wrong)
     assert gc.isenabled()
     assert types.Function.get_call_type.__module__.startswith("numba.")
+    assert LLVM_LOCK._cblist  # calls of LLVM are told again
+
+
+def test_shortcuts_find_what_numba_finds() -> None:
+    """Variables of instructions, which shortcuts list in their own way."""
+    compiled: Any = search_history
+    lines = [line for block in run_frontend(compiled.__wrapped__).blocks.values() for line in block.body]
+    parts = [part for line in lines for part in vars(line).values()]
+    assert len(parts) > 50
+    assert [_variables_in(lines[0], part) for part in parts] == [lines[0]._rec_list_vars(part) for part in parts]
+
+
+def test_a_kernel_is_compiled_once_for_all_whole_numbers_that_are_written_in_calls() -> None:
+    @kernel
+    def times(x: float, n: int) -> float:
+        return x * n
+
+    @kernel
+    def calls(x: float) -> float:
+        return times(x, 2) + times(x, 3)  # type: ignore[no-any-return]
+
+    compiled: Any = times
+    assert calls(1.5) == 7.5
+    assert list(compiled.part.overloads) == [(types.float64, types.int64)]
 
 
 @pytest.fixture(scope="module")

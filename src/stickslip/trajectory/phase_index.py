@@ -67,13 +67,12 @@ def _last(members: Integers, begin: int, end: int, upto: int) -> int:
 def _latest(begins: Integers, members: Integers, leaf: Integers, upto: Integers, found: Integers) -> None:
     """Find, for each leaf (by the number of its node), the last piece up to upto[q] in any node on the way to the root."""
     for q in range(len(leaf)):
-        node, best = leaf[q], NOTHING
+        node, found[q] = leaf[q], NOTHING
         while node >= 1:
             place = _last(members, begins[node], begins[node + 1], upto[q])
             if place >= begins[node]:
-                best = max(best, members[place])
+                found[q] = max(found[q], members[place])
             node >>= 1
-        found[q] = best
 
 
 @kernel

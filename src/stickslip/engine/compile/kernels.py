@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import numba
 from numba import types
-from numba.extending import typeof_impl
+from numba.extending import models, register_model, typeof_impl
 
 from stickslip.engine.compile.cache import CACHE, cache_folder, read_sealed, remove, tell, write_sealed
 from stickslip.engine.compile.numba_privates import WHY_PLAIN
@@ -89,10 +89,21 @@ class Kernel:
         return self.entry(*arguments)
 
 
+class _Part(types.Dispatcher):  # type: ignore[misc] # numba is untyped
+    """The type of a kernel's part, which is compiled once for whole numbers and not for each number that is written in a call."""
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """Return the signature of a call."""
+        return super().get_call_type(context, tuple(map(types.unliteral, args)), kws)
+
+
+register_model(_Part)(models.OpaqueModel)
+
+
 @typeof_impl.register(Kernel)
 def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
     """Return the type that compiled code sees when it calls a kernel: that of its part."""
-    return types.Dispatcher(kernel.part)
+    return _Part(kernel.part)
 
 
 def kernel(function: F) -> F:

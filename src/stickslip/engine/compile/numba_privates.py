@@ -21,10 +21,10 @@ WHY_PLAIN = ""
 
 
 def _has(owner: Any, *names: str) -> None:
-    """Raise ImportError if a class lacks one of the attributes that are used or replaced."""
+    """Raise ImportError if a class or an object lacks one of the attributes that are used or replaced."""
     for name in names:
         if not hasattr(owner, name):
-            raise ImportError(f"{owner.__name__} has no {name}")
+            raise ImportError(f"{getattr(owner, '__name__', type(owner).__name__)} has no {name}")
 
 
 def _takes(function: Any, *names: str) -> None:
@@ -55,40 +55,58 @@ if not UNCOMPILED:
     try:
         if os.environ.get("STICKSLIP_PLAIN_NUMBA", "") not in ("", "0"):
             raise ImportError("STICKSLIP_PLAIN_NUMBA is set")
+        from llvmlite.binding import ffi
+        from llvmlite.ir import Type
         from numba.core.caching import NullCache
         from numba.core.codegen import JITCodeLibrary
         from numba.core.compiler import Compiler, CompileResult
+        from numba.core.ir import Inst, Var
         from numba.core.runtime import rtsys
+        from numba.core.runtime.context import NRTContext
         from numba.core.serialize import dumps
-        from numba.core.typed_passes import InlineOverloads, NopythonRewrites
+        from numba.core.typed_passes import InlineOverloads, NopythonRewrites, PreLowerStripPhis
         from numba.core.types import Function
-        from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, WithLifting
-        from numba.core.utils import OPERATORS_TO_BUILTINS
+        from numba.core.typing.context import BaseContext
+        from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, ReconstructSSA, WithLifting
+
+        LLVM_LOCK = ffi.lib._lock
 
         _has(JITCodeLibrary, "finalize", "_optimize_final_module", "_get_module_for_linking", "_raise_if_finalized")
         _has(NullCache, "load_overload", "save_overload")
         _has(CompileResult, "_reduce", "_rebuild")
         _has(Compiler, "define_pipelines", "compile_extra")
         _has(rtsys, "initialize")
+        _has(LLVM_LOCK, "_cblist")
         _takes(Function.get_call_type, "self", "context", "args", "kws")
+        _takes(Type.get_abi_size, "self", "target_data", "context")
+        _takes(BaseContext.resolve_getattr, "self", "typ", "attr")
+        _takes(Inst._rec_list_vars, "self", "val")
+        _takes(NRTContext._call_incref_decref, "self", "builder", "typ", "value", "funcname")
     except (ImportError, AttributeError, TypeError, ValueError) as error:
         WHY_PLAIN = " ".join(str(error).split())
 
 __all__ = [
-    "OPERATORS_TO_BUILTINS",
+    "LLVM_LOCK",
     "WHY_PLAIN",
     "AbstractTemplate",
     "AttributeTemplate",
+    "BaseContext",
     "CompileResult",
     "Compiler",
     "Function",
     "InlineClosureLikes",
     "InlineInlinables",
     "InlineOverloads",
+    "Inst",
     "JITCodeLibrary",
     "LiteralUnroll",
+    "NRTContext",
     "NopythonRewrites",
     "NullCache",
+    "PreLowerStripPhis",
+    "ReconstructSSA",
+    "Type",
+    "Var",
     "WithLifting",
     "dumps",
     "infer_getattr",

@@ -4,19 +4,14 @@ By default numba makes machine code and wrappers of every function, and optimise
 calls, again at every level of calls. Here a function that is called from compiled code becomes typed, unoptimised code and nothing
 more. Only a function that is called from Python is linked with everything that it needs, optimised, turned into machine code and
 kept on disk.
-
-Our code is thousands of sums and products of floats. For each of them numba twice searches all definitions of the operator,
-those for arrays included, for the one that fits: when it infers types, and when it writes the code. Here the first search for an
-operator and types of arguments is remembered. The machine code is the same.
+What numba does again and again meanwhile is done once (see `shortcuts`).
 """
 
 from __future__ import annotations
 
-import gc
 import pickle
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any, ClassVar
 
 import llvmlite.binding as llvm
@@ -25,7 +20,6 @@ from numba import njit
 from stickslip.engine.compile import cache
 from stickslip.engine.compile.cache import CACHE, NOTICED, OTHERS, SLOW, Kept, tell
 from stickslip.engine.compile.numba_privates import (
-    OPERATORS_TO_BUILTINS,
     Compiler,
     CompileResult,
     InlineClosureLikes,
@@ -35,74 +29,35 @@ from stickslip.engine.compile.numba_privates import (
     LiteralUnroll,
     NopythonRewrites,
     NullCache,
+    PreLowerStripPhis,
+    ReconstructSSA,
     WithLifting,
     dumps,
     rtsys,
 )
-from stickslip.engine.compile.numba_privates import Function as NumbaFunction
+from stickslip.engine.compile.shortcuts import at_speed
 
 NOT_NEEDED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites, WithLifting)
 """Passes of numba's compiler that find nothing in our code: it has no closures, array expressions or `with` statements."""
-
-Function: Any = NumbaFunction
-_search = Function.get_call_type
-_found: dict[tuple[Any, tuple[Any, ...]], Any] = {}
-"""The definition that fits, by operator and types of its arguments."""
-
-
-def _remembered(operator: Any, context: Any, arguments: Any, keywords: Any) -> Any:
-    """Return the definition of an operator that fits the types of its arguments; search for it only once."""
-    if operator.typing_key not in OPERATORS_TO_BUILTINS:
-        return _search(operator, context, arguments, keywords)
-    key = operator, tuple(arguments)
-    if key not in _found:
-        _found[key] = _search(operator, context, arguments, keywords)
-    return _found[key]
-
-
-@contextmanager
-def _at_speed() -> Iterator[None]:
-    """Compile inside this context with remembered definitions, while the collector of garbage waits: hardly anything can go.
-
-    Numba's lock is held meanwhile, and everybody else's code is compiled as always. A function that is compiled because another
-    one calls it is compiled inside the context of the other one.
-    """
-    if Function.get_call_type is _remembered:
-        yield
-        return
-    collecting = gc.isenabled()
-    gc.disable()
-    Function.get_call_type = _remembered
-    try:
-        yield
-    finally:
-        Function.get_call_type = _search
-        _found.clear()
-        if collecting:
-            _put_off_search()
-            gc.enable()
-
-
-def _put_off_search() -> None:
-    """Leave what is new to the next full search for garbage: a search at once takes a tenth of the time of the compilation."""
-    if not gc.get_freeze_count():  # else somebody keeps frozen objects
-        gc.freeze()
-        gc.unfreeze()
+LEFT_TO_LLVM = (ReconstructSSA, PreLowerStripPhis)
+"""Passes that give a variable a name of its own for each assignment, and take these names back; LLVM does the same faster. Without
+them all values of a variable have one type. A whole number may become a float, but what begins as a constant of its module, such as
+`found = NOTHING`, stays that constant: numba refuses to compile another value."""
 
 
 class LeanCompiler(Compiler):  # type: ignore[misc] # numba is untyped
     """Numba's compiler without what our code does not need."""
 
     def define_pipelines(self) -> list[Any]:
-        """Return numba's passes except those that look for closures, array expressions and functions to inline."""
+        """Return numba's passes except `NOT_NEEDED` and `LEFT_TO_LLVM`."""
         (passes,) = super().define_pipelines()
-        passes.passes = [one for one in passes.passes if one[0] not in NOT_NEEDED]
+        passes.passes = [one for one in passes.passes if one[0] not in NOT_NEEDED + LEFT_TO_LLVM]
         passes.finalize()
         return [passes]
 
     def compile_extra(self, function: Any) -> Any:
         """Compile a function, with all that it calls."""
-        with _at_speed():
+        with at_speed():
             return super().compile_extra(function)
 
 

@@ -92,7 +92,7 @@ def load_on_disc(load: Floats, powers: Floats, degree: int) -> float:
     """Return how far a load of the given degree can be from its value at the centre of a disc (Pa or N)."""
     if degree <= 1:
         return abs(load[1]) * powers[1]
-    return size_on_disc(load, powers)
+    return size_on_disc(load, powers, 1)
 
 
 @inlined
@@ -194,7 +194,7 @@ def put_states(run: Run, powers: Floats) -> None:
     """Put radii and centres of the states on a disc into `ball`, from the powers of its radius (in units)."""
     for n in range(run.counts.states):
         series = ahead(run.state_jet, TERMS * n)
-        run.ball.state[n], run.ball.at_state[n] = size_on_disc(series, powers), series[0]
+        run.ball.state[n], run.ball.at_state[n] = size_on_disc(series, powers, 1), series[0]
 
 
 @inlined

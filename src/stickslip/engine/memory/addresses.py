@@ -11,6 +11,7 @@ from typing import Any
 import llvmlite.ir as ir
 import numpy as np
 from numba import types
+from numba.core.cgutils import alloca_once
 from numba.extending import intrinsic
 
 from stickslip.engine.compile.uncompiled import UNCOMPILED, Pointer, call, pointer_at
@@ -82,6 +83,16 @@ def ahead(typingctx: Any, pointer: Any, n: Any) -> Any:
     return pointer(pointer, types.int64), codegen
 
 
+@intrinsic(prefer_literal=True)
+def room_for(typingctx: Any, n: Any) -> Any:
+    """Return a pointer to room for n floats that lasts as long as the function that asks for it; n is a constant."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return alloca_once(builder, ir.DoubleType(), size=ir.Constant(ir.IntType(64), n.literal_value))
+
+    return FLOATS(n), codegen
+
+
 @intrinsic
 def bits_of(typingctx: Any, number: Any) -> Any:
     """Return the 64 bits of a float as an integer."""
@@ -112,6 +123,10 @@ if UNCOMPILED:
     def integers(address: int) -> Pointer:
         """Return the pointer to 64-bit integers at an address."""
         return pointer_at(address, np.int64)
+
+    def room_for(n: int) -> Pointer:
+        """Return a pointer to room for n floats."""
+        return Pointer(np.full(n, np.nan))
 
     def bits_of(number: float) -> np.int64:
         """Return the 64 bits of a float as an integer."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import inlined, kernel
+from stickslip.engine.memory.addresses import room_for
 from stickslip.engine.state.layout import TERMS
 
 Floats = NDArray[np.float64]
@@ -146,7 +147,7 @@ def turn_over(c: Floats) -> None:
 
 
 @inlined
-def size_on_disc(c: Floats, powers: Floats, first: int = 1) -> float:
+def size_on_disc(c: Floats, powers: Floats, first: int) -> float:
     """Return the sum of |c_k| r^k for k >= `first`, from the powers of r: with 1, a bound on |p - c_0| on a disc of radius r."""
     a, b = abs(c[first]) * powers[first], abs(c[first + 1]) * powers[first + 1]
     d, e = abs(c[first + 2]) * powers[first + 2], abs(c[first + 3]) * powers[first + 3]
@@ -159,9 +160,9 @@ def size_on_disc(c: Floats, powers: Floats, first: int = 1) -> float:
 
 
 @inlined
-def magnitude(c: Floats, first: int = 1) -> float:
-    """Return the sum of |c_k| for k >= `first`: with 1, a bound on |p - c_0| on [-1, 1]."""
-    return size_on_disc(c, ONES, first)
+def magnitude(c: Floats) -> float:
+    """Return the sum of |c_k| for k >= 1: a bound on |p - c_0| on [-1, 1]."""
+    return size_on_disc(c, ONES, 1)
 
 
 @inlined
@@ -174,7 +175,7 @@ def slope_on_disc(c: Floats, powers: Floats) -> float:
 
 
 @inlined
-def weighed_sum(c: Floats, weights: Floats, shift: int = 0) -> float:
+def weighed_sum(c: Floats, weights: Floats, shift: int) -> float:
     """Return the sum of c_k times weight number k + `shift`."""
     a, b = weights[shift] * c[0], weights[shift + 1] * c[1]
     d, e = weights[shift + 2] * c[2], weights[shift + 3] * c[3]
@@ -189,7 +190,7 @@ def weighed_sum(c: Floats, weights: Floats, shift: int = 0) -> float:
 @inlined
 def total(c: Floats) -> float:
     """Return p(1)."""
-    return weighed_sum(c, ONES)
+    return weighed_sum(c, ONES, 0)
 
 
 @inlined
@@ -216,7 +217,7 @@ def mean_of(c: Floats, speed: float, bend: float, width: float) -> float:
 
 
 @kernel
-def _falling_root(c: Floats, low: float = -1.0) -> float:
+def _falling_root(c: Floats, low: float) -> float:
     """Return the root in [low, 1] of a polynomial that falls through zero in it, by Newton's method kept inside a bracket."""
     high, x = 1.0, -c[0] / c[1] if c[1] != 0.0 else low
     if not low < x < high:
@@ -273,7 +274,7 @@ def bound_below(c: Floats) -> float:
         for k in range(1, j + 1):
             coefficient += LOW_BERNSTEIN[k, j] * c[k]
         least = min(least, coefficient)
-    return least - magnitude(c, LOW)
+    return least - size_on_disc(c, ONES, LOW)
 
 
 @kernel
@@ -303,7 +304,8 @@ def first_descent(c: Floats, spare: Floats) -> float:
         lowest = min(lowest, spare[j])
     if lowest > 0.0:
         return NONE
-    q, first = np.zeros(TERMS), np.empty(1)
+    q, first = room_for(TERMS), room_for(1)
+    fill(q, 0.0)
     for k in range(lead, TERMS):
         q[k - lead] = c[k]
     if _bisect(q, 1.0, spare, first, 1) == 1:
@@ -328,14 +330,14 @@ def extremes(c: Floats) -> tuple[float, float]:
 
     If p is not finite, or its slope changes its sign too often, the sum of the coefficients' magnitudes bounds p on both sides.
     """
-    end, bound, slope = total(c), abs(c[0]) + magnitude(c), np.empty(TERMS)
+    end, bound, slope = total(c), abs(c[0]) + magnitude(c), room_for(TERMS)
     if not bound < math.inf:
         return -bound, bound
     least, largest = min(c[0], end), max(c[0], end)
     differentiate(c, -1.0 if c[1] < 0.0 else 1.0, slope)
     if degree(c) <= 1 or (slope[0] > 0.0 and bound_below(slope) > SIGN_ROUNDING * slope[0]):
         return least, largest
-    places, spare = np.empty(MOST_CROSSINGS), np.empty(TERMS)
+    places, spare = room_for(MOST_CROSSINGS), room_for(TERMS)
     found = crossings(slope, places, spare)
     if found >= MOST_CROSSINGS:
         return -bound, bound
@@ -422,7 +424,7 @@ def _bisect(c: Floats, sign: float, part: Floats, out: Floats, most: int) -> int
             if not definite and before != 0.0 and math.copysign(1.0, before) != math.copysign(1.0, after):
                 if after > 0.0:
                     turn_over(part)
-                place = start + 0.5 * width * (1.0 + _falling_root(part))
+                place = start + 0.5 * width * (1.0 + _falling_root(part, -1.0))
             if place > 0.0:
                 out[found] = place
                 found += 1
