@@ -102,8 +102,8 @@ NAMED = (
     Named(
         "heat-at-zero-rate",
         "trajectory/history.py",
-        "law.coefficient(self.law_slip(at), np.abs(self.rate(at)), one_argument(states))",
-        "law.coefficient(self.law_slip(at), 0.0 * np.abs(self.rate(at)), one_argument(states))",
+        "law.coefficient(slip, np.abs(self.rate(at)), one_argument(states))",
+        "law.coefficient(slip, 0.0 * np.abs(self.rate(at)), one_argument(states))",
     ),
     Named(
         "no-kinetic-energy-of-the-block",

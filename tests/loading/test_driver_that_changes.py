@@ -251,7 +251,7 @@ STRING = ss.load_scenario("drill-string").problem.body
         ),
         (
             {"far_stress": None},
-            "driver_reflection needs far_stress, beyond a driver that is rigid at first: 0 Pa if it is set free",
+            "driver_reflection needs a far_stress, because the driver is rigid at first: 0 Pa if nothing holds",
         ),
         (
             {"driver_reflection": steps((1.0, -1.0))},

@@ -57,7 +57,7 @@ def test_check_shows_layers_and_cells() -> None:
     found = facts("low-velocity-zone")
     assert (found["cells"], found["error"], found["r"]) == (5.0, 0.0, -1.0)
     assert found["Z of layer 1"] == pytest.approx(4.9e6)
-    assert found["r of 1, 2"] == pytest.approx(1 / 3)
+    assert found["r of 1, 2"] == pytest.approx(-1 / 3)
     assert found["R"] == pytest.approx(10 * TIME)
     assert found["G/h"] == pytest.approx(1 / (1e3 / (2800 * 1750**2) + 8e3 / (2800 * 3500**2)))
     string = {one.name: one for one in examine(ss.load_scenario("pipe-and-collar")).derived}
@@ -71,8 +71,12 @@ def test_check_shows_layers_and_cells() -> None:
 def test_check_warns_of_rest_that_is_walked_through() -> None:
     long = ss.load_scenario("low-velocity-zone").with_values({"duration": "1 year"})
     (warning,) = examine(long).warnings
-    assert "about 2.8e+07 pieces, each of 5 cells; under long loading give drag, or a driver of finite impedance" in warning
+    assert "at least 2.8e+07 pieces, each of 5 cells; under long loading give drag, or a driver of finite impedance" in warning
     assert not examine(long.with_values({"driver_impedance": 2e8})).warnings
+    heavy = {"driver_impedance": 2e8, "driver_inertia": 1e8, "driver_integral_gain": 1e6}
+    (warning,) = examine(long.with_values(heavy)).warnings
+    assert warning.startswith("a driver with a mass sends sharp waves back whole")
+    assert warning.endswith("under long loading set driver_inertia to 0")
     assert "the run ends before the first echo returns at R = 1.14286 s" in examine(long.with_values({"duration": 1.0})).warnings
 
 

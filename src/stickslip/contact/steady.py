@@ -179,7 +179,7 @@ class _Steady:
         if problem.far_stress_rate:
             return "the far stress keeps changing"
         if problem.body.has_machine and not problem.body.is_uniform:
-            return "behind a driver with a mass or an integral gain, steady sliding of layers is not sought"
+            return "not sought for layers behind a driver with a mass or an integral gain"
         if self.drive == 0.0:
             return f"nothing pulls{first}"
         if law.states and law.steady_state(1.0) is None:

@@ -18,7 +18,6 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
 from stickslip.engine_input.forcing import far_excess
 from stickslip.foundation.constants import RIGID
-from stickslip.foundation.errors import InputError
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
@@ -72,19 +71,13 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
 
 
 def _pulled(problem: Problem, body: OfLayers) -> list[float]:
-    """Return the share in a varying inflow, that of the first driver, of each driver: 0 if it is loaded steadily.
-
-    Raises InputError if it is unclear.
-    """
+    """Return the share in a varying inflow, that of the first driver, of each driver: 0 if it is loaded steadily."""
     if not problem.loading_varies:
         return [0.0] * len(body.stacks)
     if len(body.stacks) == 1:
         return [0.0 if body.has_machine else 1.0]
-    varies = [name for name in ("pull_rate", "far_stress") if isinstance(getattr(problem, name), LoadingHistory)]
-    if not varies:  # the first driver changes
+    if problem.driver_changes:  # the first one
         return [1.0, 0.0]
-    if problem.driver_changes or not body.is_driven_rigidly:
-        raise InputError(f"Problem: {varies[0]} that varies needs rigid drivers on both sides of a {type(body).__name__}")
     first, other = (one.impedances[-1] for one in body.stacks)
     return [1.0, other / first if body.is_joined else 0.0]
 

@@ -136,6 +136,7 @@ class ProblemFields(CheckedArguments):
             )
         for name in self._varying:
             getattr(self, name).check()
+        self._check_two_drivers()
         if self.normal_load is not None:
             self._check_normal_load(self.normal_load)
         if self.ground is not None:
@@ -143,10 +144,20 @@ class ProblemFields(CheckedArguments):
         if self.driver_reflection is not None:
             self._check_driver(self.driver_reflection)
 
+    def _check_two_drivers(self) -> None:
+        """Raise InputError if a loading varies that acts through two drivers, and does not come through both alike."""
+        varying = [name for name in self._varying if name in ("pull_rate", "far_stress")]
+        if varying and isinstance(self.body, OfLayers) and len(self.body.stacks) > 1 and not self.is_driven_rigidly:
+            name = type(self.body).__name__
+            raise InputError(
+                f"Problem: {varying[0]} that varies needs rigid drivers on both sides of a {name}, which do not change: "
+                f"leave driver_impedance, other_driver_impedance and driver_reflection out, or give {varying[0]} a number"
+            )
+
     def _check_ground(self, ground: Ground) -> None:
         if isinstance(self.body, OfLayers) and len(self.body.stacks) > 1 and not self.body.is_joined:
-            apart = f"{type(self.body).__name__} whose sides are apart"
-            raise InputError(f"Problem: ground that moves is not followed under a {apart}: each of them is the ground of the other")
+            why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
+            raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
         if self.body.has_machine:
             cure = "set driver_inertia and driver_integral_gain to 0, or leave the ground at rest"
             raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: {cure}")
@@ -245,7 +256,8 @@ class ProblemFields(CheckedArguments):
         if self.driver_changes and self.far_stress is None:
             unit = self.unit_of("far_stress")
             raise InputError(
-                f"Problem: driver_reflection needs far_stress, beyond a driver that is rigid at first: 0 {unit} if it is set free"
+                "Problem: driver_reflection needs a far_stress, because the driver is rigid at first:"
+                f" 0 {unit} if nothing holds the far end that is set free"
             )
         if not self.driver_changes and (self.far_stress is not None or self.far_stress_rate != 0.0):
             noun = self.body.noun if self.body.has_waves else "slab"

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.bodies.layers import Layers
 from stickslip.foundation.constants import RIGID
-from stickslip.foundation.names import KINDS, TURNS, si_unit
+from stickslip.foundation.names import TURNS, si_unit
 from stickslip.foundation.quantities import Choice, NumberSeries, fields_of
 from stickslip.scenarios.facts import Fact
 
@@ -76,20 +76,25 @@ def _of_side(side: str, one: Layers, body: OfLayers, unit: str, first: str) -> I
         yield Fact(f"Z of {name}", impedance, unit, f"impedance {body.impedance_formula}; {two_way}")
     for i, share in enumerate(one.interface_reflections, 1):
         meet = f"where {body.part} {i} meets {body.part} {i + 1}"
-        yield Fact(f"r of {side}{i}, {i + 1}", share, "1", f"reflection of {KINDS[body.load_unit].loads} {meet}, from the contact")
+        yield Fact(
+            f"r of {side}{i}, {i + 1}", -share, "1", f"reflection of waves from the contact {meet}: below 0 where it is stiffer"
+        )
     of, share = ("sharp fronts" if body.has_machine else "waves"), (RIGID if one.driver_inertia > 0.0 else one.reflection)
     yield Fact(f"{side}r", share, "1", f"reflection of {of} at the driver{first}: -1 rigid, 0 matched, +1 dead load")
 
 
 def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:
-    """Return a warning about the cost of rest if every driver is rigid, for a law that sticks and a duration (s)."""
-    trips = duration / body.round_trip_time
-    if not (sticks and body.is_driven_rigidly and not body.has_drag and trips > MANY_PIECES):
+    """Return a warning about the cost of rest if waves never fade, for a law that sticks and a duration (s)."""
+    trips, heavy = duration / body.round_trip_time, any(one.driver_inertia > 0.0 for one in body.stacks)
+    if not (sticks and trips > MANY_PIECES and (heavy or (body.is_driven_rigidly and not body.has_drag))):
         return []
+    why = (
+        "a driver with a mass sends sharp waves back whole" if heavy else f"waves between {body.part}s and rigid drivers never fade"
+    )
+    cure = "set driver_inertia to 0" if heavy else "give drag, or a driver of finite impedance"
     return [
-        f"waves between {body.part}s and rigid drivers never fade, so rest is followed through every round trip of two cells: about"
-        f" {trips:.2g} pieces, each of {sum(body.cells.counts)} cells;"
-        " under long loading give drag, or a driver of finite impedance"
+        f"{why}, so rest is followed through every round trip of two cells: at least {trips:.2g} pieces, each of"
+        f" {sum(body.cells.counts)} cells; under long loading {cure}"
     ]
 
 

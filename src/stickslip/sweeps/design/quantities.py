@@ -78,7 +78,7 @@ def _recurrence(statistic: Callable[[NDArray[np.float64]], Any], least: int) -> 
 def _energies(solution: Solution) -> dict[str, float]:
     """Return the energies at the end of a run, kept for the last solution because several quantities ask for them in turn."""
     found = solution.energy(solution.history.duration)
-    return {str(name): float(values.item()) for name, values in found.items()}
+    return {str(name): float(values.item()) for name, values in found.items() if values.dims == ("time",)}  # not of each layer
 
 
 def _energy(part: str) -> Of:
