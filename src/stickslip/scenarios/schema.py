@@ -283,9 +283,8 @@ def _named(name: str) -> str:
 
 
 def _belongs(name: str, table: str) -> str:
-    """Return a hint if a key is known but belongs to another kind of body or law, or in another table; "" otherwise."""
-    kinds = KINDS.get(table, {}) if table in ("body", "friction") else {}
-    having = sorted(kind for kind, one in kinds.items() if name in keys_of(table, one))
+    """Return a hint if a key is known but belongs to another kind of body, or in another table; "" otherwise."""
+    having = sorted(kind for kind, body in BODIES.items() if name in keys_of(table, body)) if table == "body" else []
     if having:
         return f"of this kind there is none: it is of {', '.join(having)}"
     others = () if table.startswith("friction.") else (other for other in (*TABLES, CONTACT) if other not in ("friction", table))
