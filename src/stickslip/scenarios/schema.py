@@ -286,7 +286,7 @@ def _belongs(name: str, table: str) -> str:
     """Return a hint if a key is known but belongs to another kind of body, or in another table; "" otherwise."""
     having = sorted(kind for kind, body in BODIES.items() if name in keys_of(table, body)) if table == "body" else []
     if having:
-        return f"of this kind there is none: it is of {', '.join(having)}"
+        return f"it is a key of {', '.join(having)}, and not of this kind"
     others = () if table.startswith("friction.") else (other for other in (*TABLES, CONTACT) if other not in ("friction", table))
     for other in others:
         if any(name in keys_of(other, body) for body in KINDS["body"].values()):
