@@ -160,6 +160,41 @@ class OfLayers(WithWaves, ABC):
         return mass, damping
 
 
+class OfOneSide(OfLayers, ABC):
+    """What bodies have whose layers are on one side of the contact: their cells, and a driver that may be a machine."""
+
+    driver_impedance: Number
+    driver_inertia: Number
+    driver_integral_gain: Number
+    drag: OptionalNumbers
+    drag_step: Number
+
+    @property
+    @abstractmethod
+    def given(self) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
+        """The length of each layer, its inertia per length, and its wave speed."""
+
+    @cached_property
+    def cells(self) -> CellCut:
+        """The cells of equal travel time that the layers are cut into; an even number of them before a machine."""
+        lengths, density, speeds = self.given
+        longest = longest_cell(density, self.drag, self.drag_step)
+        found = cells_for(type(self).__name__, travel_times(lengths, speeds), self.travel_time_error, longest)
+        return even(found) if any(self._driver[1:]) else found
+
+    @cached_property
+    def stacks(self) -> tuple[Layers, ...]:
+        """The layers with their cells."""
+        _, density, speeds = self.given
+        driver, *machine = self._driver
+        drag = given_drag(self.drag)
+        return (Layers(tuple(density), tuple(speeds), self.cells.counts, self.cells.time, driver, drag, *machine),)
+
+    @property
+    def _driver(self) -> tuple[float, float, float]:
+        return driver_of(self.driver_impedance, self.driver_inertia, self.driver_integral_gain)
+
+
 class OfSlabs(OfLayers, ABC):
     """What slabs of layers have: stresses for loads, and a mass of the sliding face."""
 
@@ -185,7 +220,7 @@ class OfSlabs(OfLayers, ABC):
 
 
 @dataclass(frozen=True)
-class LayeredSlab(Declared, OfSlabs):
+class LayeredSlab(Declared, OfOneSide, OfSlabs):
     """A slab of layers in antiplane or in-plane shear, with friction at x = 0, and a driver behind the last layer.
 
     A wave is reflected where layers of different impedance rho c meet. The layers are cut into cells that a wave crosses in equal
@@ -221,23 +256,10 @@ class LayeredSlab(Declared, OfSlabs):
         check_stacks(self, [LISTS], self.drag_step)
         _ = self.cells
 
-    @cached_property
-    def cells(self) -> CellCut:
-        """The cells of equal travel time that the layers are cut into."""
-        times, longest = travel_times(self.thickness, self.wave_speed), longest_cell(self.density, self.drag, self.drag_step)
-        found = cells_for(type(self).__name__, times, self.travel_time_error, longest)
-        return even(found) if any(self._driver[1:]) else found
-
     @property
-    def _driver(self) -> tuple[float, float, float]:
-        return driver_of(self.driver_impedance, self.driver_inertia, self.driver_integral_gain)
-
-    @cached_property
-    def stacks(self) -> tuple[Layers, ...]:
-        """The layers with their cells."""
-        counts, time, drag = self.cells.counts, self.cells.time, given_drag(self.drag)
-        driver, *machine = self._driver
-        return (Layers(tuple(self.density), tuple(self.wave_speed), counts, time, driver, drag, *machine),)
+    def given(self) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
+        """The thickness, density and wave speed of each layer."""
+        return self.thickness, self.density, self.wave_speed
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
-from stickslip.bodies.cells import CellCut
 from stickslip.bodies.contract import check_body, check_driver
-from stickslip.bodies.layered import DRAG_STEP, OfLayers, check_stacks
-from stickslip.bodies.layers import Layers, cells_for, driver_of, even, given_drag, longest_cell, travel_times
+from stickslip.bodies.layered import DRAG_STEP, OfOneSide, check_stacks
 from stickslip.bodies.turning import (
     BIT_RADIUS,
     DRIVE,
@@ -42,7 +40,7 @@ def _from_zero(unit: str, meaning: str) -> NumberSeries:
 
 
 @dataclass(frozen=True)
-class SectionedString(Declared, OnBit, OfLayers):
+class SectionedString(Declared, OnBit, OfOneSide):
     """A string in torsion of several sections, such as drill pipe and collars, with a bit at x = 0 and a drive behind the last one.
 
     Lists go from the bit outwards. The bit resists with the torque S mu, where S is `normal_torque`, or `weight_on_bit` times
@@ -102,23 +100,10 @@ class SectionedString(Declared, OnBit, OfLayers):
         moments = (polar_moment_of(*both) for both in zip(self.outer_diameter, self.inner_diameter, strict=True))
         return tuple(rho * moment for rho, moment in zip(self.density, moments, strict=True))
 
-    @cached_property
-    def cells(self) -> CellCut:
-        """The cells of equal travel time that the sections are cut into."""
-        longest = longest_cell(self.inertia_per_length, self.drag, self.drag_step)
-        found = cells_for(type(self).__name__, travel_times(self.length, self.wave_speeds), self.travel_time_error, longest)
-        return even(found) if any(self._driver[1:]) else found
-
     @property
-    def _driver(self) -> tuple[float, float, float]:
-        return driver_of(self.driver_impedance, self.driver_inertia, self.driver_integral_gain)
-
-    @cached_property
-    def stacks(self) -> tuple[Layers, ...]:
-        """The sections with their cells, as layers."""
-        counts, time, drag = self.cells.counts, self.cells.time, given_drag(self.drag)
-        driver, *machine = self._driver
-        return (Layers(self.inertia_per_length, self.wave_speeds, counts, time, driver, drag, *machine),)
+    def given(self) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
+        """The length of each section, its inertia per length, and its wave speed."""
+        return self.length, self.inertia_per_length, self.wave_speeds
 
     def equivalent_block(self) -> RotatingBlock:
         """Return the rotating block to which the string is equivalent in slow motion, with the bit.

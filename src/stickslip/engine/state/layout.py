@@ -58,9 +58,7 @@ class Params(MemoryRecord):
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
     tone_frequency: float  # rad/s: angular frequency of the tone in an inflow (`LoadingSegment.tone`)
-    inflow_from: (
-        float  # s: phase of the first round trip from which a slab's inflow is added: h/c, or 0 where the ground under it moves
-    )
+    inflow_from: float  # s: phase of the first round trip from which an inflow is added: h/c, or 0 for a slab on moving ground
     pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
     pressing_frequency: float  # rad/s: angular frequency of that tone
     pressing_phase: float  # rad: phase of that tone at t = 0
