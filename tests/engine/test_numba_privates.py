@@ -20,6 +20,11 @@ MISSING = {
         "import numba.core.types as m; m.Function.get_call_type = lambda self, args: None",
         "<lambda> takes self, args",
     ),
+    "a pass": ("import numba.core.untyped_passes as m; del m.GenericRewrites", "cannot import name 'GenericRewrites'"),
+    "a function that is replaced": (
+        "import numba.core.typeinfer as m; del m.new_error_context",
+        "numba.core.typeinfer has no new_error_context",
+    ),
     "an attribute of an object": ("import numba, llvmlite.binding.ffi as m; del m.lib._lock._cblist", "_LLVMLock has no _cblist"),
 }
 
@@ -58,6 +63,51 @@ def test_a_numba_that_cannot_serve_gets_one_line() -> None:
     assert done.stderr.count("\n") == 1
     assert "cannot compile the engine" in done.stderr
     assert "pip install 'numba>=0.62,<0.69'" in done.stderr
+
+
+REFUSED = """
+from stickslip.engine.compile.kernels import kernel
+import numba.core.lowering as lowering, numba.core.typeinfer as typeinfer
+before = [lowering.new_error_context, typeinfer.new_error_context]
+
+@kernel
+def wrong(x):
+    return x.nothing
+
+try:
+    wrong(1.0)
+except Exception as error:
+    print("nothing" in str(error), [lowering.new_error_context, typeinfer.new_error_context] == before)
+"""
+
+
+def test_a_kernel_that_cannot_be_compiled_says_why_and_leaves_numba_as_it_was() -> None:
+    assert python(REFUSED).stdout == "True True\n"
+
+
+REFERENCES = """
+import gc, sys
+import numpy as np
+from stickslip.engine.compile.kernels import kernel
+
+@kernel
+def made(n):
+    rows = np.zeros(n)
+    for k in range(n):
+        rows = rows + np.ones(n)
+    return rows
+
+before = made(10_000)
+from numba.core.runtime import rtsys
+made(10_000)
+stats = rtsys.get_allocation_stats()
+print(stats.alloc - stats.free)
+"""
+
+
+def test_arrays_inside_kernels_are_given_back() -> None:
+    """One is alive, the first result: where a kernel holds counted references, the ends of its variables are written."""
+    assert python(REFERENCES, NUMBA_NRT_STATS="1").stdout == "1\n"
 
 
 FOLDS = """

@@ -55,21 +55,26 @@ if not UNCOMPILED:
     try:
         if os.environ.get("STICKSLIP_PLAIN_NUMBA", "") not in ("", "0"):
             raise ImportError("STICKSLIP_PLAIN_NUMBA is set")
+        import llvmlite.binding as llvm
         from llvmlite.binding import ffi
         from llvmlite.ir import Type
+        from numba.core import base, errors, lowering, typeinfer
         from numba.core.caching import NullCache
         from numba.core.codegen import JITCodeLibrary
         from numba.core.compiler import Compiler, CompileResult
-        from numba.core.ir import Inst, Var
+        from numba.core.ir import Assign, Inst, Loc, Var
+        from numba.core.lowering import Lower
+        from numba.core.postproc import PostProcessor, VariableLifetime
         from numba.core.runtime import rtsys
         from numba.core.runtime.context import NRTContext
         from numba.core.serialize import dumps
-        from numba.core.typed_passes import InlineOverloads, NopythonRewrites, PreLowerStripPhis
+        from numba.core.transforms import canonicalize_cfg
+        from numba.core.typed_passes import IRLegalization, NativeLowering, NoPythonBackend, NopythonTypeInference
         from numba.core.types import Function
         from numba.core.typing.context import BaseContext
-        from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, ReconstructSSA, WithLifting
+        from numba.core.untyped_passes import FixupArgs, GenericRewrites, IRProcessing, TranslateByteCode
 
-        LLVM_LOCK = ffi.lib._lock
+        LLVM_LOCK, WarningsFixer = ffi.lib._lock, errors.WarningsFixer  # type: ignore[attr-defined] # numba's stubs lack it
 
         _has(JITCodeLibrary, "finalize", "_optimize_final_module", "_get_module_for_linking", "_raise_if_finalized")
         _has(NullCache, "load_overload", "save_overload")
@@ -77,9 +82,21 @@ if not UNCOMPILED:
         _has(Compiler, "define_pipelines", "compile_extra")
         _has(rtsys, "initialize")
         _has(LLVM_LOCK, "_cblist")
+        _has(llvm, "get_process_triple")
+        _has(lowering, "new_error_context")
+        _has(typeinfer, "new_error_context")
+        _has(WarningsFixer, "catch_warnings")
+        _has(Lower, "typeof", "getvar", "_alloca_var", "_find_singly_assigned_variable")
         _takes(Function.get_call_type, "self", "context", "args", "kws")
         _takes(Type.get_abi_size, "self", "target_data", "context")
         _takes(BaseContext.resolve_getattr, "self", "typ", "attr")
+        _takes(BaseContext.resolve_value_type, "self", "val")
+        _takes(Lower.storevar, "self", "value", "name", "argidx")
+        _takes(PostProcessor.run, "self", "emit_dels", "extend_lifetimes")
+        _takes(VariableLifetime, "blocks")
+        _takes(base._has_loc, "fn")
+        _takes(canonicalize_cfg, "blocks")
+        _takes(Loc.strformat, "self")
         _takes(Inst._rec_list_vars, "self", "val")
         _takes(NRTContext._call_incref_decref, "self", "builder", "typ", "value", "funcname")
     except (ImportError, AttributeError, TypeError, ValueError) as error:
@@ -89,28 +106,39 @@ __all__ = [
     "LLVM_LOCK",
     "WHY_PLAIN",
     "AbstractTemplate",
+    "Assign",
     "AttributeTemplate",
     "BaseContext",
     "CompileResult",
     "Compiler",
+    "FixupArgs",
     "Function",
-    "InlineClosureLikes",
-    "InlineInlinables",
-    "InlineOverloads",
+    "GenericRewrites",
+    "IRLegalization",
+    "IRProcessing",
     "Inst",
     "JITCodeLibrary",
-    "LiteralUnroll",
+    "Loc",
+    "Lower",
     "NRTContext",
-    "NopythonRewrites",
+    "NativeLowering",
+    "NoPythonBackend",
+    "NopythonTypeInference",
     "NullCache",
-    "PreLowerStripPhis",
-    "ReconstructSSA",
+    "PostProcessor",
+    "TranslateByteCode",
     "Type",
     "Var",
-    "WithLifting",
+    "VariableLifetime",
+    "WarningsFixer",
+    "base",
+    "canonicalize_cfg",
     "dumps",
     "infer_getattr",
     "infer_global",
+    "llvm",
+    "lowering",
     "rtsys",
     "signature",
+    "typeinfer",
 ]

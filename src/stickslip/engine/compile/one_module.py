@@ -22,38 +22,59 @@ from stickslip.engine.compile.cache import CACHE, NOTICED, OTHERS, SLOW, Kept, t
 from stickslip.engine.compile.numba_privates import (
     Compiler,
     CompileResult,
-    InlineClosureLikes,
-    InlineInlinables,
-    InlineOverloads,
+    FixupArgs,
+    GenericRewrites,
+    IRLegalization,
+    IRProcessing,
     JITCodeLibrary,
-    LiteralUnroll,
-    NopythonRewrites,
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
     NullCache,
-    PreLowerStripPhis,
-    ReconstructSSA,
-    WithLifting,
+    TranslateByteCode,
     dumps,
     rtsys,
 )
-from stickslip.engine.compile.shortcuts import at_speed
+from stickslip.engine.compile.shortcuts import at_speed, is_counted
 
-NOT_NEEDED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites, WithLifting)
-"""Passes of numba's compiler that find nothing in our code: it has no closures, array expressions or `with` statements."""
-LEFT_TO_LLVM = (ReconstructSSA, PreLowerStripPhis)
-"""Passes that give a variable a name of its own for each assignment, and take these names back; LLVM does the same faster. Without
-them all values of a variable have one type. A whole number may become a float, but what begins as a constant of its module, such as
-`found = NOTHING`, stays that constant: numba refuses to compile another value."""
+PASSES = tuple(
+    one()
+    for one in (
+        TranslateByteCode,
+        FixupArgs,
+        IRProcessing,
+        GenericRewrites,
+        NopythonTypeInference,
+        IRLegalization,
+        NativeLowering,
+        NoPythonBackend,
+    )
+)
+"""Passes of numba's compiler that our code needs: it has no closures, array expressions, `with` statements or exceptions, and no
+branch that is never taken. The pass that gives a variable a name of its own for each assignment is left to LLVM, which does the
+same faster. Without it all values of a variable have one type. A whole number may become a float, but what begins as a constant of
+its module, such as `found = NOTHING`, stays that constant: numba refuses to compile another value."""
+
+
+class Passes:
+    """The order of passes, as numba's compiler asks for it."""
+
+    pipeline_name = "lean"
+    exec_times: ClassVar[dict[str, Any]] = {}
+
+    def run(self, state: Any) -> None:
+        """Compile what is in `state`. Ends of variables are written only if some hold references that are counted."""
+        for one in PASSES:
+            if not isinstance(one, IRLegalization) or any(is_counted(state.targetctx, kind) for kind in state.typemap.values()):
+                one.run_pass(state)
 
 
 class LeanCompiler(Compiler):  # type: ignore[misc] # numba is untyped
     """Numba's compiler without what our code does not need."""
 
     def define_pipelines(self) -> list[Any]:
-        """Return numba's passes except `NOT_NEEDED` and `LEFT_TO_LLVM`."""
-        (passes,) = super().define_pipelines()
-        passes.passes = [one for one in passes.passes if one[0] not in NOT_NEEDED + LEFT_TO_LLVM]
-        passes.finalize()
-        return [passes]
+        """Return the order of passes."""
+        return [Passes()]
 
     def compile_extra(self, function: Any) -> Any:
         """Compile a function, with all that it calls."""
