@@ -15,9 +15,14 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 
+def all_tests() -> bool:
+    """Say whether these are the tests of `make test-all`."""
+    return os.environ.get("STICKSLIP_TESTS") == "all"
+
+
 def examples(many: int) -> int:
-    """Return how many examples hypothesis draws: so many in `make test-all`, and a quarter of them in `make test`."""
-    return many if os.environ.get("STICKSLIP_TESTS") == "all" else max(many // 4, 2)
+    """Return how many examples are drawn: so many in `make test-all`, and a quarter of them in `make test`."""
+    return many if all_tests() else max(many // 4, 2)
 
 
 def mypy_on(file: Path, code: str) -> str:

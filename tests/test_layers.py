@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections import Counter
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -254,8 +255,8 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 def test_no_two_classes_have_one_name() -> None:
     """A name that grep finds once: annotations of one class do not read as those of another."""
     places = [(node.name, path.name) for path in FILES for node in ast.walk(tree_of(path)) if isinstance(node, ast.ClassDef)]
-    names = [name for name, _ in places]
-    assert [place for place in places if names.count(place[0]) > 1] == []
+    count = Counter(name for name, _ in places)
+    assert [place for place in places if count[place[0]] > 1] == []
 
 
 def test_every_folder_has_its_place() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -32,7 +33,7 @@ load = 0.0
 duration = "60 s"
 """
 RECORD = "time (s),slip (mm),torque (N m)\n" + "".join(f"{n / 10},{n},{5 + n % 3}\n" for n in range(40))
-SHORT = ("--duration", "4 s")
+SHORT = ("--duration", "2 s")
 SLIDES = re.compile(r"(?<!N )\bm/s\b|\d[kMG]? ?Pa\b|\bslab\b|\bG/h\b|\bslip \(m\)")
 """What is said of contacts that slide."""
 TAKEN = ""
@@ -96,8 +97,14 @@ OF_SECTIONS = {
 SCENARIOS = {"string": "drill-string", "sections": "pipe-and-collar", "disc": "disc.toml"}
 
 
-@pytest.mark.parametrize("body", SCENARIOS)
-@pytest.mark.parametrize("door", DOORS)
+LONG = {("run", "string"), ("field", "sections")}
+"""Doors and bodies whose pictures take seconds: those of the other string are drawn in every run of the tests."""
+
+
+@pytest.mark.parametrize(
+    ("door", "body"),
+    [pytest.param(*one, marks=pytest.mark.slow) if one in LONG else one for one in product(DOORS, SCENARIOS)],
+)
 def test_every_command_takes_what_turns_with_its_units_or_refuses_it_by_name(
     command: Callable[..., Outcome], door: str, body: str
 ) -> None:

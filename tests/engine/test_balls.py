@@ -108,7 +108,7 @@ def test_zero_polynomial_has_no_crossing() -> None:
     assert crossings(np.zeros(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)) == 0
 
 
-MANY = 600
+MANY = examples(1200)
 FRICTION = Ball.places["friction"].first
 """Place of the radius of friction in a `Ball`."""
 NOTHING = 1e100

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -131,21 +132,27 @@ KINDS = {
 
 
 @pytest.fixture(scope="module")
-def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Folders of a sound cache, by whether numba is used plainly."""
-    roots = {plain: tmp_path_factory.mktemp("sound") for plain in "01"}
-    for plain, root in roots.items():
+def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """A function that returns the folder of a sound cache, by whether numba is used plainly."""
+
+    @cache
+    def root_of(plain: str) -> Path:
+        root = tmp_path_factory.mktemp("sound")
         assert [kept(script, root, plain)[0] for _ in range(2)] == [0, 4]
-    return roots
+        return root
+
+    return root_of
 
 
 @pytest.mark.sampled(every=len(DAMAGE) * len(KINDS))
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: dict[str, Path]) -> None:
+def test_what_is_damaged_is_compiled_again(
+    kind: str, damage: str, tmp_path: Path, script: Path, sound: Callable[[str], Path]
+) -> None:
     plain, names, left, said_of = KINDS[kind]
     root = tmp_path / "root"
-    shutil.copytree(sound[plain], root)
+    shutil.copytree(sound(plain), root)
     before = files_in(root)
     damaged = sorted(root.glob(names))
     contents = [path.read_bytes() for path in damaged]
@@ -176,9 +183,9 @@ def test_without_a_cache_folder_each_process_compiles_for_itself(plain: str, scr
     ("names", "plain", "loaded"), [("keys", "0", 4), ("compiled-*", "0", 0), ("*/plain", "1", 2), ("*/plain/*", "1", 2)]
 )
 def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault(
-    names: str, plain: str, loaded: int, script: Path, tmp_path: Path, sound: dict[str, Path]
+    names: str, plain: str, loaded: int, script: Path, tmp_path: Path, sound: Callable[[str], Path]
 ) -> None:
-    shutil.copytree(sound[plain], tmp_path / "root")
+    shutil.copytree(sound(plain), tmp_path / "root")
     for path in (tmp_path / "root").glob(names):
         shutil.rmtree(path)
         path.touch()

@@ -78,7 +78,7 @@ def test_flash_heating_weakens_a_block_in_an_earthquake_and_swings_back() -> Non
     assert largest_difference(run, t, slip, states) < CLOSE
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize(
     "one", [two_states("ageing"), two_states("slip"), two_states("ageing", -0.003)], ids=["ageing", "slip", "b < 0"]
 )
@@ -96,7 +96,7 @@ def test_a_block_follows_two_states(one: Truth, way: float) -> None:
 LAB = ss.SpringBlock(1e3, 1.5e10, 1e8, damping=1e6)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 @BOTH_WAYS
 def test_a_block_that_is_launched_follows_one_state_through_a_stick_slip_event(evolution: str, way: float) -> None:
@@ -137,7 +137,7 @@ ON_A_SLAB: dict[str, tuple[Truth, float, tuple[float, ...]]] = {
 """Law, load (Pa) and states at first."""
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", ON_A_SLAB)
 def test_a_slab_follows_the_method_of_steps(name: str) -> None:
     one, load, at_first = ON_A_SLAB[name]

@@ -58,8 +58,10 @@ def test_code_that_moves_to_another_file_changes_the_key() -> None:
     assert key_of([TEXT, b""]) != key_of([b"", TEXT])
 
 
-def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path) -> None:
-    key = key_of(path.read_bytes() for path in compiled_sources())
+def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    few = compiled_sources()[:3]  # a key of all of them takes a second
+    monkeypatch.setattr("stickslip.engine.compile.cache.compiled_sources", lambda: few)
+    key = key_of(path.read_bytes() for path in few)
     assert remembered_key(tmp_path) == key
     (kept,) = tmp_path.iterdir()
     write_sealed(kept, b"0" * len(key))
@@ -129,9 +131,11 @@ def test_a_kernel_is_compiled_once_for_all_whole_numbers_that_are_written_in_cal
 
 
 @pytest.fixture(scope="module")
-def uncompiled() -> dict[str, dict[str, object]]:
-    """Results of all runs in a process that compiles nothing."""
-    command = [sys.executable, "-m", "tests.engine.uncompiled_runs"]
+def uncompiled(request: pytest.FixtureRequest) -> dict[str, dict[str, object]]:
+    """Results of the runs that tests of this session ask for, in a process that compiles nothing."""
+    cases = (getattr(item, "callspec", None) for item in request.session.items if request.path == item.path)
+    names = [case.params["name"] for case in cases if case is not None and "name" in case.params]
+    command = [sys.executable, "-m", "tests.engine.uncompiled_runs", *names]
     environment = os.environ | {"STICKSLIP_UNCOMPILED": "1"}
     answer = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     assert answer.returncode == 0, answer.stderr[-2000:]

@@ -12,6 +12,7 @@ from stickslip.paper import make
 from stickslip.paper.cases import Runs
 from stickslip.paper.claims import CLAIMS, ClaimVerdict
 from tests.docs.pages import PAPER, run_page
+from tests.limits import all_tests
 from tests.pictures import blank
 
 
@@ -19,7 +20,7 @@ from tests.pictures import blank
 def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, ClaimVerdict]]:
     """The folder that the command on the page about the paper writes, and its verdicts; the other examples of the page run, too.
 
-    Pictures that are PNG are left blank: those in SVG are the same figures.
+    Pictures are left blank: `tests/figures` draws such figures, and with the slow tests those of the page are drawn, too.
     """
     home, steps, found = tmp_path_factory.mktemp("page"), list[str](), dict[int, ClaimVerdict]()
 
@@ -32,7 +33,12 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, Clai
         return out / made.name
 
     claims = {number: partial(kept, number, measure) for number, measure in CLAIMS.items()}
-    with contextlib.chdir(home), patch("stickslip.paper.make", make_deep), patch.dict(CLAIMS, claims), blank("png"):
+    with (
+        contextlib.chdir(home),
+        patch("stickslip.paper.make", make_deep),
+        patch.dict(CLAIMS, claims),
+        blank(*["png"] * all_tests()),
+    ):
         run_page(PAPER, whole=True)
     assert len(steps) == 8 + 20 + 2
     return home / "paper", found

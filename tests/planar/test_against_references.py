@@ -41,7 +41,7 @@ def slip_at_the_end(case: PlanarCase, duration: float, steps: int) -> np.ndarray
     return np.asarray(run.now().slip)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.slow
 @pytest.mark.parametrize("driver", [inf, 0.0], ids=["rigid", "dead load"])
 def test_a_patch_slips_as_in_the_volume(driver: float) -> None:
     """To 5e-4 of the largest slip, with errors that fall as the square of the step, or nearly: nodes begin and end to slip."""

@@ -28,6 +28,12 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture(scope="module")
+def local() -> Iterator[Client]:
+    with cluster(workers=1) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
 def two_workers() -> Iterator[Client]:
     with cluster(workers=2) as client:
         yield client
@@ -92,7 +98,7 @@ def test_chunks_that_kill_their_workers_hold_up_no_others(two_workers: Client, m
     assert found == {number: number**2 for number in (*range(5), *range(10, 40))}
 
 
-def test_few_chunks_are_in_flight(two_workers: Client) -> None:
+def test_few_chunks_are_in_flight(local: Client) -> None:
     asked = []
 
     def chunks() -> Iterator[tuple[int, int]]:
@@ -100,15 +106,15 @@ def test_few_chunks_are_in_flight(two_workers: Client) -> None:
             asked.append(number)
             yield number, number
 
-    for done, _ in enumerate(stream(two_workers, square, chunks())):
+    for done, _ in enumerate(stream(local, square, chunks())):
         assert len(asked) <= done + 8
     assert len(asked) == 50
 
 
-def test_a_worker_of_another_version_is_refused(two_workers: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_of_another_version_is_refused(local: Client, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.sweeps.execution.cluster.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="another version of stickslip"):
-        list(stream(two_workers, square, [(1, 1)]))
+        list(stream(local, square, [(1, 1)]))
 
 
 SUICIDAL = """
@@ -191,10 +197,10 @@ def test_bad_numbers_of_workers_are_refused(options: dict[str, int]) -> None:
         ss.sweep("fig6-slab", VARY, **options)  # type: ignore[arg-type]
 
 
-def test_a_local_cluster_refuses_who_has_no_key(two_workers: Client) -> None:
+def test_a_local_cluster_refuses_who_has_no_key(local: Client) -> None:
     from distributed import Client, Security
 
-    address = two_workers.scheduler.address
+    address = local.scheduler.address
     assert address.startswith("tls://127.0.0.1:")
     with pytest.raises(ss.InputError, match="no dask scheduler answers"):
         ss.sweep("fig6-slab", VARY, scheduler=address)
@@ -205,6 +211,21 @@ def test_a_local_cluster_refuses_who_has_no_key(two_workers: Client) -> None:
         Client(address, security=Security.temporary(), timeout=2.0)
 
 
+OPEN = """
+import json, sys, time
+from pathlib import Path
+from distributed import LocalCluster
+
+where = {"protocol": "tcp", "host": "127.0.0.1", "dashboard_address": None}
+with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, **where) as found:
+    file = Path(sys.argv[1])
+    file.with_suffix(".part").write_text(json.dumps({"address": found.scheduler_address}))
+    file.with_suffix(".part").rename(file)
+    time.sleep(600)
+"""
+"""A scheduler without keys, and its worker in the same process, which writes a scheduler file."""
+
+
 def slowly(number: int) -> int:
     """Take a while, so that not all is done when the scheduler goes."""
     time.sleep(0.3)
@@ -213,27 +234,21 @@ def slowly(number: int) -> int:
 
 def test_a_scheduler_that_is_lost_gives_one_line(tmp_path: Path) -> None:
     file = tmp_path / "scheduler.json"
-    dask = [sys.executable, "-m", "dask"]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    start = [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
-    scheduler = subprocess.Popen(start, **quiet)
-    worker = subprocess.Popen([*dask, "worker", "--scheduler-file", str(file), "--no-nanny", "--nthreads", "1"], **quiet)
+    scheduler = subprocess.Popen([sys.executable, "-c", OPEN, str(file)])
     try:
         for _ in range(600):
             if file.exists():
                 break
             time.sleep(0.1)
         with cluster(str(file)) as client:
-            client.wait_for_workers(1, timeout=60)
             results = stream(client, slowly, ((number, number) for number in range(100)))
             next(results)
             scheduler.kill()
             with pytest.raises(ChunksLostError, match="the dask scheduler is lost"):
                 list(results)
     finally:
-        for process in (scheduler, worker):
-            process.kill()
-            process.wait()
+        scheduler.kill()
+        scheduler.wait()
 
 
 def _listening(process: int) -> set[str]:
@@ -244,17 +259,17 @@ def _listening(process: int) -> set[str]:
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="needs Linux")
-def test_a_local_cluster_listens_on_the_loopback_address_only(two_workers: Client) -> None:
+def test_a_local_cluster_listens_on_the_loopback_address_only(local: Client) -> None:
     from distributed import Nanny
 
-    processes = [os.getpid(), *two_workers.run(os.getpid).values()]
-    assert all(isinstance(nanny, Nanny) for nanny in two_workers.cluster.workers.values())
+    processes = [os.getpid(), *local.run(os.getpid).values()]
+    assert all(isinstance(nanny, Nanny) for nanny in local.cluster.workers.values())
     assert set().union(*(_listening(process) for process in processes)) == {"0100007F"}
 
 
-def test_a_local_cluster_shows_no_pages(two_workers: Client) -> None:
+def test_a_local_cluster_shows_no_pages(local: Client) -> None:
     with pytest.raises(HTTPError, match="404"):
-        urlopen(f"http://127.0.0.1:{two_workers.cluster.scheduler.http_server.port}/info/main/workers.html", timeout=10)
+        urlopen(f"http://127.0.0.1:{local.cluster.scheduler.http_server.port}/info/main/workers.html", timeout=10)
 
 
 def test_without_cryptography_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

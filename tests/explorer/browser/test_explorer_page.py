@@ -15,6 +15,7 @@ from playwright.sync_api import expect
 from stickslip.explorer.model.tour import TOUR
 from stickslip.scenarios import read_scenario
 from tests.explorer.browser.harness import PATIENCE, Served, Watched
+from tests.limits import examples
 
 PANELS = {"law", "contact", "shape", "slip", "rate", "traction", "field", "energy"}
 SIZES = {"laptop": (1280, 800), "projector": (1920, 1080), "phone": (390, 844)}
@@ -147,6 +148,7 @@ def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
     assert shown.cursor() == before
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("name", "legend", "colour"),
     [("stress", "±80.4 MPa", "blue"), ("displacement", "±23.4 m", "red"), ("velocity", "±4.1 m/s", "red")],
@@ -191,14 +193,16 @@ def test_a_strip_is_drawn_and_a_click_goes_to_its_run(shown: Shown) -> None:
 def test_the_tour_walks_through_the_paper(shown: Shown) -> None:
     page = shown.page
     page.get_by_role("button", name="Tour", exact=True).click()
-    for k, step in enumerate(TOUR, 1):
+    walked = TOUR[: examples(12)]  # the tour from the disk goes through all of it
+    for k, step in enumerate(walked, 1):
         page.locator("h2", has_text=f"{k} of 8: {step.title}").wait_for()
         expect(page.locator(".told")).to_have_text(step.text)
         page.locator(f"[data-look][data-panel={step.panel}]").wait_for()
         assert page.locator("[data-look]").count() == 1
         shown.until_near("model('cursor:slip').location", step.cursor, within=1e-6)
         shown.until(f"model('axis:strip_x@strip_slip').axis_label?.startsWith('{step.strip.parameter}')")
-        page.get_by_role("button", name="Next step").click() if k < len(TOUR) else None
+        page.get_by_role("button", name="Next step").click() if k < len(walked) else None
+    page.get_by_role("button", name=f"Step 8: {TOUR[-1].title}").click()
     expect(page.get_by_role("button", name="Next step")).to_be_disabled()
     page.get_by_role("button", name="Close the tour").click()
     page.locator("section.step").wait_for(state="hidden")
