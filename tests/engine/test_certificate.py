@@ -10,6 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.engine.state.layout import Counts
+from stickslip.engine_input.prepare import SAFETY, first_disc
 from tests.engine.certified_runs import RUNS, coefficient, duration, shortfall
 
 F = ss.friction
@@ -48,6 +50,15 @@ def test_a_step_that_is_bent_by_a_thousandth_exceeds_its_bound(make: Callable[[i
     real, bound = shortfall(replace(run.history, store=wrong), coefficient(problem))
     slips = (size > 1e-6 * size.max())[wrong.mode != 0]
     assert (real > bound)[slips].mean() > 0.5
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
+def test_the_first_disc_is_the_one_that_serves_the_run(rtol: float) -> None:
+    """It is within one of the disc on which the last step of the transit of Fig. 5 was proven."""
+    scenario = ss.load_scenario("fig5-slab-reconstructed")
+    run = ss.simulate(scenario.problem, scenario.problem.round_trip_time, rtol)
+    assert run.checkpoint is not None
+    assert abs(Counts(run.checkpoint.count).disc - int(first_disc(rtol * SAFETY))) <= 1
 
 
 # ---- what follows from it -------------------------------------------------------------------------------------------------

@@ -15,7 +15,16 @@ from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.memory.addresses import ahead, floats, integers
 from stickslip.engine.memory.pointers import rows_of
 from stickslip.engine.memory.simd import WIDTH, chosen, store_across
-from stickslip.engine.series.polynomial import bound_below, magnitude, moment, multiply, powers_of, total
+from stickslip.engine.series.polynomial import (
+    bound_below,
+    bound_of_slope,
+    bounds_on_disc,
+    magnitude,
+    moment,
+    multiply,
+    powers_of,
+    total,
+)
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at
 from stickslip.engine.state.layout import TERMS
@@ -33,6 +42,8 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "moment": lambda c: moment(c, 2),
     "bound": lambda c: bound_below(c),
     "length": lambda c: length_at(c, 1e-9, 0.5),
+    "slope on a disc": lambda c: bound_of_slope(c, abs(c[4])),
+    "value and mean on a disc": lambda c: bounds_on_disc(c, abs(c[4]))[0] + 8.0 * bounds_on_disc(c, abs(c[4]))[1],
 }
 
 WITH_MASS = ("cos", "exp", "expm1", "arcsinh", "product", "log1p")
@@ -98,13 +109,14 @@ def test_comparisons_choose_lane_by_lane() -> None:
         rows_of(out)[1] = chosen(a == b, 1.0, b)
         return (a < b) | (a <= 0.0)
 
-    block, out = aligned(2), aligned(2)
-    block[0], block[1] = [1.0, -1.0, 3.0, 2.0, np.nan, 0.0, 7.0, 2.5], [0.0, 2.0, 0.0, 2.0, 1.0, np.nan, 9.0, 2.0]
-    bits = side_by_side(block.ctypes.data, out.ctypes.data)
-    a, b = block
-    assert np.array_equal(out[0], np.where((a > b) & ~(a >= 3.0), a, -b), equal_nan=True)
-    assert np.array_equal(out[1], np.where(a == b, 1.0, b), equal_nan=True)
-    assert bits == sum(int(x) << n for n, x in enumerate((a < b) | (a <= 0.0)))
+    numbers = np.array([[1.0, -1.0, 3.0, 2.0, np.nan, 0.0, 7.0, 2.5], [0.0, 2.0, 0.0, 2.0, 1.0, np.nan, 9.0, 2.0]])
+    for first in range(0, 8, WIDTH):
+        block, out = aligned(2), aligned(2)
+        block[:] = a, b = numbers[:, first : first + WIDTH]
+        bits = side_by_side(block.ctypes.data, out.ctypes.data)
+        assert np.array_equal(out[0], np.where((a > b) & ~(a >= 3.0), a, -b), equal_nan=True)
+        assert np.array_equal(out[1], np.where(a == b, 1.0, b), equal_nan=True)
+        assert bits == sum(int(x) << n for n, x in enumerate((a < b) | (a <= 0.0)))
 
 
 def test_rows_in_lanes_are_stored_across_as_columns() -> None:

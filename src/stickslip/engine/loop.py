@@ -51,7 +51,7 @@ from stickslip.engine.contact_step.stick_or_slip import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_fold_piece, leave_moving_branch
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import EnginePart, Incoming, Integers, NearFold, Stop
+from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Stop
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
@@ -84,6 +84,8 @@ def run_until(table: Integers, last_trip: int, last_phase: float, passes: int) -
     run = borrow(table)
     run.k.damping, run.k.normal = run.params.damping, run.params.normal
     run.k.inertia, run.k.stiffness = run.params.inertia, run.params.stiffness
+    if run.counts.disc == NO_DISC:
+        run.counts.disc = int(run.params.first_disc)
     run.missing = missing_part(run)
     if run.missing != EnginePart.NONE:
         return Stop.NEED_PART

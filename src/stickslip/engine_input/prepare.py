@@ -13,6 +13,7 @@ import numpy as np
 from stickslip.contact.rules.selection import rule_of
 from stickslip.contact.uniqueness import folds_not_followed
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
+from stickslip.engine.contact_step.certificate import RATIOS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
@@ -53,6 +54,16 @@ def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
     """Set the numbers that depend on the tolerance, in `Setup.params` or in one with a column for each member."""
     set_length(params, shortest)
     params.tolerance, params.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
+    params.first_disc = first_disc(rtol * SAFETY)
+
+
+def first_disc(tolerance: Any) -> Any:
+    """Return the disc on which runs with these local tolerances (1) try to prove their first step, an index of RATIOS.
+
+    The last terms of a step are at the tolerance, and terms grow with the radius: near this one they are as large as the slip rate.
+    """
+    reach = np.asarray(tolerance) ** (-1.0 / (at.TERMS - 1))
+    return np.argmin(abs(np.log(RATIOS) - np.log(reach)[..., None]), axis=-1)
 
 
 @lru_cache(maxsize=32)
@@ -238,9 +249,6 @@ def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
 
 NOT_VARYING = LoadingSegment.table(1)
 """Table `Setup.loading` of a loading that does not vary."""
-FIRST_DISC = 3
-"""Disc on which a run tries to prove its first step, as an index of `certificate.RATIOS`: one that serves most steps at the default
-tolerance."""
 LARGEST_TURN, MOST_PARTS = 1.0, 100_000
 """A sine's Taylor series is right to rounding up to this phase (rad); largest number of parts of a round trip."""
 
@@ -383,6 +391,6 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
         state.state_now[n] = -value if count.mode < 0 and n in problem.friction.reverses else value
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
     count.folds_move = count.folds_follow_slip = problem.folds_move
-    count.disc = FIRST_DISC
+    count.disc = at.NO_DISC
     count.knots_in_rate = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.contact_step.certificate import RATIOS
 from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
@@ -206,6 +207,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
     yield "engine_count segment", not 0 <= count.trip_segment <= count.segment < len(setup.loading)
     yield "engine_count wave_shift", not 0 <= count.wave_shift <= at.NEVER
     yield "engine_count creep_leaps", not 0 <= count.creep_leaps <= leaps
+    yield "engine_count disc", not at.NO_DISC <= count.disc < len(RATIOS)
     yield "engine_count degree", not 0 <= count.degree < at.TERMS
 
 

@@ -13,6 +13,7 @@ from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact_step.certificate import RATIOS, SHRUNK, SHRUNK_SLOPE
 from stickslip.engine.memory.pointers import all_lanes, one_lane
 from stickslip.engine.memory.records import MemoryRecord, floats_inside, inside
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series.polynomial import powers_of
 from stickslip.engine.state.layout import TERMS, Ball, Floats, HistoryPiece, LawValue, SeriesInput, State
 from stickslip.engine.state.workspace import Run
@@ -37,8 +38,7 @@ class LaneBlock(MemoryRecord):
     stiffness: float  # N/m: stiffness of a block's spring; 0 for a slab
     tolerance: float  # 1: local error allowed to the step
     slip_shift: float  # m: as in `LawPiece`
-    disc_powers: Floats = floats_inside(TERMS)  # powers of the radius of the disc on which a step is proven, in units
-    ratio: float  # 1: radius of that disc, in lengths of the step
+    ratio: float  # 1: radius of the disc on which a step is proven, in lengths of the step
     shrunk: float  # 1: ratio of the residual on the step to that on the disc
     disc: float  # 1: number of the disc that served the step before
     share: float  # 1: bound on the residual of the step, as a share (`contact_step.certificate`)
@@ -54,7 +54,7 @@ class LaneBlock(MemoryRecord):
     rate_end: float  # m/s: slip rate at its end
     at_end: Floats = floats_inside(2)  # m, m/s: slip of the law and slip rate there
     to: float  # 1: place xi at which it ends
-    nowhere: Floats = floats_inside(8)  # room for the history of a lane that takes no step
+    nowhere: Floats = floats_inside(HistoryPiece.total // WIDTH + 1)  # room for the history of a lane that takes no step
     targets: float  # addresses of each lane's next free piece of the history
     constants: Floats = floats_inside(0)  # constants of the law, as many as it has
 

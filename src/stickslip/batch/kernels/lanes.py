@@ -58,12 +58,12 @@ from stickslip.engine.memory.simd import WIDTH, chosen, first_of, store_across
 from stickslip.engine.series.polynomial import (
     NONE,
     bound_below,
+    bound_of_slope,
     moment,
     multiply,
     powers_of,
     scale_low,
     shift_low,
-    slope_on_disc,
     total,
 )
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
@@ -154,7 +154,7 @@ def step_under(formula: Integers, side: Side) -> None:
             lane_0[lane].disc, waits[lane], taking = run.counts.disc, Waits.SLIPPING, taking | 1 << lane
     choose_length(formula, LaneStep(table, block, taking, moves, degree))
     reached = settle(lanes)
-    calculate(lanes, degree)
+    calculate(lanes, taking)
     sound = check_end(lanes, formula[2], moves, degree)
     move(lanes, reached, is_block)
     store(lanes, targets)
@@ -236,22 +236,30 @@ def begin(lanes: LaneBlock, degree: int) -> None:
 
 @inlined
 def prove(lanes: LaneBlock, radii: int, moves: bool, degree: int) -> None:
-    """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`."""
-    powers = lanes.disc_powers
-    powers_of(lanes.ratio * lanes.length, powers)
-    put_discs(lanes.k, lanes.jet, powers, lanes.ball)
+    """Calculate in all lanes what a step may miss, as `certificate.share_at` does; with inertia if the contact `moves`."""
+    stretch(lanes)
+    put_discs(lanes.k, lanes.rate, lanes.ratio, lanes.length, lanes.ball)
     call_radii(radii, numbers_of(lanes.constants), numbers_of(lanes.jet), numbers_of(lanes.ball))
-    force = force_on_disc(lanes.k, lanes.ball, load_on_disc(lanes.load_along_slip, powers, degree))
-    size = lanes.tolerance * size_of_rate(lanes.jet, lanes.length)
+    force = force_on_disc(lanes.k, lanes.ball, load_on_disc(lanes.load_along_slip, lanes.powers, lanes.ratio, degree))
+    size = lanes.tolerance * size_of_rate(lanes.rate)
     if moves:
-        missed = lanes.length * (abs(lanes.k.speed) / lanes.k.inertia * force + slope_on_disc(lanes.jet, powers)) * lanes.shrunk
+        missed = (
+            lanes.length * abs(lanes.k.speed) / lanes.k.inertia * force + bound_of_slope(lanes.rate, lanes.ratio)
+        ) * lanes.shrunk
         resistance = lanes.k.inertia / (lanes.length * abs(lanes.k.speed))
     else:
         missed = force / lanes.k.damping * lanes.shrunk
         resistance = lanes.k.damping
     lanes.share = missed / max(size, SMALLEST)
-    lanes.state.residual = resistance * lanes.share * lanes.tolerance * size_of_rate(lanes.jet, lanes.length)
+    lanes.state.residual = resistance * lanes.share * lanes.tolerance * size_of_rate(lanes.rate)
     lanes.state.unbalanced = 0.0
+
+
+@inlined
+def stretch(lanes: LaneBlock) -> None:
+    """Calculate the powers of the steps' lengths, and the slip rate over the steps, as `step_events.stretch` does."""
+    powers_of(lanes.length, lanes.powers)
+    multiply(lanes.jet, lanes.powers, lanes.rate)
 
 
 @kernel
@@ -278,14 +286,14 @@ def settle(lanes: LaneBlock) -> int:
 
 
 @inlined
-def calculate(lanes: LaneBlock, degree: int) -> None:
-    """Calculate slip rate and load over the step, slip in it, and the slip rate at its end.
+def calculate(lanes: LaneBlock, taking: int) -> None:
+    """Calculate slip rate and load over the step that some lanes are taking, slip in it, and the slip rate at its end.
 
     The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
     """
     length, rate, load = lanes.length, lanes.rate, lanes.row.load
-    powers_of(length, lanes.powers)
-    multiply(lanes.jet, lanes.powers, rate)
+    if (length == lanes.powers[1]) & taking != taking:
+        stretch(lanes)
     multiply(lanes.local, lanes.powers, load)
     straight = lanes.k.speed * length * moment(rate, 1)
     lanes.grown = straight + lanes.k.bend * length * length * moment(rate, 2)

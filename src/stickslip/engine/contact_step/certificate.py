@@ -26,7 +26,8 @@ from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import constants_of, formula_at
 from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
-from stickslip.engine.series.polynomial import RECIPROCAL, powers_of, size_on_disc, slope_on_disc
+from stickslip.engine.memory.simd import fused
+from stickslip.engine.series.polynomial import bound_of_slope, bounds_on_disc, multiply, powers_of
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop
 from stickslip.engine.state.workspace import Run
@@ -70,29 +71,38 @@ rounding."""
 
 
 @inlined
-def put_discs(k: SeriesInput, jet: Floats, powers: Floats, ball: Ball) -> None:
-    """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of its radius (in units).
+def put_discs(k: SeriesInput, terms: Floats, ratio: float, length: float, ball: Ball) -> None:
+    """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`.
 
-    With a bend, the integral of a term of order n >= 1 is at most a third of the term times the square of the radius.
+    `terms` are those of the slip rate at the end of a step of the given length (in units); the radius of the disc is `ratio` times
+    that length. With a bend, the integral of a term of order n >= 1 is at most a third of the term times the square of the radius.
     """
-    a, b = abs(jet[1]) * powers[1], abs(jet[2]) * powers[2]
-    p, q = RECIPROCAL[2] * a, RECIPROCAL[3] * b
-    for n in range(3, TERMS - 1, 2):
-        x, y = abs(jet[n]) * powers[n], abs(jet[n + 1]) * powers[n + 1]
-        a, b, p, q = a + x, b + y, p + RECIPROCAL[n + 1] * x, q + RECIPROCAL[n + 2] * y
-    start, rate, radius = abs(jet[0]), a + b, powers[1]
+    (rate, mean), start, radius = bounds_on_disc(terms, ratio), abs(terms[0]), ratio * length
     ball.rate = rate
-    bent = abs(k.bend) * radius * (0.5 * start + (1.0 / 3.0) * rate)
-    ball.slip = radius * (abs(k.speed) * (start + (p + q)) + bent)
-    ball.at_slip, ball.at_rate = k.slip, jet[0]  # for formulas that keep no centres beside the series
+    ball.slip = radius * (abs(k.speed) * (start + mean) + abs(k.bend) * radius * (0.5 * start + (1.0 / 3.0) * rate))
+    ball.at_slip, ball.at_rate = k.slip, terms[0]  # for formulas that keep no centres beside the series
 
 
 @inlined
-def load_on_disc(load: Floats, powers: Floats, degree: int) -> float:
-    """Return how far a load of the given degree can be from its value at the centre of a disc (Pa or N)."""
+def load_on_disc(load: Floats, powers: Floats, ratio: float, degree: int) -> float:
+    """Return how far a load of the given degree can be from its value at the centre of a disc (Pa or N).
+
+    `powers` are those of a length (in units), and the radius of the disc is `ratio` times that length.
+    """
     if degree <= 1:
-        return abs(load[1]) * powers[1]
-    return size_on_disc(load, powers, 1)
+        return abs(load[1]) * powers[1] * ratio
+    return variation_on_disc(load, powers, ratio)
+
+
+@inlined
+def variation_on_disc(c: Floats, powers: Floats, ratio: float) -> float:
+    """Return a bound on |p - c_0| on a disc, whose radius is `ratio` times the length that has the given powers."""
+    square = ratio * ratio
+    power, found = square, fused(ratio, abs(c[2]) * powers[2], abs(c[1]) * powers[1])
+    for n in range(3, TERMS - 1, 2):
+        found = fused(power, fused(ratio, abs(c[n + 1]) * powers[n + 1], abs(c[n]) * powers[n]), found)
+        power = power * square
+    return ratio * found
 
 
 @inlined
@@ -102,10 +112,9 @@ def force_on_disc(k: SeriesInput, ball: Ball, load: float) -> float:
 
 
 @inlined
-def size_of_rate(jet: Floats, length: float) -> float:
-    """Return a size of the slip rate (m/s) over a step of the given length (in units)."""
-    square = length * length
-    return max(max(abs(jet[0]), length * abs(jet[1])), max(square * abs(jet[2]), square * length * abs(jet[3])))
+def size_of_rate(terms: Floats) -> float:
+    """Return a size of the slip rate (m/s) over a step, from the terms of its series at the end."""
+    return max(max(abs(terms[0]), abs(terms[1])), max(abs(terms[2]), abs(terms[3])))
 
 
 @inlined
@@ -171,30 +180,44 @@ def load_at_end(load: Floats, powers: Floats, degree: int) -> float:
 
 
 @kernel
+def share_at(run: Run, length: float) -> float:
+    """Return the bound, as a share, on the residual of a step of the given length (in units), by the disc of the step before.
+
+    Leaves the powers of the length in run.powers, and the terms of the slip rate at the end of the step where it will be kept.
+    """
+    powers_of(length, run.powers)
+    multiply(run.jet, run.powers, terms_of(run))
+    return share_on_disc(run, length, run.counts.disc)
+
+
+@inlined
+def terms_of(run: Run) -> Floats:
+    """Return the room for the terms (m/s) of the slip rate's series at the end of a step: the next free row of the history."""
+    return run.history[run.counts.length].rate
+
+
+@kernel
 def share_on_disc(run: Run, length: float, disc: int) -> float:
-    """Return the bound, as a share, on the residual of a step of the given length (in units), by disc number `disc` of RATIOS."""
-    powers = run.spare
-    powers_of(RATIOS[disc] * length, powers)
-    piece = run.counts.piece
-    put_discs(run.k, run.jet, powers, run.ball)
-    put_states(run, powers)
+    """Return what `share_at` does after it was called for this length, by disc number `disc` of RATIOS."""
+    terms, ratio, piece = terms_of(run), RATIOS[disc], run.counts.piece
+    put_discs(run.k, terms, ratio, length, run.ball)
+    put_states(run, ratio)
     call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
-    load = load_on_disc(run.load_along_slip, powers, run.counts.degree)
-    force = force_on_disc(run.k, run.ball, load)
+    force = force_on_disc(run.k, run.ball, load_on_disc(run.load_along_slip, run.powers, ratio, run.counts.degree))
     if run.counts.has_inertia == 1:
-        missed = length * (abs(run.k.speed) / run.k.inertia * force + slope_on_disc(run.jet, powers)) * SHRUNK_SLOPE[disc]
+        missed = (length * abs(run.k.speed) / run.k.inertia * force + bound_of_slope(terms, ratio)) * SHRUNK_SLOPE[disc]
     else:
         missed = force / resistance(run) * SHRUNK[disc]
-    share = missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
+    share = missed / max(run.params.tolerance * size_of_rate(terms), SMALLEST)
     return min(HOPELESS, share)  # also if it is not a number
 
 
 @inlined
-def put_states(run: Run, powers: Floats) -> None:
-    """Put radii and centres of the states on a disc into `ball`, from the powers of its radius (in units)."""
+def put_states(run: Run, ratio: float) -> None:
+    """Put radii and centres of the states on a disc into `ball`; its radius is `ratio` times the length that has run.powers."""
     for n in range(run.counts.states):
         series = ahead(run.state_jet, TERMS * n)
-        run.ball.state[n], run.ball.at_state[n] = size_on_disc(series, powers, 1), series[0]
+        run.ball.state[n], run.ball.at_state[n] = variation_on_disc(series, run.powers, ratio), series[0]
 
 
 @inlined
@@ -222,7 +245,7 @@ def proven_length(run: Run, length: float) -> float:
     The disc of the step before is tried first. A step that is nearly proven is shortened at once; if that does not help, a better
     disc is sought. If no length can be proven the run ends: `breach` is OFF_THE_LAW.
     """
-    share = share_on_disc(run, length, run.counts.disc)
+    share = share_at(run, length)
     attempt = 0
     while not share <= allowed(run) and attempt < ATTEMPTS:
         enough = allowed(run) * (NEAR if attempt == 0 else 1.0)
@@ -230,7 +253,7 @@ def proven_length(run: Run, length: float) -> float:
             share = least_share(run, length, share, enough)
         if not share <= allowed(run):
             length = shortened(length, share, allowed(run))
-            share = share_on_disc(run, length, run.counts.disc)
+            share = share_at(run, length)
         attempt += 1
     if not share <= allowed(run):
         run.counts.breach = Stop.OFF_THE_LAW
@@ -264,7 +287,7 @@ def least_share(run: Run, length: float, share: float, enough: float) -> float:
 def note_residual(run: Run, length: float, share: float) -> None:
     """Note the bound on the residual load (Pa or N) of a step of the given length (in units), from its share."""
     load = run.k.inertia / (length * abs(run.k.speed)) if run.counts.has_inertia == 1 else resistance(run)
-    run.state.residual = load * share * run.params.tolerance * size_of_rate(run.jet, length)
+    run.state.residual = load * share * run.params.tolerance * size_of_rate(terms_of(run))
 
 
 # ---- bits next to a fold -----------------------------------------------------------------------------------------------------
@@ -276,15 +299,15 @@ def bound_straight_bit(run: Run, length: float, grown: float, rate_end: float) -
 
     The contact equation holds at the beginning of the bit, and at its end up to the residual measured there. With two zeros, at 0
     and 1, Schwarz's lemma gives |g| <= M x (1 - x) / (r^2 - x), at most M / (4 (r^2 - 1)). The bit is `length` units long, `grown`
-    is the slip (m) in it and `rate_end` the slip rate (m/s) at its end.
+    is the slip (m) in it and `rate_end` the slip rate (m/s) at its end; run.powers must hold the powers of its length, and the
+    next free row of the history the slip rate.
     """
-    piece, powers, least, ratio = run.counts.piece, run.spare, math.inf, FIRST_RATIO
+    piece, least, ratio = run.counts.piece, math.inf, FIRST_RATIO
     for _ in range(STRAIGHT_DISCS):
-        powers_of(ratio * length, powers)
-        put_discs(run.k, run.jet, powers, run.ball)
-        put_states(run, powers)
+        put_discs(run.k, terms_of(run), ratio, length, run.ball)
+        put_states(run, ratio)
         call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
-        force = force_on_disc(run.k, run.ball, load_on_disc(run.load_along_slip, powers, run.counts.degree))
+        force = force_on_disc(run.k, run.ball, load_on_disc(run.load_along_slip, run.powers, ratio, run.counts.degree))
         bound = force / (4.0 * (ratio * ratio - 1.0))
         if bound < least:
             least = bound

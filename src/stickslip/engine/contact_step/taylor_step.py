@@ -22,7 +22,14 @@ from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, note_jump
 from stickslip.engine.contact.pressing import states_ahead
 from stickslip.engine.contact.stiffness import judge_stiffness
-from stickslip.engine.contact_step.certificate import begin_step, bound_straight_bit, is_negative, measure_end, proven_length
+from stickslip.engine.contact_step.certificate import (
+    begin_step,
+    bound_straight_bit,
+    is_negative,
+    measure_end,
+    proven_length,
+    terms_of,
+)
 from stickslip.engine.contact_step.keep_step import move
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
@@ -148,11 +155,10 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
     begin_step(run)
     bound = run.state.residual
     for halving in range(HALVINGS + 1):
-        stretch(run, length, kept.rate)
         cut = cut_at_first_event(run, kept.rate, length)
         grown, rate_end = growth(run, kept.rate, length * cut.end, 1.0), total(kept.rate)
         if is_straight(run):
-            bound_straight_bit(run, length, grown, rate_end)
+            bound_straight_bit(run, length * cut.end, grown, rate_end)
             break
         run.state.residual = bound + measure_end(run, kept.rate, length * cut.end, grown, rate_end)
         if not (is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)):
@@ -160,6 +166,7 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
         if halving == HALVINGS:
             run.counts.breach = Stop.NEGATIVE_FRICTION
         length *= 0.5 * cut.end
+        stretch(run, length, kept.rate)
         reached, run.state.last_step = False, min(run.state.last_step, duration_of(run.k, length))
     multiply(run.local, run.powers, kept.load)
     to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * unit
@@ -179,12 +186,19 @@ def is_straight(run: Run) -> bool:
 
 @kernel
 def choose_length(run: Run, target: float, unit: float, length: float) -> tuple[float, bool]:
-    """Return the length (in units) of an explicit step that may be `length` units long, and whether it reaches the target."""
+    """Return the length (in units) of an explicit step that may be `length` units long, and whether it reaches the target.
+
+    Leaves the slip rate over the step where it will be kept, and the powers of its length in run.powers, as `stretch` does.
+    """
     limit = length_to(run, target, unit)
-    if not is_straight(run):
-        proven = proven_length(run, min(length, limit))
+    straight, proven = is_straight(run), min(length, limit)
+    if not straight:
+        proven = proven_length(run, proven)
         length = proven if proven < min(length, limit) else length
-    return settle_length(run, target, unit, length)
+    chosen, reached = settle_length(run, target, unit, length)
+    if straight or chosen != proven:
+        stretch(run, chosen, terms_of(run))
+    return chosen, reached
 
 
 @inlined

@@ -1,4 +1,4 @@
-"""Define lanes, a type of compiled code: eight floats side by side, on which the processor works at once, with their arithmetic.
+"""Define lanes, a type of compiled code: four or eight floats side by side, on which the processor works at once.
 
 A function written for floats serves lanes as well. Compiled for lanes, it computes in each lane exactly what it computes for a
 float, bit for bit. It must not contain decisions (if, while) that depend on lanes.
@@ -13,14 +13,18 @@ from typing import Any
 
 import llvmlite.ir as ir
 import numpy as np
+from llvmlite.binding import get_host_cpu_features
 from numba import types
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
 from stickslip.engine.compile.numba_privates import AbstractTemplate, infer_global, signature
 from stickslip.engine.compile.uncompiled import UNCOMPILED
 
-WIDTH = 8
-"""Number of lanes, which fills the widest registers of today's processors; narrower processors use several registers."""
+WIDTH = 8 if get_host_cpu_features().get("avx512f", False) else 4
+"""Number of lanes: as many as fit in a register of this processor, or in two of 128 bits."""
+
+ALIGNED = 1.5 * 2.0**52
+"""A float (1) whose last bits are those of the whole number that is added to it."""
 
 Writer = Callable[[Any, Any, list[Any]], Any]
 """Type of a function that writes the code of an operation, from the compiler's context and builder and the arguments."""
@@ -176,7 +180,7 @@ def store_across(typingctx: Any, rows: Any, targets: Any, first: Any) -> Any:
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         lines = [builder.load(builder.gep(args[0], [builder.add(args[2], _constant(WHOLE, n))])) for n in range(WIDTH)]
-        for apart in (1, 2, 4):
+        for apart in (2**n for n in range(WIDTH.bit_length() - 1)):
             lines = [_exchanged(builder, lines[n & ~apart], lines[n | apart], apart, bool(n & apart)) for n in range(WIDTH)]
         for n, line in enumerate(lines):
             address = builder.load(builder.gep(args[1], [_constant(WHOLE, n)]))
@@ -195,10 +199,15 @@ def _exchanged(builder: Any, low: Any, high: Any, apart: int, upper: bool) -> An
 
 @intrinsic
 def bits_as_number(typingctx: Any, x: Any) -> Any:
-    """Return the 64 bits of a float, or of each lane, read as an integer and converted to a float."""
+    """Return the 64 bits of a float that is not negative, or of each lane, read as an integer and converted to a float.
+
+    Processors without registers of 512 bits convert integers of 64 bits one by one, but those without a sign side by side.
+    """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.sitofp(builder.bitcast(args[0], WHOLES if x == LANES else WHOLE), args[0].type)
+        if x == LANES:
+            return builder.uitofp(builder.bitcast(args[0], WHOLES), VECTOR)
+        return builder.sitofp(builder.bitcast(args[0], WHOLE), args[0].type)
 
     return x(x), codegen
 
@@ -209,10 +218,15 @@ def power_of_two(typingctx: Any, n: Any) -> Any:
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         kind = WHOLES if n == LANES else WHOLE
-        biased = builder.add(builder.fptosi(args[0], kind), _constant(kind, 1023))
-        return builder.bitcast(builder.shl(biased, _constant(kind, 52)), args[0].type)
+        moved = builder.fadd(args[0], _number(args[0].type, ALIGNED + 1023.0))
+        return builder.bitcast(builder.shl(builder.bitcast(moved, kind), _constant(kind, 52)), args[0].type)
 
     return n(n), codegen
+
+
+def _number(kind: Any, number: float) -> Any:
+    """Return a constant of the type of floats or of lanes, in every lane if the type has lanes."""
+    return ir.Constant(kind, [number] * WIDTH if kind == VECTOR else number)
 
 
 def _constant(kind: Any, number: int) -> Any:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.memory.addresses import room_for
+from stickslip.engine.memory.simd import fused
 from stickslip.engine.state.layout import TERMS
 
 Floats = NDArray[np.float64]
@@ -172,6 +173,35 @@ def slope_on_disc(c: Floats, powers: Floats) -> float:
     for k in range(4, TERMS - 1, 2):
         a, b = a + k * abs(c[k]) * powers[k - 1], b + (k + 1) * abs(c[k + 1]) * powers[k]
     return a + b + (TERMS - 1) * abs(c[TERMS - 1]) * powers[TERMS - 2]
+
+
+@inlined
+def bounds_on_disc(c: Floats, radius: float) -> tuple[float, float]:
+    """Return bounds on a disc of radius r: on |p - c_0|, and on |integral of p from 0 - c_0 x| / r.
+
+    They are sums of magnitudes, two terms at a time.
+    """
+    first, second = abs(c[1]), abs(c[2]) * radius
+    value, mean = first + second, fused(RECIPROCAL[3], second, RECIPROCAL[2] * first)
+    square = radius * radius
+    power = square
+    for k in range(3, TERMS - 1, 2):
+        first, second = abs(c[k]), abs(c[k + 1]) * radius
+        value = fused(power, first + second, value)
+        mean = fused(power, fused(RECIPROCAL[k + 2], second, RECIPROCAL[k + 1] * first), mean)
+        power = power * square
+    return radius * value, radius * mean
+
+
+@inlined
+def bound_of_slope(c: Floats, radius: float) -> float:
+    """Return a bound on |p' - c_1| on a disc of the given radius."""
+    square = radius * radius
+    slope, power = 2.0 * abs(c[2]) * radius, square
+    for k in range(3, TERMS - 1, 2):
+        slope = fused(power, fused(float(k + 1) * radius, abs(c[k + 1]), float(k) * abs(c[k])), slope)
+        power = power * square
+    return slope
 
 
 @inlined

@@ -52,6 +52,7 @@ class Params(MemoryRecord):
     stick_to: float  # Pa or N: load that ends rest, minus the static strength at the present slip; never above 0
     ramp: float  # Pa or N: growth of the load at rest in one round trip; 0 for a loading that varies
     tolerance: float  # 1: local error allowed to a step, relative to the slip rate
+    first_disc: float  # disc on which the run tries to prove its first step, as an index of `contact_step.certificate.RATIOS`
     smallest_jump: float  # m/s: changes of the slip rate up to this size are not noted as shocks
     relative_jump: float  # 1: nor are changes up to this share of the slip rate
     rate_floor: float  # m/s: errors of an implicit step are relative to the slip rate, or to this if it is larger
@@ -211,6 +212,8 @@ class Ball(MemoryRecord):
     at_state: Floats = floats_inside(STATES)  # units of the states: states at the centre
 
 
+NO_DISC = -1
+"""`Counts.disc` before the engine has begun a run."""
 NEVER = 2**62
 """Number of a round trip that never comes."""
 
