@@ -9,23 +9,22 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test test-all browser lint compiled bench site oldest newest lock clean
+.PHONY: paper test test-all browser lint compiled collected bench site oldest newest lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
 
-# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. While one core checks
-# the source, another one compiles what most tests need of the engine, and the tests: all of these processes would begin with that.
+# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. Before, one core
+# compiles what most tests need of the engine, with which all of these processes would begin; another one checks the source, looks for
+# a browser, and writes the bytecode of the tests.
 test: $(VENV)/.installed-test
-	$(MAKE) --jobs=2 lint compiled
-	$(MAKE) browser
+	$(MAKE) --jobs=2 compiled lint browser collected
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
 
 # All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
 test-all: $(VENV)/.installed-test
-	$(MAKE) --jobs=2 lint compiled
-	$(MAKE) browser
+	$(MAKE) --jobs=2 compiled lint browser collected
 	STICKSLIP_TESTS=all OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
@@ -39,6 +38,8 @@ lint: $(VENV)/.installed-test
 
 compiled: $(VENV)/.installed-test
 	$(BIN)/python -m tests.compile_first
+
+collected: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -q --collect-only > /dev/null
 
 bench: $(VENV)/.installed-test

@@ -50,6 +50,9 @@ def pytest_collection() -> Generator[None, object, object]:
         return (yield)
     finally:
         gc.freeze()
+        gc.set_threshold(
+            700, 10, 50
+        )  # few objects are left to be walked, for which Python would walk all that are new much too often
         gc.enable()
 
 

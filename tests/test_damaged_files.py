@@ -94,6 +94,7 @@ COUNTS = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("name", "value"), COUNTS.items())
 def test_a_count_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, name: str, value: int) -> None:
     def edit(checkpoint: Checkpoint) -> None:
@@ -110,6 +111,7 @@ EDITS: dict[str, Callable[[Checkpoint], object]] = {
 }
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", EDITS)
 def test_a_state_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, name: str) -> None:
     check_edit(run, tmp_path, EDITS[name])
@@ -291,6 +293,7 @@ def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc", ".k.checkpoint.nc.lock"])
 def test_a_folder_in_place_of_a_file_of_a_catalogue_is_named_before_anything_is_removed(tmp_path: Path, name: str) -> None:
     ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc")

@@ -186,6 +186,7 @@ def test_values_must_fit_together() -> None:
         run_members(scenario, {"friction.alpha": np.ones(2)}, ("slipp",))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("threads", [1, 2])
 def test_long_members_run_after_all_others_or_are_left_for_later_with_the_same_bits(
     threads: int, monkeypatch: pytest.MonkeyPatch

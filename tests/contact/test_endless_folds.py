@@ -23,6 +23,7 @@ def endless(formula: str = FORMULAS[0], **given: object) -> ss.Problem:
     return ss.Problem(SLAB, F.FromExpression(formula), **{"pull_rate": 1.6e-9, "initial_excess": 0.0, **given})  # type: ignore[arg-type]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_folds_without_end_are_found_up_to_the_loads_of_a_run(formula: str) -> None:
     """Those that 200 000 slip rates show, each within its enclosure; 24 000 were searched, and the answer took minutes."""

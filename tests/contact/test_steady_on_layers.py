@@ -61,6 +61,7 @@ def test_layers_of_one_kind_resist_as_a_uniform_slab_does(driver: float):
         assert response(cut(0.2, 0.8), slow) * slow == pytest.approx(Z * SPEED / THICKNESS, rel=1e-14)
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("driver", [math.inf, 3.0, 0.4, 0.0, 1.0])
 @pytest.mark.parametrize("share", [-1.1, -0.97, -0.5, -1e-7, 0.0, 0.3])
 def test_without_mass_they_grow_as_on_a_uniform_slab(driver: float, share: float):
@@ -151,6 +152,7 @@ def test_no_root_lies_farther_right_than_the_one_that_is_found(name: str):
     assert Disturbed(body, S, felt).is_stable() is (rate <= 0.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("name", "rate"), [("soft layer", 0.1), ("soft layer and a mass", 0.1), ("apart", 0.1), ("joined", 0.02)])
 def test_a_small_disturbance_of_an_exact_run_grows_as_it_is_said_to(name: str, rate: float):
     """From a slip rate that is 1e-7 off, after other modes have faded: to 1e-3 in each period."""

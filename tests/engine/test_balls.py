@@ -182,6 +182,7 @@ NESTED = {
 }
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", NESTED)
 def test_balls_hold_from_small_to_huge_discs_at_centres_from_small_to_huge(name: str) -> None:
     """Relative 1e-12, with radii from 1e-6 to 1e3; at least a third of the balls are finite."""

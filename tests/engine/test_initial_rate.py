@@ -37,7 +37,7 @@ EACH_BODY = pytest.mark.parametrize("name", BODIES)
 BOTH_WAYS = pytest.mark.parametrize("way", [1, -1])
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=7)
 @EACH_BODY
 @BOTH_WAYS
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])

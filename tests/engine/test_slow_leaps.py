@@ -48,6 +48,7 @@ def runs(case: str) -> tuple[ss.Solution, ss.Solution]:
     return ss.simulate(problem, end), ss.simulate(problem, end, creep_rtol=0.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", CASES)
 def test_where_a_leap_lands_the_run_without_leaps_is_within_its_error(case: str) -> None:
     """The first leap, in slip, slip rate and state; errors of later ones grow with the errors of the first.
@@ -173,7 +174,7 @@ def test_slip_is_the_integral_of_the_slip_rate_through_a_leap() -> None:
     np.testing.assert_allclose(store.slip[1:], grown[:-1], rtol=1e-10, atol=0.0)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("share", [0.01, 0.3, 0.9])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(share: float, tmp_path: Path) -> None:
     """Bit for bit, stopped before a leap, within it, at the event after it and behind that."""

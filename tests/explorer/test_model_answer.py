@@ -45,9 +45,14 @@ def on_slabs(test):
     return pytest.mark.sampled(every=3)(pytest.mark.parametrize("name", SLABS)(test))
 
 
+LONG = "pipe-and-collar"
+"""Takes seconds to answer, and is left to the slow tests, as other bodies of layers are among the samples."""
+
+
 def everywhere(test):
     """Run a test for bundled scenarios."""
-    return pytest.mark.sampled(every=3)(pytest.mark.parametrize("name", NAMES)(test))
+    names = [pytest.param(name, marks=pytest.mark.slow) if name == LONG else name for name in NAMES]
+    return pytest.mark.sampled(every=3)(pytest.mark.parametrize("name", names)(test))
 
 
 @everywhere

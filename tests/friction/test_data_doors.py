@@ -22,6 +22,7 @@ from tests.problems import RATE_LAW, SLAB, measured
 SMOOTH = [kind for kind, law in LAWS.items() if law.state is None and kind != "table"]
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("kind", SMOOTH)
 @pytest.mark.parametrize("count", [9, 300, 3000])
 @pytest.mark.parametrize("decades", [False, True])

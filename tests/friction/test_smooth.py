@@ -54,6 +54,7 @@ def hat(x: Any, strength: float) -> Any:
     return np.column_stack([make_smoothing_spline(x, unit, lam=len(x) * strength)(x) for unit in np.eye(len(x))])
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("seed", range(2))
 def test_cross_validation_finds_the_smallest_score_of_scipys_splines(seed: int) -> None:
     x, y = drawn(40, seed)

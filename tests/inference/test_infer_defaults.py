@@ -65,7 +65,7 @@ KINDS: dict[str, tuple[ss.Problem, dict[str, Any], dict[str, float], dict[str, A
 }
 
 
-LONG = {"event by event", "features", "slide, hold, slide"}
+LONG = {"event by event", "features", "slide, hold, slide", "an event of a slab", "a law that sticks"}
 """Kinds that take several seconds; other tests of this folder fit shorter records with one start."""
 
 

@@ -131,6 +131,7 @@ def test_energies_survive_a_forgotten_history(name: str, tmp_path: Path, monkeyp
     assert (finished.balance.abs() < 1e-9 * finished.released.abs().max()).all()
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("events", [1, 5])
 def test_a_number_of_events_stops_a_catalogue_as_it_stops_a_run(events: int, tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]

@@ -113,7 +113,7 @@ def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) ->
     assert "creeping" in {report.doing for report in seen} or events == 1
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", 64)

@@ -46,7 +46,7 @@ def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Che
     return run.snapshot()
 
 
-@pytest.mark.sampled(every=9)
+@pytest.mark.sampled(every=18)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_stopped_anywhere_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
@@ -84,7 +84,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     assert expected <= met, expected - met
 
 
-@pytest.mark.sampled(every=14)
+@pytest.mark.sampled(every=28)
 @pytest.mark.parametrize("name", list(RUNS))
 def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]

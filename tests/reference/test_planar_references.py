@@ -73,6 +73,7 @@ def test_methods_agree_in_3d_and_a_plane_without_change_along_z_is_a_line() -> N
         assert method(plane, 3.0, 64).slip == pytest.approx(np.repeat(flat, 4, 2), abs=1e-12)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("wavenumber", "expected"), [(0.0, 1.287839), (0.5, 1.186815), (1.0, 0.811499)])
 def test_growth_on_a_slab(wavenumber: float, expected: float) -> None:
     """The volume method within 1e-3 of q coth(q h) = alpha_w, lambda = c sqrt(q^2 - k^2), alpha_w h = 1.5."""

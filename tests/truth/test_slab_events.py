@@ -15,6 +15,7 @@ FAST = Slab(alpha=1.0, pull_rate=0.1234)
 """Pulled so fast that hundreds of events of all kinds (ended by the echo, by folds, fragments) come within 400 round trips."""
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("table", [ALPHA_ONE, JUST_ABOVE_CRITICAL], ids=lambda table: table.name)
 @pytest.mark.parametrize("digits", [50, 60])
 def test_the_files_hold_what_the_generator_makes(table: Table, digits: int) -> None:
