@@ -142,6 +142,12 @@ def blocks_of(*lengths: int) -> list[ResidualBlock]:
     return [ResidualBlock(slice(first, last), np.cumsum(RANDOM.uniform(0.5, 1.5, last - first))) for first, last in pairwise(ends)]
 
 
+def test_nothing_is_said_of_two_samples_that_hold_all_of_the_leverage() -> None:
+    slopes = np.zeros((100, 1))
+    slopes[40:42] = 1.0
+    assert unevenness(np.random.default_rng(3).normal(size=100), slopes, WHITE, blocks_of(100)) == (1.0, 1.0)
+
+
 def test_unevenness_compares_the_samples_that_hold_half_of_the_leverage_with_the_others() -> None:
     slopes = np.where(np.arange(100) < 10, 3.02, 1.0)[:, None]  # the first ten hold 91 of 181
     residual = RANDOM.normal(size=100) * np.where(np.arange(100) < 10, 30.0, 1.0)

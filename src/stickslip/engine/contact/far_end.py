@@ -33,14 +33,19 @@ def gain_of_echo(run: Run) -> float:
 @kernel
 def is_rigid(run: Run) -> bool:
     """Return True for a slab under a rigid driver: a load at rest comes back whole, plus the same ramp in each round trip."""
-    return run.params.reflection == RIGID and not (run.counts.is_block == 1 or run.counts.driven == 1 or run.counts.cells > 0)
+    return run.params.reflection == RIGID and is_plain_slab(run)
 
 
 @kernel
 def was_rigid(run: Run) -> bool:
     """Return True if a driver of a loading that varies was rigid in the round trips at rest before this one."""
-    rigid = run.loading[run.counts.trip_segment].reflection == RIGID
-    return rigid and not (run.counts.is_block == 1 or run.counts.driven == 1 or run.counts.cells > 0)
+    return run.loading[run.counts.trip_segment].reflection == RIGID and is_plain_slab(run)
+
+
+@kernel
+def is_plain_slab(run: Run) -> bool:
+    """Return True for a slab of one layer whose driver is no machine: each wave comes back once, as it went."""
+    return not (run.counts.is_block == 1 or run.counts.driven == 1 or run.counts.cells > 0)
 
 
 @kernel

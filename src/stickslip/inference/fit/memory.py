@@ -29,6 +29,8 @@ CHANCE = 1e-4
 """Significance level of the test whether residuals are larger where the run changes than elsewhere."""
 ACTIVE = 0.5
 """The active samples are those with the largest leverage, which together have this share of it."""
+FEWEST = 3
+"""With fewer active samples than this, or fewer others, nothing is said: their second differences have no mean."""
 
 
 class ResidualBlock(NamedTuple):
@@ -228,6 +230,8 @@ def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequenc
     order = np.argsort(leverage)[::-1]
     last = int(np.searchsorted(np.cumsum(leverage[order]), ACTIVE * leverage.sum())) + 1
     active, rest = residual[np.sort(order[:last])], residual[np.sort(order[last:])]
+    if min(len(active), len(rest)) < FEWEST:
+        return EVEN
     share = sum(independent(time, memory) for _, time in blocks) / len(residual)
     freedom = [max(1.0, share * len(one)) for one in (active, rest)]
     quiet, noise = max(float(np.mean(rest**2)), 1e-300), max(float(np.mean(np.diff(rest, 2) ** 2)), 1e-300)
