@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import ast
+import builtins
+import importlib
+import inspect
 import json
 from pathlib import Path
 
@@ -11,6 +14,7 @@ from benchmarks.mutants import NAMED, PACKAGES, SOURCE, Mutant, drawn, named
 from benchmarks.reached import Reached
 from benchmarks.soak_checks import run
 from benchmarks.soak_problems import draw
+from benchmarks.unverified import WITHOUT
 
 from stickslip.friction import LAWS
 
@@ -31,6 +35,15 @@ def test_random_mutants_of_each_package_parse_and_differ_and_are_reproducible() 
         text = (ROOT / SOURCE / mutant.path).read_bytes()
         assert mutant.applied(text) != text
         ast.parse(mutant.applied(text))
+
+
+def test_bodies_of_the_build_without_proofs_know_all_their_names() -> None:
+    for path, bodies in WITHOUT.items():
+        module = importlib.import_module("stickslip." + path.removesuffix(".py").replace("/", "."))
+        for name, body in bodies.items():
+            used = {node.id for node in ast.walk(ast.parse(f"def {name}():\n    {body}")) if isinstance(node, ast.Name)}
+            known = {*vars(module), *vars(builtins), *inspect.signature(inspect.unwrap(getattr(module, name))).parameters}
+            assert used <= known, f"{path}, {name}: {used - known}"
 
 
 @pytest.mark.parametrize("package", PACKAGES)
