@@ -44,14 +44,14 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import needs_branches
 from stickslip.engine.contact.pieces import xi_at
-from stickslip.engine.contact.pressing import before_turn
+from stickslip.engine.contact.pressing import before_turn, own_states
 from stickslip.engine.contact.stiffness import is_implicit
-from stickslip.engine.contact_step.implicit_step import evolves_at_rest, slip_implicitly, stick_with_state
 from stickslip.engine.contact_step.stick_or_slip import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
-from stickslip.engine.folds.fold import leave_fold_piece, leave_moving_branch
+from stickslip.engine.folds.fold import leave_moving_branch
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Stop
+from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Stop, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
@@ -143,6 +143,10 @@ def missing_part(run: Run) -> int:
         return EnginePart.LADDER
     if run.moving_folds == 0 and (run.counts.folds_move == 1 or (run.counts.given > 0 and run.counts.is_algebraic == 1)):
         return EnginePart.MOVING_FOLDS
+    if run.folds == 0 and run.counts.at_fold != NearFold.NONE:
+        return EnginePart.FOLDS
+    if run.negative_friction == 0 and run.params.can_be_negative != 0.0 and own_states(run) == 0:
+        return EnginePart.NEGATIVE_FRICTION
     return EnginePart.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else EnginePart.NONE
 
 
@@ -168,7 +172,7 @@ def walk_along_load(run: Run, last_trip: int, last_phase: float) -> int:
     if run.state.xi < xi_to:
         return take_step(run, xi_to)
     if run.counts.at_fold != NearFold.NONE:
-        leave_fold_piece(run)
+        call_part(run.folds, run, Task.LEAVE_FOLD, 0.0)
     elif is_last:
         return end_of_run(run)
     else:
@@ -184,17 +188,17 @@ def take_step(run: Run, xi_to: float) -> int:
         run.missing = EnginePart.IMPLICIT_STEPS
         return Stop.NEED_PART
     if run.counts.mode == 0:
-        if evolves_at_rest(run):
-            stick_with_state(run, xi_to)
-        else:
+        if own_states(run) == 0 or call_part(run.implicit_steps, run, Task.STICK_WITH_STATE, xi_to) == 0.0:
             stick(run, before_turn(run, xi_to))
     elif is_implicit(run):
-        slip_implicitly(run, xi_to)
+        call_part(run.implicit_steps, run, Task.SLIP_IMPLICITLY, xi_to)
     elif run.counts.waits == 1:
         run.state.target = xi_to
         return Stop.SLIPS
     else:
         slip(run, before_turn(run, xi_to))
+    if run.missing != EnginePart.NONE:
+        return Stop.NEED_PART
     if run.counts.breach == 0 and math.isfinite(state.rate_now + state.slip_now + state.state_now[0] + state.state_now[1]):
         return Stop.NONE
     take_back(run, length, xi)

@@ -10,9 +10,12 @@ from typing import Any
 
 from stickslip.engine.compile.kernels import address_of, kernel
 from stickslip.engine.compile.uncompiled import UNCOMPILED, handle_of
+from stickslip.engine.contact.pressing import press_ahead
+from stickslip.engine.contact_step.implicit_step import slip_implicitly, stick_with_state
+from stickslip.engine.contact_step.negative_friction import goes_below_zero
+from stickslip.engine.folds.fold import approach_fold, depart_from_fold, leave_fold_piece, straight_from_fold, straight_to_fold
 from stickslip.engine.folds.fold_ahead import way_to_fold
 from stickslip.engine.memory.addresses import PART
-from stickslip.engine.radau.step import collocate
 from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver import drive
@@ -23,20 +26,30 @@ from stickslip.foundation.constants import RIGID
 
 
 @kernel
-def implicit_steps(memory: int, task: int, left: float) -> float:
-    """Make the polynomials of an implicit step over the way `left` (in xi) at most; return the length of the step (in xi)."""
-    return collocate(borrow(memory), left)
+def implicit_steps(memory: int, task: int, xi_to: float) -> float:
+    """Take an implicit step up to the place xi_to at most; return 0 if a contact at rest needs none."""
+    if task == Task.SLIP_IMPLICITLY:
+        slip_implicitly(borrow(memory), xi_to)
+        return 1.0
+    return 1.0 if stick_with_state(borrow(memory), xi_to) else 0.0
 
 
 @kernel
-def loading_history(memory: int, task: int, limit: float) -> float:
-    """Serve a loading that varies: see `Task`. Round trips at rest count as long as the load stays below `limit` (Pa or N)."""
+def loading_history(memory: int, task: int, number: float) -> float:
+    """Serve a loading that varies: see `Task`.
+
+    Round trips at rest count as long as the load stays below `number` (Pa or N); a normal load is written in units of `number` (in
+    xi).
+    """
     if task == Task.ENTER_SEGMENT:
         return 1.0 if enter_segment(borrow(memory)) else 0.0
+    if task == Task.COUNT_TRIPS_AT_REST:
+        return float(trips_withstood(borrow(memory), number))
     if task == Task.TAKE_LOADING:
         take_loading(borrow(memory))
-        return 0.0
-    return float(trips_withstood(borrow(memory), limit))
+    else:
+        press_ahead(borrow(memory), number)
+    return 0.0
 
 
 @kernel
@@ -69,6 +82,30 @@ def ladder(memory: int, task: int, number: float) -> float:
     return serve(borrow(memory), task, number)
 
 
+@kernel
+def folds(memory: int, task: int, way: float) -> float:
+    """Lead slip over the given way (in xi) to a fold or away from one: see `Task`."""
+    run = borrow(memory)
+    if task == Task.APPROACH_FOLD:
+        return approach_fold(run, way)
+    if task == Task.DEPART_FROM_FOLD:
+        depart_from_fold(run, way)
+    elif task == Task.STRAIGHT_TO_FOLD:
+        straight_to_fold(run)
+    elif task == Task.STRAIGHT_FROM_FOLD:
+        straight_from_fold(run)
+    else:
+        leave_fold_piece(run)
+    return 0.0
+
+
+@kernel
+def negative_friction(memory: int, task: int, length: float) -> float:
+    """Return 1 if friction falls below zero in the explicit step of the given length (in units) that is being made, else 0."""
+    run = borrow(memory)
+    return 1.0 if goes_below_zero(run, run.history[run.counts.length].rate, length) else 0.0
+
+
 @cache
 def part_at(part: Any) -> int:
     """Return the address of a part. Compiles it, or takes it from the cache on disk."""
@@ -85,6 +122,8 @@ PARTS = {
     EnginePart.MOVING_FOLDS: moving_folds,
     EnginePart.DRIVER: driver,
     EnginePart.LADDER: ladder,
+    EnginePart.FOLDS: folds,
+    EnginePart.NEGATIVE_FRICTION: negative_friction,
 }
 """The function of each part; its address is the field of the same name in `workspace.Run`."""
 
@@ -102,20 +141,21 @@ def lend_part(memory: Integers, part: EnginePart | None = None) -> None:
 
 
 def lend_parts_at_hand(memory: Integers) -> None:
-    """Write the addresses of all parts that are already compiled into a run's memory, so that it need not ask for them."""
+    """Write the addresses of all parts that are already compiled into a run's memory, and 0 for those that it must ask for."""
     run = Run(memory)
-    for part, address in _at_hand.items():
-        setattr(run, part.name.lower(), address)
+    for part in PARTS:
+        setattr(run, part.name.lower(), _at_hand.get(part, 0))
 
 
 def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:
     """Write the addresses of the parts that members of a batch with such numbers will probably need.
 
-    Batches have no loading histories. A massless contact rarely needs implicit steps: they are lent if already compiled, otherwise
-    when it asks for them.
+    A massless contact rarely needs implicit steps: they are lent if already compiled, otherwise when it asks for them.
     """
-    Run(memory).implicit_steps = _at_hand.get(EnginePart.IMPLICIT_STEPS, 0)
+    lend_parts_at_hand(memory)
     if counts.has_inertia == 1 or counts.states > 0:
         lend_part(memory, EnginePart.IMPLICIT_STEPS)
+    if params.can_be_negative != 0.0 and counts.states == counts.given:
+        lend_part(memory, EnginePart.NEGATIVE_FRICTION)
     if params.reflection == RIGID and counts.is_block == 0:
         lend_part(memory, EnginePart.ECHO_QUEUE)

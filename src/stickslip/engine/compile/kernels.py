@@ -10,6 +10,7 @@ import atexit
 import hashlib
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -77,12 +78,31 @@ elif not UNCOMPILED:
 
 
 class Kernel:
-    """A compiled function of the engine: `entry` is what Python calls, `part` what compiled code calls."""
+    """A compiled function of the engine: `entry` is what Python calls, `part` what compiled code calls.
+
+    Both are made when one is first needed: most processes need a few of all kernels.
+    """
 
     def __init__(self, function: Callable[..., Any], **options: bool) -> None:
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
         self.__wrapped__ = function
-        self.part, self.entry = dispatchers(function, OPTIONS, options)
+        self._options = options
+
+    @cached_property
+    def _both(self) -> tuple[Any, Any]:
+        """`part` and `entry`."""
+        made: tuple[Any, Any] = dispatchers(self.__wrapped__, OPTIONS, self._options)
+        return made
+
+    @property
+    def part(self) -> Any:
+        """What compiled code calls."""
+        return self._both[0]
+
+    @cached_property
+    def entry(self) -> Any:
+        """What Python calls."""
+        return self._both[1]
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the machine code, which the first call compiles or loads."""

@@ -10,10 +10,10 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import phase_at, xi_at
-from stickslip.engine.memory.addresses import ahead
+from stickslip.engine.memory.addresses import ahead, call_part
 from stickslip.engine.series.polynomial import RECIPROCAL, fill
 from stickslip.engine.series.radau_nodes import POINT, POINTS
-from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run
 
 LARGEST_TURN = 1.0
@@ -74,20 +74,26 @@ def states_ahead(run: Run, unit: float) -> None:
     for n in range(run.counts.states):
         fill(ahead(run.state_jet, TERMS * n), 0.0)
     if is_pressing(run):
-        params, state, first = run.params, run.state, own_states(run)
-        p, change = ahead(run.state_jet, TERMS * first), ahead(run.state_jet, TERMS * (first + 1))
-        pace, bend = (state.speed + 2.0 * state.bend * state.xi) * unit, 2.0 * state.bend * unit * unit
-        if params.pressing_tone != 0.0:
-            frequency, now = params.pressing_frequency, run.counts.trip * params.round_trip_time + phase_at(run, state.xi)
-            angle = frequency * now + params.pressing_phase
-            tone_along(params.pressing_tone, (angle, frequency * pace, frequency * bend), p, change)
-            for k in range(TERMS):
-                change[k] *= frequency
-        slope = run.loading[run.counts.segment].pressing_rate
-        p[1] += slope * pace
-        p[2] += 0.5 * slope * bend
+        call_part(run.loading_history, run, Task.PRESS_AHEAD, unit)
     for n in range(run.counts.states):
         run.state_jet[TERMS * n] = run.state.state_now[n]
+
+
+@kernel
+def press_ahead(run: Run, unit: float) -> None:
+    """Write the series of a normal load that changes into the rows of its states but for their first terms, which are zero."""
+    params, state, first = run.params, run.state, own_states(run)
+    p, change = ahead(run.state_jet, TERMS * first), ahead(run.state_jet, TERMS * (first + 1))
+    pace, bend = (state.speed + 2.0 * state.bend * state.xi) * unit, 2.0 * state.bend * unit * unit
+    if params.pressing_tone != 0.0:
+        frequency, now = params.pressing_frequency, run.counts.trip * params.round_trip_time + phase_at(run, state.xi)
+        angle = frequency * now + params.pressing_phase
+        tone_along(params.pressing_tone, (angle, frequency * pace, frequency * bend), p, change)
+        for k in range(TERMS):
+            change[k] *= frequency
+    slope = run.loading[run.counts.segment].pressing_rate
+    p[1] += slope * pace
+    p[2] += 0.5 * slope * bend
 
 
 @kernel

@@ -1,6 +1,6 @@
 """Take one implicit step: of slip, or at rest while the state of the law evolves.
 
-The polynomials of the step come from a part of the engine that is compiled when a run first needs it (`on_demand`).
+This is a part of the engine that is compiled when a run first needs it (`on_demand`).
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.memory.addresses import ahead, call_part
+from stickslip.engine.memory.addresses import ahead
+from stickslip.engine.radau.step import collocate
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
+from stickslip.engine.state.layout import Floats, StepEvent, Stop
 from stickslip.engine.state.workspace import Run
 
 STILL = 1e-3
@@ -36,7 +37,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     """Slip for one implicit step, or up to an arrest, a knot of the law, or the place xi_to."""
     if run.counts.knots_in_rate == 1:
         settle_piece(run, abs(run.state.rate_now))
-    length = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
+    length = collocate(run, xi_to - run.state.xi)
     hanging = hangs(run)
     note_shock(run)
     rate = run.history[run.counts.length].rate
@@ -102,22 +103,19 @@ def note_negative_friction(run: Run) -> None:
 
 
 @kernel
-def evolves_at_rest(run: Run) -> bool:
-    """Return True if the law has states of its own that still change the strength of a contact at rest, or join in its change."""
-    return own_states(run) > 0 and (is_pressing(run) or not forgotten(run))
+def stick_with_state(run: Run, xi_to: float) -> bool:
+    """Take one step at rest while the states of the law's own change the strength, or join in its change.
 
-
-@kernel
-def stick_with_state(run: Run, xi_to: float) -> None:
-    """Take one step at rest while the state changes, and with it the strength.
-
-    The step ends at xi_to at the latest, or when the load exceeds the strength.
+    The step ends at xi_to at the latest, or when the load exceeds the strength. Return False if the states do neither: nothing is
+    done then.
     """
-    width = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
+    if not is_pressing(run) and forgotten(run):
+        return False
+    width = collocate(run, xi_to - run.state.xi)
     if not math.isfinite(run.jet[0]):
         run.state.rate_now = math.nan
         note_negative_friction(run)
-        return
+        return True
     reached = width >= xi_to - run.state.xi
     load = run.history[run.counts.length].load
     fill(run.history[run.counts.length].rate, 0.0)
@@ -132,3 +130,4 @@ def stick_with_state(run: Run, xi_to: float) -> None:
     run.counts.leaving_rest, run.counts.moved = 0, 1
     if onset < NONE:
         run.counts.mode, run.counts.leaving_rest = direction, direction
+    return True

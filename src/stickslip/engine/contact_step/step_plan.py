@@ -7,17 +7,9 @@ from typing import NamedTuple
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import TIE, branch_exit
-from stickslip.engine.folds.fold import (
-    SHORTEST_FOLD,
-    approach_fold,
-    depart_from_fold,
-    ends_at_fold,
-    load_outruns_fold,
-    reach_end,
-    starts_at_fold,
-)
+from stickslip.engine.folds.fold import SHORTEST_FOLD, ends_at_fold, load_outruns_fold, reach_end, starts_at_fold
 from stickslip.engine.memory.addresses import call_part
-from stickslip.engine.state.layout import NearFold, Task
+from stickslip.engine.state.layout import EnginePart, NearFold, Task
 from stickslip.engine.state.workspace import Run
 
 
@@ -26,7 +18,7 @@ class StepPlan(NamedTuple):
 
     target: float  # slip up to this xi
     ends_branch: bool  # True if the branch ends there
-    is_over: bool  # True if there is nothing left to step: the branch has ended, or a side piece has replaced the piece of load
+    is_over: bool  # True if no step follows: the branch has ended, a side piece is the piece of load now, or a part is missing
 
 
 @kernel
@@ -37,8 +29,10 @@ def plan_step(run: Run, xi_to: float) -> StepPlan:
     plan = plan_to_end_of_branch(run, xi_to)
     if plan.is_over or not starts_at_fold(run):
         return plan
+    if run.folds == 0:
+        return ask_for_folds(run)
     if run.counts.folds_move == 0 or load_outruns_fold(run):
-        depart_from_fold(run, plan.target - run.state.xi)
+        call_part(run.folds, run, Task.DEPART_FROM_FOLD, plan.target - run.state.xi)
     else:
         run.counts.stalled += 1  # Slip would end where it starts, again and again.
     return StepPlan(plan.target, plan.ends_branch, True)
@@ -57,9 +51,24 @@ def plan_to_end_of_branch(run: Run, xi_to: float) -> StepPlan:
         reach_end(run)
         return StepPlan(xi_to, False, True)
     if not moves and run.state.bend == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
-        first = approach_fold(run, way)
-        return StepPlan(run.state.xi + first, False, first == 0.0)
+        return lead_to_fold(run, way)
     return StepPlan(run.state.exit, True, False)
+
+
+@kernel
+def ask_for_folds(run: Run) -> StepPlan:
+    """Ask for the part of the engine that leads slip to folds and away from them; until it is there, no step follows."""
+    run.missing = EnginePart.FOLDS
+    return StepPlan(run.state.xi, False, True)
+
+
+@kernel
+def lead_to_fold(run: Run, way: float) -> StepPlan:
+    """Put a side piece that ends at the fold `way` (in xi) ahead in place of the piece of load, or plan a step towards it."""
+    if run.folds == 0:
+        return ask_for_folds(run)
+    first = call_part(run.folds, run, Task.APPROACH_FOLD, way)
+    return StepPlan(run.state.xi + first, False, first == 0.0)
 
 
 @kernel
@@ -73,6 +82,5 @@ def plan_to_moving_fold(run: Run, unit: float, plan: StepPlan) -> StepPlan:
         reach_end(run)
         return StepPlan(plan.target, False, True)
     if run.state.bend == 0.0 and way > SHORTEST_FOLD:
-        first = approach_fold(run, way)
-        return StepPlan(run.state.xi + first, False, first == 0.0)
+        return lead_to_fold(run, way)
     return StepPlan(run.state.xi + way, False, False)

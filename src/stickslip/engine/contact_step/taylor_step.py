@@ -31,16 +31,15 @@ from stickslip.engine.contact_step.certificate import (
     terms_of,
 )
 from stickslip.engine.contact_step.keep_step import move
-from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
 from stickslip.engine.contact_step.step_plan import StepPlan, plan_step, plan_to_moving_fold
-from stickslip.engine.folds.fold import last_to_fold, reach_end, straight_from_fold, straight_to_fold
-from stickslip.engine.memory.addresses import call_jet
+from stickslip.engine.folds.fold import last_to_fold, reach_end
+from stickslip.engine.memory.addresses import call_jet, call_part
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import multiply, total
 from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, NearFold, SeriesInput, StepEvent, Stop
+from stickslip.engine.state.layout import Cause, NearFold, SeriesInput, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
 
 LONGEST_GUESS = 2.0
@@ -117,9 +116,9 @@ def expand_series(run: Run, target: float) -> float:
     unit = target - run.state.xi if is_last else first_unit(run, target - run.state.xi)
     calculate_series(run, unit)
     if is_last:
-        straight_to_fold(run)
+        call_part(run.folds, run, Task.STRAIGHT_TO_FOLD, 0.0)
     elif run.counts.at_fold == NearFold.DEPARTING:
-        straight_from_fold(run)
+        call_part(run.folds, run, Task.STRAIGHT_FROM_FOLD, 0.0)
     while not math.isfinite(run.jet[at.TERMS - 1]) and unit > 1e-300:
         unit *= 1e-3
         calculate_series(run, unit)
@@ -161,7 +160,7 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
             bound_straight_bit(run, length * cut.end, grown, rate_end)
             break
         run.state.residual = bound + measure_end(run, kept.rate, length * cut.end, grown, rate_end)
-        if not (is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)):
+        if not (is_negative(run) or hides_negative_friction(run, length * cut.end)):
             break
         if halving == HALVINGS:
             run.counts.breach = Stop.NEGATIVE_FRICTION
@@ -176,6 +175,12 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
     resolve(run, cut)
     if cut.event == StepEvent.NONE and plan.ends_branch and (reached or plan.target - run.state.xi < TIE):
         reach_end(run)
+
+
+@kernel
+def hides_negative_friction(run: Run, length: float) -> bool:
+    """Return True if friction falls below zero inside an explicit step of the given length (in units)."""
+    return run.params.can_be_negative != 0.0 and call_part(run.negative_friction, run, Task.LOOK_BELOW_ZERO, length) != 0.0
 
 
 @kernel

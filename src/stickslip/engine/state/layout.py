@@ -277,13 +277,15 @@ class EnginePart(IntEnum):
     MOVING_FOLDS = 4
     DRIVER = 5
     LADDER = 6
+    FOLDS = 7
+    NEGATIVE_FRICTION = 8
 
 
 class Task(IntEnum):
     """Name the tasks of the parts of the engine that are compiled apart (`on_demand`)."""
 
-    COLLOCATE = 0
-    """Make the polynomials of an implicit step."""
+    SLIP_IMPLICITLY = 0
+    """Slip for one implicit step."""
     ENTER_SEGMENT = 1
     """Enter the segment of the loading that has arrived where the piece of load begins."""
     TAKE_LOADING = 2
@@ -316,6 +318,18 @@ class Task(IntEnum):
     """Set the waves aside and write them in the root of time, before or behind a fold; take them up again."""
     IS_SETTLED = 17
     """Find whether the waves of each round trip at rest are those of the one before, but for the ramp."""
+    STICK_WITH_STATE = 18
+    """Take a step at rest, if the state of the law still changes there."""
+    PRESS_AHEAD = 19
+    """Write the series of a normal load that changes."""
+    APPROACH_FOLD = 20
+    STRAIGHT_TO_FOLD = 21
+    DEPART_FROM_FOLD = 22
+    STRAIGHT_FROM_FOLD = 23
+    LEAVE_FOLD = 24
+    """Lead slip to a fold or away from it (`folds.fold`)."""
+    LOOK_BELOW_ZERO = 25
+    """Find whether friction falls below zero in an explicit step."""
 
 
 class Stop(IntEnum):

@@ -69,6 +69,8 @@ class Run(MemoryRecord):
     moving_folds: int
     driver: int
     ladder: int
+    folds: int
+    negative_friction: int
     wave_rows: int  # number of rows of waves that fit, besides those of the piece of load
     missing: int  # the part that the engine has asked for, as a code of `Part`
 
