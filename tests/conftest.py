@@ -50,9 +50,7 @@ def pytest_collection() -> Generator[None, object, object]:
         return (yield)
     finally:
         gc.freeze()
-        gc.set_threshold(
-            700, 10, 50
-        )  # few objects are left to be walked, for which Python would walk all that are new much too often
+        gc.set_threshold(700, 10, 50)  # beside so few old objects Python would walk those of the tests every few seconds
         gc.enable()
 
 
