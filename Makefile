@@ -15,17 +15,17 @@ paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
 
 # The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. Before, one core
-# compiles what most tests need of the engine, with which all of these processes would begin; another one checks the source, looks for
-# a browser, and writes the bytecode of the tests.
-test: $(VENV)/.installed-test
+# compiles what most tests need of the engine, with which all of these processes would begin; another one installs what only tests
+# need, checks the source, looks for a browser, and writes the bytecode of the tests.
+test:
 	$(MAKE) --jobs=2 compiled lint browser collected
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+	COMPILED_FIRST=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
 
 # All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
-test-all: $(VENV)/.installed-test
+test-all:
 	$(MAKE) --jobs=2 compiled lint browser collected
-	STICKSLIP_TESTS=all OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
+	STICKSLIP_TESTS=all COMPILED_FIRST=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
 browser: $(VENV)/.installed-test
@@ -36,7 +36,7 @@ lint: $(VENV)/.installed-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-compiled: $(VENV)/.installed-test
+compiled: $(VENV)/.installed
 	$(BIN)/python -m tests.compile_first
 
 collected: $(VENV)/.installed-test

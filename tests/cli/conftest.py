@@ -1,5 +1,6 @@
 """Call the command as the shell does."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,15 +27,17 @@ class Outcome:
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_engine() -> None:
-    """Compile the engine and its parts before any test looks at what a command says on standard error."""
-    compile_first.main()
+    """Compile the engine and its parts before any test looks at what a command says on standard error; `make` has done so."""
+    if "COMPILED_FIRST" not in os.environ:
+        compile_first.main()
 
 
 @pytest.fixture(autouse=True)
 def _pictures(request: pytest.FixtureRequest) -> None:
-    """Leave pictures blank, but for tests that look at them or at what is said of them."""
+    """Leave pictures blank, and what they would show coarse, but for tests that look at them or at what is said of them."""
     if request.node.get_closest_marker("drawn") is None:
         request.getfixturevalue("blank_pictures")
+        request.getfixturevalue("coarse")
 
 
 @pytest.fixture

@@ -431,7 +431,7 @@ from stickslip.explorer.server import serve
 
 serve.MOST_LINES = 10_000  # nothing is lost before the pipe is full
 serve.log_to_stderr()
-for _ in range(5000):
+for _ in range(1000):
     logging.getLogger("panel.io").error("x" * 200)
 while select.select([], [2], [], 0)[1]:
     time.sleep(0.01)
@@ -441,7 +441,7 @@ print("through", flush=True)
 
 @pytest.mark.skipif(sys.platform == "win32", reason="only POSIX says that a pipe is full")
 def test_a_log_that_nobody_reads_holds_up_nothing() -> None:
-    """A pipe holds some 64 kB; what is logged here is 1 MB. The process ends although its log is never written."""
+    """A pipe holds some 64 kB; what is logged here is 200 kB. The process ends although its log is never written."""
     with subprocess.Popen([sys.executable, "-c", LOGS], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stderr is not None
