@@ -29,6 +29,8 @@ from stickslip.loading import HISTORIES
         (5.0, "cm / yr", "m/s", 5.0 / 3_155_760_000),
         (100.0, "MPa", "Pa", 1e8),
         (2.8, "g/cm^3", "kg/m^3", 2800.0),
+        (2.8, "g/cm3", "kg/m^3", 2800.0),
+        (1.0, "foot3", "m^3", 0.028316846592),
         (9.8, "MPa s/m", "Pa s/m", 9.8e6),
         (9.8, "MPa*s/m", "Pa s/m", 9.8e6),
         (5.0, "/ m", "1/m", 5.0),
@@ -46,7 +48,21 @@ def test_converts_to_the_last_digit(number: float, unit: str, si: str, expected:
 @pytest.mark.parametrize(
     "text",
     [
-        *("", "km", "10", "ten km", "10 km km^", "10 m; import os", "__import__('os')", "10 m**99", "10 m^9999999", "1e9999 m"),
+        *(
+            "",
+            "km",
+            "10",
+            "ten km",
+            "10 km km^",
+            "10 m12",
+            "10 2m",
+            "10 m3kg",
+            "10 m; import os",
+            "__import__('os')",
+            "10 m**99",
+            "10 m^9999999",
+            "1e9999 m",
+        ),
         *(
             "10 (m)",
             "10 m+1",

@@ -8,6 +8,7 @@ import xarray as xr
 from typer import Context
 
 from stickslip.cli.options import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
+from stickslip.sweeps.results.store import ResultStore
 from stickslip.sweeps.sweep import SweepProgress
 
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
@@ -18,7 +19,7 @@ def test_sweep_says_what_came_of_it(command):
     assert (shown.code, shown.err) == (0, "")
     assert "4 x 2 = 8 members over friction.alpha, body.thickness" in shown.out
     assert "\n8 finished\n" in shown.out
-    assert "events: 0 2 times, 1 6 times; changes along friction.alpha between 0.1 s/m and 0.4 s/m" in shown.out
+    assert "events: 0 in 2 members, 1 in 6; changes along friction.alpha between 0.1 s/m and 0.4 s/m" in shown.out
     assert shown.out.endswith("written: map.zarr\n")
     with xr.open_zarr("map.zarr") as found:
         assert found.events.values.tolist() == [[0, 0], [1, 1], [1, 1], [1, 1]]
@@ -75,6 +76,23 @@ def test_a_map_says_where_members_without_mass_start_in_another_way(command, mas
         shown.code,
         "note: without contact_mass the slab behind the contact starts from rest" in " ".join(shown.out.split()),
     ) == (0, told)
+
+
+def test_a_duration_is_typed_as_for_a_run(command):
+    shown = command("sweep", "fig6-slab", "--vary", "friction.alpha=0.1,1", "-q", "slip", "--duration", "1 s", "--out", "map.zarr")
+    assert shown.code == 0
+    with xr.open_zarr("map.zarr") as found:
+        assert found.slip.values[1] == pytest.approx(4.102, rel=1e-3)
+
+
+def test_a_sweep_that_is_stopped_before_anything_is_finished_draws_and_tells_nothing(command, monkeypatch: pytest.MonkeyPatch):
+    def stopped(store: ResultStore):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ResultStore, "missing", stopped)
+    shown = command(*MAP, "--figure", "map.png")
+    assert (shown.code, shown.out, shown.err) == (130, "", "stickslip: interrupted\n")
+    assert not Path("map.png").exists()
 
 
 def test_a_dry_run_writes_nothing(command, tmp_path: Path):

@@ -256,7 +256,7 @@ def test_another_scenario_and_another_version_are_refused(store: Path, monkeypat
     with pytest.raises(ss.InputError, match="was made from another scenario"):
         ss.sweep("second-event-maxwell", VARY, out=store, **SAVED)
     monkeypatch.setattr("stickslip.sweeps.results.layout.engine", lambda: "another")
-    with pytest.raises(ss.InputError, match="was made by another version of stickslip"):
+    with pytest.raises(ss.InputError, match=r"was made by another version of stickslip \('\w+', this is 'another'\)"):
         sweep(store)
 
 

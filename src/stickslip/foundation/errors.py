@@ -75,10 +75,15 @@ def warn(message: str) -> None:
 
 
 def nearest(word: str, allowed: Iterable[str], before: str = "allowed: ") -> str:
-    """Return a hint that names the allowed word nearest to `word`, or else all of them, to be appended to an error message."""
+    """Return a hint that names the allowed words nearest to `word`, or else all of them, to be appended to an error message.
+
+    Nearest are words of which it is a part, as slab of elastic-slab, and otherwise the one that is spelt most alike.
+    """
     allowed = list(allowed)
-    close = difflib.get_close_matches(word, allowed, n=1)
-    return f"did you mean '{close[0]}'?" if close else f"{before}{', '.join(sorted(allowed)) or NONE}"
+    close = [name for name in allowed if word in name.split("-")] or difflib.get_close_matches(word, allowed, n=1)
+    if close:
+        return f"did you mean {' or '.join(map(repr, close))}?"
+    return f"{before}{', '.join(sorted(allowed)) or NONE}"
 
 
 def nearest_and_all(word: str, allowed: Iterable[str]) -> str:

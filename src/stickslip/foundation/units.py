@@ -26,10 +26,11 @@ Dimensions = dict[str, int]
 """Powers of the base dimensions of a unit, by their names in pint; a dimension with the power 0 is left out."""
 
 _NAME = r"[A-Za-zµ][A-Za-zµ_]*"
-_FACTOR = rf"{_NAME}(?:\s*(?:\^|\*\*)\s*-?[1-9])?"
+_POWER = r"(?:\s*(?:\^|\*\*)\s*-?[1-9]|[1-9])"
+_FACTOR = rf"{_NAME}{_POWER}?"
 UNIT = rf"(?:/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*"
-"""Grammar of a unit: names with small powers; a stroke applies to the next name only."""
-_ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME})(?:\s*(?:\^|\*\*)\s*(?P<power>-?[1-9]))?")
+"""Grammar of a unit: names with small powers, m^3 or m3; a stroke applies to the next name only."""
+_ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME})(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>-?[1-9]))?")
 _WHOLE = re.compile(rf"1?\s*{UNIT}\s*")
 _QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)(?:\s+1(?=/)|\s*)(?P<unit>{UNIT})\s*")
 _PER_TURN = re.compile(r"(Hz|hertz)(?![A-Za-z])")
@@ -152,7 +153,8 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
 
     registry = _registry()
     try:
-        parsed = registry.parse_units(f"1{unit}" if unit.startswith("/") else unit)  # the parser understands 1/ m, but not / m
+        written = re.sub(rf"({_NAME})([1-9])", r"\1^\2", f"1{unit}" if unit.startswith("/") else unit)
+        parsed = registry.parse_units(written)  # the parser understands 1/ m and m^3, but not / m or m3
         for name in (one.removeprefix("delta_") for one in parsed._units):
             if name in registry._units and registry._units[name].is_logarithmic:
                 raise pint.UndefinedUnitError(name)  # no factor converts decibels to SI units, although pint gives them one

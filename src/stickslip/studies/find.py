@@ -15,6 +15,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest_and_all
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
+from stickslip.problem.fields import INITIAL_STATES, STEADY
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.run.simulate import simulate
@@ -67,6 +68,8 @@ class Edge(StudyWithDataset):
     """Duration of the runs (s)."""
     meaning: str = ""
     """Declared meaning of the parameter."""
+    start: str = ""
+    """How the runs started, if not as the problem does."""
 
     @property
     def runs(self) -> int:
@@ -78,7 +81,8 @@ class Edge(StudyWithDataset):
         """Say in one sentence where the edge is."""
         ends = f"{brief(self.low, self.unit, 9)} and {brief(self.high, self.unit, 9)}"
         changes = f"{self.what}: {_word(self.at_low)} below, {_word(self.at_high)} above"
-        return f"between {self.parameter} = {ends} ({changes}), by {self.runs} exact runs of {brief(self.duration, 's')}"
+        runs = f"{self.runs} exact runs of {brief(self.duration, 's')}"
+        return f"between {self.parameter} = {ends} ({changes}), by {runs}" + (f", which start {self.start}" if self.start else "")
 
     def _about(self) -> Iterable[str]:
         return (self.text,)
@@ -89,6 +93,17 @@ class Edge(StudyWithDataset):
 
 def _word(value: bool | int) -> str:
     return ("yes" if value else "no") if isinstance(value, bool) else str(value)
+
+
+UNSETTLED = "without load, in the state of steady sliding, because only rounding would disturb the problem's own steady sliding"
+
+
+def unsettled(problem: Problem) -> Problem:
+    """Return a problem that starts without load, in the state of steady sliding, in place of one that starts in steady sliding."""
+    if not (problem.has_initial_rate and problem.starts_steadily):
+        return problem
+    states: dict[str, Any] = dict.fromkeys(INITIAL_STATES[: len(problem.friction.states)], STEADY)
+    return replace(problem, initial_rate=None, initial_load=0.0, **states)
 
 
 @for_users
@@ -108,7 +123,8 @@ def find(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        The problem, its scenario, the name of a bundled scenario, or a scenario file.
+        The problem, its scenario, the name of a bundled scenario, or a scenario file. If it starts in steady sliding, the runs for
+        a name in `what` start without load instead: in an exact run only rounding disturbs steady sliding.
     along : str
         The parameter that is varied, as in a sweep: "pull_rate", "body.stiffness", "friction.alpha", "initial.excess" ...
     low, high : float or str, optional
@@ -209,10 +225,14 @@ class _EdgeSearch:
     def name(self) -> str:
         return self.what if isinstance(self.what, str) else getattr(self.what, "__name__", "what")
 
+    def starts(self, problem: Problem) -> Problem:
+        """Return a problem as it starts in a run: unless the user looks for something of their own, not in steady sliding."""
+        return unsettled(problem) if isinstance(self.what, str) else problem
+
     def at(self, value: float) -> bool | int:
         """Return what a run with a value (SI) of the parameter gives."""
         if value not in self.seen:
-            problem = self.scenario.with_values({self.parameter.name: value}).problem
+            problem = self.starts(self.scenario.with_values({self.parameter.name: value}).problem)
             run = uninterrupted(simulate(problem, self.duration, max_pieces=self.most_pieces))
             place = f"{self.parameter.name} = {brief(value, self.parameter.unit)}"
             if not run.status.ok:
@@ -262,7 +282,8 @@ class _EdgeSearch:
         import pandas as pd  # takes half a second to load, which `check` does not need
 
         table = pd.DataFrame({one.name: list(self.seen), self.name: values})
-        return Edge(one.name, one.unit, self.name, low, high, at_low, at_high, table, self.duration, one.declared.meaning)
+        meaning, start = one.declared.meaning, UNSETTLED if self.starts(self.scenario.problem) is not self.scenario.problem else ""
+        return Edge(one.name, one.unit, self.name, low, high, at_low, at_high, table, self.duration, meaning, start)
 
 
 def _plain(value: Any, place: str) -> bool | int:

@@ -35,7 +35,8 @@ def find(
     last third of a run: let the run last long enough. A contact that starts
     from rest may stick although steady sliding is stable: `stickslip check`
     says from which rate on steady sliding is stable, and finds this edge to 2 %.
-    --figure shows what each run gave.
+    Runs that would begin in steady sliding start without load instead, as only
+    rounding would disturb it. --figure shows what each run gave.
 
     \b
       stickslip find mine.toml --duration "60 s" --figure edge.png

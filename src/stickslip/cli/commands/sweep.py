@@ -12,6 +12,7 @@ import typer
 
 from stickslip.cli.options import (
     Changes,
+    Duration,
     ScenarioName,
     complete_design,
     complete_quantity,
@@ -55,6 +56,7 @@ def sweep(
     scenario: ScenarioName,
     *,
     changes: Changes = None,
+    duration: Duration = None,
     vary: Vary = None,
     table: Table = None,
     design: DesignKind = "grid",
@@ -93,7 +95,7 @@ def sweep(
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.output.sweep_summary import show_plan, show_slowest, show_sweep
-    from stickslip.cli.overrides import load
+    from stickslip.cli.overrides import load_with
     from stickslip.sweeps.design.axis import typed_axes
     from stickslip.sweeps.design.quantities import DEFAULT
     from stickslip.sweeps.execution.chunk import NOT_RUN
@@ -101,7 +103,7 @@ def sweep(
 
     _check_files(vary, table, out, figure)
     look.check(figure)
-    chosen = load(scenario, "sweep", changes)
+    chosen = load_with("sweep", scenario, changes, duration=duration)
     plan = make_plan(
         chosen,
         table or typed_axes(chosen, vary or (), "--vary"),
@@ -127,6 +129,9 @@ def sweep(
 
         with FORMAT.reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
+    if (found.status == NOT_RUN).all():
+        announce(out)
+        raise KeyboardInterrupt
     if figure is not None:
         _draw(found, plan.work.names[0], figure, look)
     code = show_sweep(chosen.title or chosen.name, found)

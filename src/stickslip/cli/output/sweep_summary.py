@@ -178,7 +178,9 @@ def _show_changes(dataset: xr.Dataset, *, is_grid: bool) -> None:
         if len(found) < 2:
             continue
         names = {0.0: "no", 1.0: "yes"} if "flag_values" in dataset[name].attrs else {}
-        counts = ", ".join(f"{names.get(value, f'{value:g}')} {times} times" for value, times in found.items())
+        shown = [(names.get(value, f"{value:g}"), members) for value, members in found.items()]
+        (first, members), *others = shown
+        counts = ", ".join([f"{first} in {members} member{'s' * (members > 1)}", *(f"{value} in {more}" for value, more in others)])
         along = "; ".join(_told(change, dataset) for change in changes(dataset, name)) if is_grid else ""
         say(screen, f"{name}: {counts}" + (f"; changes {along}" if along else ""))
 

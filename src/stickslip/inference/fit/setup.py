@@ -30,7 +30,9 @@ STARTS = ("steady", "record", "problem")
 SENSORS = ("contact", "spring")
 """Where shear is measured."""
 MANY_RATES = 40
-"""A load point with more rates than this raises a doubt."""
+"""A load point with more rates than this raises a doubt, unless it speeds up and slows down in turn so seldom as a ramp does."""
+MOST_TURNS = 2
+"""Largest number of times that a ramp turns from speeding up to slowing down, or back."""
 FAR = 100.0
 """A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
 UNEVEN = 0.03
@@ -102,7 +104,9 @@ def _uneven(problem: Problem, record: Record) -> Iterator[str]:
 def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
     """Yield sentences on a load point that hardly moves like a machine."""
     segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
-    if len(segments) > MANY_RATES:
+    ways = np.sign(np.diff(segments))
+    ways = ways[ways != 0.0]
+    if len(segments) > MANY_RATES and np.count_nonzero(ways[1:] != ways[:-1]) > MOST_TURNS:
         cure = "if the column is slip, call it slip and give the load rate"
         yield f"the rate of the load point changes in {len(segments) - 1} places, as slip does and a driven machine hardly: {cure}"
     moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)

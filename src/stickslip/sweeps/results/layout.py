@@ -37,12 +37,8 @@ NUMBERS, WORDS, CODES = "float64", "string", "int8"
 """The zarr data types of numbers, words and status codes."""
 FILLS = {NUMBERS: np.nan, WORDS: "", CODES: NOT_RUN}
 """The value of an element that has not been written, by data type."""
-_SAME = {
-    "source": "by another version of stickslip",
-    "engine": "by another version of stickslip",
-    "scenario": "from another scenario",
-}
-"""Attributes of a store that must agree with a plan, and the end of the error message if they do not."""
+_VERSION = ("source", "engine")
+"""Attributes of a store that say which version of stickslip has made it, and must be those of this one."""
 
 
 def lay_out(plan: Plan, place: Any) -> None:
@@ -179,8 +175,14 @@ def check_contents(found: xr.Dataset) -> None:
 def as_begun(plan: Plan, path: Path, group: zarr.Group) -> Plan:
     """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
     ours = attributes(plan)
-    different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
-    different = different or _design_differs(plan, group)
+    for name in _VERSION:
+        theirs = str(group.attrs.get(name))[:60]
+        if theirs != ours[name]:
+            raise InputError(
+                f"{path}: was made by another version of stickslip ({theirs!a}, this is {ours[name]!r}), which alone can"
+                " continue it: choose another name to begin anew"
+            )
+    different = "from another scenario" if group.attrs.get("scenario") != ours["scenario"] else _design_differs(plan, group)
     if different:
         raise InputError(f"{path}: was made {different}: use the same settings as before, or choose another name")
     begun = replace(plan, tile=read_design(group.attrs)[2])
