@@ -9,6 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine import on_demand
+from stickslip.engine.on_demand import PARTS
 from stickslip.engine.state.layout import EnginePart, NearFold
 from stickslip.engine.state.workspace import Run
 from stickslip.run.options import RunOptions
@@ -33,9 +34,9 @@ NEEDED = {
 @pytest.mark.parametrize("what", NEEDED)
 def test_a_run_gets_the_parts_that_it_needs(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     problem, duration, parts = NEEDED[what]
-    monkeypatch.setattr(on_demand, "_at_hand", {})
+    monkeypatch.setattr(on_demand, "_at_hand", np.zeros(len(PARTS), np.int64))
     run = ss.simulate(problem, duration)
-    assert on_demand._at_hand.keys() - {EnginePart.ECHO_QUEUE} == parts
+    assert {part for part, address in zip(PARTS, on_demand._at_hand, strict=True) if address} - {EnginePart.ECHO_QUEUE} == parts
     if problem is DIPPING:
         assert run.slip(run.history.duration) == pytest.approx(3.0 * math.asin(60.0 / 61.0), rel=1e-6)
 

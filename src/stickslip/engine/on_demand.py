@@ -8,6 +8,8 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from stickslip.engine.compile.kernels import address_of, kernel
 from stickslip.engine.compile.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.contact.pressing import press_ahead
@@ -128,23 +130,22 @@ PARTS = {
 """The function of each part; its address is the field of the same name in `workspace.Run`."""
 
 
-_at_hand: dict[EnginePart, int] = {}
-"""Addresses of the parts that this process has compiled or loaded so far."""
+_ORDER = {part: n for n, part in enumerate(PARTS)}
+_PLACES = np.array([Run.places[part.name.lower()].first for part in PARTS])
+_at_hand = np.zeros(len(PARTS), np.int64)
+"""Addresses of the parts that this process has compiled or loaded so far, in the order of PARTS; 0 for the others."""
 
 
 def lend_part(memory: Integers, part: EnginePart | None = None) -> None:
     """Write the address of a part into a run's memory, by default of the part that the engine has asked for."""
-    run = Run(memory)
-    part = EnginePart(run.missing) if part is None else part
-    _at_hand[part] = part_at(PARTS[part])
-    setattr(run, part.name.lower(), _at_hand[part])
+    part = EnginePart(Run(memory).missing) if part is None else part
+    n = _ORDER[part]
+    memory[_PLACES[n]] = _at_hand[n] = part_at(PARTS[part])
 
 
 def lend_parts_at_hand(memory: Integers) -> None:
     """Write the addresses of all parts that are already compiled into a run's memory, and 0 for those that it must ask for."""
-    run = Run(memory)
-    for part in PARTS:
-        setattr(run, part.name.lower(), _at_hand.get(part, 0))
+    memory[_PLACES] = _at_hand
 
 
 def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:
