@@ -50,6 +50,7 @@ BYTES_OF_A_MEMBER = 8 * (1 + 2 + 1)
 """What varies, two quantities, status."""
 
 
+@pytest.mark.slow
 def test_memory_grows_only_by_the_results_of_each_member() -> None:
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)
     before, after = (int(word) for word in done.stdout.split())
@@ -102,7 +103,7 @@ def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
             assert found[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("rule", OF_LEVELS)
 @pytest.mark.parametrize("name", ["rate", "stribeck", "gauss", "power"])
 def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule: str) -> None:

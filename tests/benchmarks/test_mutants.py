@@ -25,6 +25,7 @@ def test_every_named_mistake_occurs_once_in_the_source() -> None:
     assert [one.name for one in named(ROOT)] == [one.name for one in NAMED]
 
 
+@pytest.mark.slow
 def test_random_mutants_of_each_package_parse_and_differ_and_are_reproducible() -> None:
     some = ("contact", "run", "io", "explorer/model")
     mutants = drawn(ROOT, 80, 3, some)

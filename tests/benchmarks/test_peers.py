@@ -24,6 +24,7 @@ def error(method: ModuleType, case: Case, tolerance: float) -> float:
         pytest.skip(str(reason))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_scipy_agrees_with_the_reference(case: Case) -> None:
     assert error(scipy_peer, case, 1e-12) < 2e-9
@@ -52,7 +53,7 @@ def test_jitcdde_agrees_with_the_reference() -> None:
         assert error(jitcdde_peer, DRIVEN, 1e-8) < 5e-7
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_same_algorithm_in_c_takes_the_same_steps(case: Case) -> None:
     """Step by step the same: as many steps, the same slip to rounding (which the problem amplifies)."""

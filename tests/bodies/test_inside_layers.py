@@ -28,7 +28,7 @@ def assert_same_inside(run: Any, slab: Any, x: Any, of_slab: Any) -> None:
         np.testing.assert_allclose(ours[name], known[name], rtol=1e-8, atol=share * size, err_msg=name)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", SHORT)
 def test_the_inside_of_layers_of_equal_impedance_is_that_of_one_slab(name: str) -> None:
     body, problem, duration = CASES[name]

@@ -65,7 +65,7 @@ def drawn(seed: int) -> tuple[Any, list[Chain], float, ss.Problem]:
     return body, chains, time, ss.Problem(body, law, pull_rate=pull, initial_excess=float(-draw.uniform(0.0, 1e4)))
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("seed", range(30))
 def test_layers_drawn_at_random_move_as_their_waves_do(seed: int) -> None:
     body, chains, time, problem = drawn(seed)
@@ -121,7 +121,7 @@ def slip_on_grid(
 SIDES: dict[str, dict[str, Any]] = {"one": {}, "apart": {"sides": "apart"}, "joined": {"sides": "joined"}}
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", SIDES)
 def test_a_volume_method_at_cfl_1_converges_to_the_run(kind: str) -> None:
     time, normal = 0.01, 1e7

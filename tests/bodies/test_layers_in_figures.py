@@ -68,6 +68,7 @@ def test_both_sides_of_a_contact_are_drawn() -> None:
     assert run.plot.snapshots([1e-5, 3e-5]).axes[0].get_ylim() == (low, high)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     ("name", "lowest", "boundaries"), [("low-velocity-zone", 0.0, (1000.0,)), ("steel-on-granite", -0.09, (0.0,))]
 )

@@ -50,6 +50,7 @@ COMMANDS = [
 ]
 
 
+@pytest.mark.slow
 def test_answers_of_a_block_and_a_slab_may_differ_by_a_tenth(command):
     assert re.search(r"--within .*differ.*\[default: 0\.1\]", " ".join(command("analogy", "--help").out.split()))
 
@@ -143,7 +144,7 @@ def test_help_is_fast_because_it_compiles_and_validates_nothing():
     assert done.returncode == 0
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -184,7 +185,7 @@ def test_new_lists_every_name(command, arguments: tuple[str, ...]):
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", of_each_kind(library.in_1d()))
 def test_check_prints_its_four_sections(command, name):
     shown = command("check", name)

@@ -130,6 +130,7 @@ def test_check_refuses_figures_of_a_single_place(command: Command) -> None:
     assert "leave them out with a [contact]" in command("check", "planar-patch", "--figure", "a.png").refusal
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_is_shown_and_resumed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     class Interrupted(Interrupts):
         def __init__(self) -> None:

@@ -141,6 +141,7 @@ def test_progress_is_shown_in_sensible_units():
     assert str(start) == "0 of 12 s, 1 of 4 slip events, slipping"
 
 
+@pytest.mark.slow
 def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 500)
     arguments = "run", "fig5-slab-printed", "--duration", "10 minutes", "--out", "run.nc"

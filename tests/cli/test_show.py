@@ -62,6 +62,7 @@ def test_figures_are_drawn_from_the_file(command: Command, results: Path, tmp_pa
     assert {path.name for path in tmp_path.iterdir()} == {"run.nc", "a.svg", "b.svg"}
 
 
+@pytest.mark.slow
 @pytest.mark.drawn
 def test_the_figure_of_a_catalogue_in_one_column_says_nothing_else(command: Command, results: Path):
     drawn = command("show", str(results / "events.csv"), "--catalogue-figure", "events.png", "--size", "single column")
@@ -92,7 +93,7 @@ def test_without_slip_events_the_missing_figure_of_the_catalogue_is_explained(co
     assert not (tmp_path / "events.png").exists()
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".nc", ".parquet"])
+@pytest.mark.parametrize("suffix", [".csv", pytest.param(".nc", marks=pytest.mark.slow), ".parquet"])
 def test_show_lists_the_events_of_a_catalogue(command: Command, suffix: str):
     if suffix == ".parquet":
         pytest.importorskip("pyarrow")

@@ -52,6 +52,7 @@ def slope_of(problem: ss.Problem, rates: np.ndarray) -> np.ndarray:
     return Z + S * np.imag(values) / step
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("text", ["0.3 + 0.2*exp(-v/v1)", "0.3 + 0.2/(1 + v/v1)"])
 def test_a_fold_is_enclosed_to_rounding_wherever_cells_are_cut(text):
     """A cell is cut at its geometric middle, so that a cut may take off little of it: the search must go on nevertheless."""
@@ -164,7 +165,7 @@ def with_features(seed: int) -> tuple[ss.Problem, np.ndarray]:
     return slab_problem(FromExpression(text)), together[together >= 0.0]
 
 
-@pytest.mark.sampled(every=9)
+@pytest.mark.sampled(every=20)
 @pytest.mark.parametrize("seed", range(40))
 def test_laws_with_narrow_features_have_the_folds_of_a_dense_scan(seed):
     problem, rates = with_features(seed)

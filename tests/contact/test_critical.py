@@ -33,7 +33,7 @@ CLOSED = {
 }
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("name", CLOSED)
 def test_closed_forms_agree_with_the_root_finder(name):
     problem = slab_problem(CLOSED[name])

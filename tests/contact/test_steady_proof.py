@@ -74,6 +74,7 @@ def test_slabs_under_two_states_are_found_by_search():
     assert "found between 1e-15 and 1000 m/s, not proven" in str(found)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("evolution", ["ageing", "slip"])
 def test_two_states_over_the_same_distance_act_as_one(evolution: str):
     """The critical rate is then that of Rice & Ruina, sqrt(S a Dc/m) for twice the critical stiffness of slow sliding."""
@@ -127,6 +128,7 @@ def test_states_that_feel_each_other_are_proven():
     assert change.stable_above == stable(0.9) != stable(1e-3)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("kind", ["LuGre", "FlashHeating"])
 def test_other_laws_with_one_state_are_proven(kind: str):
     """The changes are those of the search, to 1e-9, and lie in their enclosures."""
@@ -334,7 +336,7 @@ def close_to_its_edge(drawn: np.random.Generator, slab: ss.ElasticSlab, slopes: 
     return replace(slab, thickness=slab.thickness * (1.0 + width * drawn.uniform(-1.0, 1.0)))
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("width", [0.0, 0.3])
 @pytest.mark.parametrize("late", [-1.0, 1.0])
 def test_no_slopes_in_a_cell_that_is_decided_have_another_count_of_roots(width: float, late: float):

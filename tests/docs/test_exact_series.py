@@ -76,7 +76,7 @@ def test_another_version_is_no_difference(old: dict[str, str], new: dict[str, st
     assert list(SCRIPT["differences"](other, new)) == []
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_a_second_integration_gives_the_exact_series(problem: str) -> None:
     """The method of steps shares no code with the engine: slip and slip rate to 1e-9 of the largest ones."""

@@ -143,6 +143,7 @@ for arguments in (["check", "mine.toml"], ["new", "slab"]):
 """
 
 
+@pytest.mark.slow
 def test_a_law_is_one_file_and_its_line_in_laws(tmp_path: Path) -> None:
     """The worked example of adding-a-law.md, in a copy of the package: file, line in LAWS, and the scenario that uses it."""
     page = ROOT / "docs" / "adding-a-law.md"

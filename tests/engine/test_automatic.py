@@ -142,6 +142,7 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
     assert creep_tolerance(printed(1), 0.0, rtol) == 0.0
 
 
+@pytest.mark.slow
 def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
     """Members that creep for long are run alone, the others are not changed by that."""
     scenario = replace(ss.load_scenario("fig5-slab-printed"), duration=DAYS)
@@ -172,6 +173,7 @@ def test_nothing_is_lumped_before_a_round_trip_is_full() -> None:
     assert exact.lumping_note == ""
 
 
+@pytest.mark.slow
 def test_lumping_keeps_slip_and_energy() -> None:
     """Five round trips later: slip of the run that resolves every event within 4 %, energy to 1e-9 of the heat."""
     end = np.array([17 * ROUND])
@@ -281,6 +283,7 @@ def test_a_full_history_names_nothing_that_would_begin_later(problem: ss.Problem
     assert option not in full.status.message
 
 
+@pytest.mark.slow
 def test_a_file_has_the_size_that_is_documented(tmp_path: Path) -> None:
     """0.42 GB a million pieces, to a tenth."""
     run = ss.simulate(printed(1), 150 * ROUND)

@@ -45,6 +45,7 @@ KINKED = F.PiecewiseLinearSlip(slips=(0.0, 8e-4, 1.2e-3, 1e-2), coefficients=(0.
 # ---- the printed slab ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("tolerance", [2e-5, 1e-4, 1e-3])
 def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:

@@ -142,7 +142,7 @@ FAR = {
 }
 
 
-@pytest.mark.sampled(every=8)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize("impedance", [0.0, 4e6, 9.8e6, 3e7])
 @pytest.mark.parametrize("name", FAR)
 def test_a_varying_far_stress_agrees_with_the_method_of_steps(name: str, impedance: float) -> None:
@@ -214,8 +214,8 @@ def test_energy_balances_across_leaped_rest() -> None:
         assert (energy.radiated == 0.0).all()
 
 
-@pytest.mark.sampled(every=2)
-@pytest.mark.parametrize(("impedance", "until"), [(0.0, 1e4), (4e6, 1e6), (9.8e6, 1e6)])
+@pytest.mark.sampled(every=3)
+@pytest.mark.parametrize(("impedance", "until"), [(9.8e6, 1e6), (4e6, 1e6), (0.0, 1e4)])
 def test_a_lossy_slab_rests_until_the_loading_changes(impedance: float, until: float) -> None:
     """Leaped over once its waves have left, which a free driver never lets out; then it slips.
 

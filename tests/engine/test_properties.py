@@ -72,7 +72,7 @@ def obeys(run: ss.Solution) -> None:
 
 
 @pytest.mark.sampled(every=2)
-@pytest.mark.parametrize("kind", ["coulomb", "hyperbolic-rate", "exponential-stribeck", "power-stribeck", "piecewise-linear-rate"])
+@pytest.mark.parametrize("kind", ["coulomb", "hyperbolic-rate", "exponential-stribeck", "piecewise-linear-rate", "power-stribeck"])
 @given(data=st.data())
 @few
 def test_the_chosen_rate_is_admissible_and_stable(kind: str, data: st.DataObject) -> None:

@@ -68,6 +68,7 @@ def test_bristles_hold_a_load_below_the_strength_and_spring_back(way: float) -> 
     assert np.diff(np.sign(run.slip_rate(t[1:]))).any()  # which spring back
 
 
+@pytest.mark.slow
 def test_flash_heating_weakens_a_block_in_an_earthquake_and_swings_back() -> None:
     state = float(FLASH.law.steady_state(1e-6))
     problem = ss.Problem(HEAVY, FLASH.law, pull_rate=0.01, initial_load=0.7e8, initial_state=state)
@@ -78,6 +79,7 @@ def test_flash_heating_weakens_a_block_in_an_earthquake_and_swings_back() -> Non
     assert largest_difference(run, t, slip, states) < CLOSE
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=6)
 @pytest.mark.parametrize(
     "one", [two_states("ageing"), two_states("slip"), two_states("ageing", -0.003)], ids=["ageing", "slip", "b < 0"]
@@ -96,6 +98,7 @@ def test_a_block_follows_two_states(one: Truth, way: float) -> None:
 LAB = ss.SpringBlock(1e3, 1.5e10, 1e8, damping=1e6)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 @BOTH_WAYS

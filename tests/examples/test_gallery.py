@@ -340,8 +340,8 @@ def two_plates(names: Names) -> None:
 
 
 QUICK = {
-    "first_event", "scenario_with_other_numbers", "is_it_unique", "four_selection_rules", "own_selection_rule", "own_friction_law",
-    "figure_for_teaching", "tides", "seismograms",
+    "scenario_with_other_numbers", "is_it_unique", "four_selection_rules", "own_selection_rule", "figure_for_teaching", "tides",
+    "seismograms",
 }  # fmt: skip
 """Examples that take about a second each or less; the others, up to a minute long, are run with the slow tests."""
 

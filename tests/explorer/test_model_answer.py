@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.findings import CAUSES, _jump
+from stickslip.explorer.model.findings import CAUSES, MOST_EVENTS, _jump
 from stickslip.explorer.model.pictures import _path, energy_picture, law_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.explorer.model.setting import Setting
@@ -398,9 +398,13 @@ def test_law_of_backward_slip_is_odd_and_has_both_limits_where_friction_changes_
     assert law.coefficient == pytest.approx(np.repeat([-1.0, 1.0], len(law.x) // 2) * at_speed, rel=1e-15, abs=0.0)
 
 
-def test_run_of_thousands_of_events_is_answered_without_a_look_at_each_pulse() -> None:
-    found = solve(Setting.bundled("fig7-slab-critical").with_value("run.duration", 1.0e5).scenario())
-    assert len(found.solution.events) > 1000
+@pytest.mark.parametrize(("most", "duration"), [(50, 1.0e4), pytest.param(MOST_EVENTS, 1.0e5, marks=pytest.mark.slow)])
+def test_run_of_many_events_is_answered_without_a_look_at_each_pulse(
+    most: int, duration: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("stickslip.explorer.model.findings.MOST_EVENTS", most)
+    found = solve(Setting.bundled("fig7-slab-critical").with_value("run.duration", duration).scenario())
+    assert len(found.solution.events) > 2 * most
     assert "pulse" not in {mark.kind for mark in found.marks}
 
 

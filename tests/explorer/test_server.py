@@ -439,6 +439,7 @@ print("through", flush=True)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="only POSIX says that a pipe is full")
 def test_a_log_that_nobody_reads_holds_up_nothing() -> None:
     """A pipe holds some 64 kB; what is logged here is 200 kB. The process ends although its log is never written."""

@@ -161,6 +161,7 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     assert worst_imbalance(run) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_the_parts_miss_the_total_if_one_is_left_out() -> None:
     _, dataset = drawn("slab, lossy")

@@ -142,7 +142,7 @@ def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str
         assert illegible(figure) == []
 
 
-@pytest.mark.sampled(every=9)
+@pytest.mark.sampled(every=18)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("scenario", ["cycles-block", "fig6-slab", "second-event-maximal", "second-event-minimal"])
 def test_a_catalogue_with_its_run_is_legible_in_any_size(scenario: str, size: str | None) -> None:
@@ -172,6 +172,7 @@ def test_a_low_figure_leaves_out_zooms_first(size: str, titles: list[str], cycle
     assert {letter for letters in key for letter in letters} <= set("abcdefg"[: len(titles)])
 
 
+@pytest.mark.slow
 def test_illegible_texts_are_noticed(cycles: ss.Solution) -> None:
     figure = catalogue.draw(catalogue.data(cycles))
     assert illegible(figure) == []

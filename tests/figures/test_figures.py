@@ -252,6 +252,7 @@ def test_an_ensemble_draws_what_members_share_and_how_they_separate() -> None:
     assert ("events not shared" in key) == (study.table.members.min() < 3)
 
 
+@pytest.mark.slow
 def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:
     for excess, duration in ((-1e6, 100.0), (-1e6, 1.0), (0.0, 1.0)):
         study = ss.studies.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=excess), duration, members=2)

@@ -168,6 +168,7 @@ def test_a_frame_shows_its_moment(run: ss.Solution) -> None:
     assert without_unit(figure) == []
 
 
+@pytest.mark.slow
 def test_a_gif_has_every_frame_and_they_differ(run: ss.Solution, tmp_path: Path) -> None:
     told: list[tuple[int, int]] = []
     path = run.plot.animation(tmp_path / "slab.gif", 0.0, 8.0, frames=5, progress=lambda *news: told.append(news))

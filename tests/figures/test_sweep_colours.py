@@ -146,6 +146,7 @@ def test_the_title_is_that_of_the_scenario_and_survives_a_file(tmp_path: Path) -
     assert ss.simulate(SLAB_PROBLEM, 1.0, title="mine").plot().get_suptitle() == "mine"
 
 
+@pytest.mark.slow
 def test_a_resumed_run_keeps_its_title(tmp_path: Path) -> None:
     ss.simulate("fig6-slab", 3.0, checkpoint=tmp_path / "run.nc")
     assert ss.resume(tmp_path / "run.nc", 4.0).title == ss.load_scenario("fig6-slab").title  # type: ignore[union-attr]

@@ -75,6 +75,7 @@ def test_a_law_through_noisy_points_warns_at_the_users_line(law: Any, fields: di
     assert [one.filename for one in caught] == [__file__]
 
 
+@pytest.mark.slow
 def test_an_examination_says_how_many_folds_noise_makes() -> None:
     with warnings.catch_warnings(action="ignore", category=InputWarning):
         law = FromTable(rate=np.linspace(0, 2, 200), **NOISY)

@@ -113,6 +113,7 @@ def many_fits(kind: str) -> list[Fit]:
     return [fit(points_of(TRUE[kind], 0.005, seed), kind, fixed=fixed) for seed in range(DRAWS)]
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("kind", ["hyperbolic-rate", "linear-slip-weakening", "exponential-stribeck", "sinusoidal-slip"])
 def test_intervals_of_one_uncertainty_hold_the_truth_as_often_as_they_should(kind: str) -> None:

@@ -81,6 +81,7 @@ def test_the_figure_shows_record_residual_rate_and_pairs(found: Inference) -> No
     assert "samples" not in found.to_dataset()
 
 
+@pytest.mark.slow
 def test_correlated_noise_is_told_and_widens_the_intervals() -> None:
     white, memory = plain(), inferred(record(per_sample=10.0))
     assert memory.model.memory["friction"].time == pytest.approx(10.0 * CLOCK[1], rel=0.3)
@@ -91,6 +92,7 @@ def test_correlated_noise_is_told_and_widens_the_intervals() -> None:
     assert (memory.table.uncertainty / white.table.uncertainty)[slow].min() > 2.5
 
 
+@pytest.mark.slow
 def test_words_say_what_the_record_does_not_determine() -> None:
     study = inferred(free=[*TRUTH, "friction.rate", "body.mass"])
     assert "body.mass has no influence on what is fitted: fix it" in study.notes
@@ -166,6 +168,7 @@ def test_slip_can_be_fitted_beside_friction() -> None:
     assert both.fit.noise["slip"] == pytest.approx(5e-8, rel=0.1)
 
 
+@pytest.mark.slow
 def test_laws_are_ranked_by_what_they_predict(found: Inference) -> None:
     slip_law = replace(GUESS, friction=replace(GUESS.friction, evolution="slip"))
     other = ss.studies.infer(slip_law, record(), tuple(TRUTH), starts=1, held_out=0.2)

@@ -148,6 +148,7 @@ def test_slopes_that_are_all_alike_count_once_in_the_memory_of_noise() -> None:
     assert three.time == 0.0
 
 
+@pytest.mark.slow
 def test_thickness_and_impedance_of_a_laboratory_slab_come_out_of_the_features_of_its_events(slab: Inference) -> None:
     """The return of the wave stops slip: its duration tells the thickness, and slip tells the impedance."""
     check_holds(slab, {"friction.dynamic": SLAB.dynamic, "body.thickness": SLAB.thickness, "body.density": SLAB.density})
@@ -181,6 +182,7 @@ def test_a_run_that_misses_the_recurrence_is_not_said_to_follow_the_record() -> 
     assert half > 0.01  # and the interval is as wide as such a misfit makes it: half of what 50 % of stiffness change in the drop
 
 
+@pytest.mark.slow
 def test_static_and_dynamic_friction_and_stiffness_come_out_of_levels_alone() -> None:
     study = levels_fit(["static", "dynamic", "stiffness"], 2.3e7, static=0.72)
     check_holds(study, {"friction.static": 0.7, "friction.dynamic": 0.6, "body.stiffness": 2e7})

@@ -96,6 +96,7 @@ def test_weights_are_those_of_rsfit3000() -> None:
         part.weights(replace(TRUTH, pull_rate=SLOW), 0.4)
 
 
+@pytest.mark.slow
 def test_weights_and_windows_change_the_numbers_of_a_wrong_model_and_are_told() -> None:
     shear = friction(TRUTH.pull_rate) + 0.003 * CLOCK**2 + 5e-5 * correlated(1800, 0.0, 5)
     free = ["distance", "reference"]

@@ -94,6 +94,7 @@ def test_static_friction_of_a_sharp_event_is_no_surer_than_the_mean_of_the_sampl
     assert not any("smoothly" in note for note in study.notes)
 
 
+@pytest.mark.slow
 def test_a_jump_is_found_and_its_time_is_as_unsure_as_the_samples_are_apart() -> None:
     study, true = jumping(0), CoulombSlab()
     for name, value in JUMPING.items():

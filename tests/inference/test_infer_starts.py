@@ -34,6 +34,7 @@ def begun(problem: ss.Problem, data: Any, free: list[str], **options: Any) -> In
     return ss.studies.infer(problem, data, free, **({"starts": 1, "sensor": "spring"} | options))
 
 
+@pytest.mark.slow
 def test_each_event_from_its_rest_is_found_from_numbers_with_which_nothing_slips() -> None:
     """With static friction 0.7 no part of the record reaches its strength: the given start tells a search nothing."""
     study = begun(guess(), stick_slip(), ["static", "dynamic"], parts="rests")

@@ -293,10 +293,10 @@ class Chosen(Crawl):
 @pytest.mark.parametrize(
     ("law", "rule", "driver"),
     [
-        ("hyperbolic", "maxwell", "stiff"),
+        pytest.param("hyperbolic", "maxwell", "stiff", marks=pytest.mark.slow),
         ("hyperbolic", "maximal", "matched"),
         ("waves", "minimal", "stiff"),
-        ("waves", "maximal", "stiff"),
+        pytest.param("waves", "maximal", "stiff", marks=pytest.mark.slow),
     ],
 )
 def test_other_rules_choose_anew_at_every_step_of_the_normal_stress(law: str, rule: str, driver: str) -> None:
@@ -360,6 +360,7 @@ def test_folds_move_with_slip_and_normal_stress_at_once() -> None:
     assert float(run.slip(20.0)) == pytest.approx(u, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_run_is_resumed_to_the_bit_while_its_folds_move(tmp_path: Path) -> None:
     problem, _ = case("stribeck", "sinusoid", "stiff", 1)
     whole = ss.simulate(problem, DURATION)

@@ -73,6 +73,7 @@ def test_a_run_stopped_before_its_first_event_continues_without_a_file(tmp_path:
         rows.take_up(1, 1, rows.digest(0))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("wrong", [{"told": -1}, {"first": "x"}, {"event_rate": float("nan")}])
 def test_numbers_of_a_checkpoint_are_checked(tmp_path: Path, wrong: dict[str, object]) -> None:
     checkpoint = began(tmp_path)
@@ -81,6 +82,7 @@ def test_numbers_of_a_checkpoint_are_checked(tmp_path: Path, wrong: dict[str, ob
         ss.resume(checkpoint, DURATION)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.skipif(os.name != "posix", reason="needs locks")
 @pytest.mark.parametrize("other", ["events.csv", "events.nc"])
 def test_two_runs_do_not_write_into_one_catalogue(tmp_path: Path, other: str) -> None:

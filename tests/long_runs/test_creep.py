@@ -98,6 +98,7 @@ def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tm
         assert differences(continued(path, duration), whole) == [], f"from {end}"
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("events", [1, 2])
 def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) -> None:

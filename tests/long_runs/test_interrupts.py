@@ -142,6 +142,7 @@ def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
         assert not lost(lambda: ss.simulate(slab, 6.0, frames=1), heard)
 
 
+@pytest.mark.slow
 def test_the_budget_of_slow_steps_falls_to_a_single_one() -> None:
     """Under a contact of so many nodes that a step of all of them takes a call."""
     pytest.importorskip("jax")

@@ -168,6 +168,7 @@ ss.simulate(problem, 1e5 * ss.YEAR, checkpoint="run.nc", checkpoint_every=0.0, p
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 def test_kill_leaves_a_checkpoint_that_continues(tmp_path: Path) -> None:
     killed(LONG, tmp_path, "run.nc", signal.SIGKILL, times=3)

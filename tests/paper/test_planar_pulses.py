@@ -80,6 +80,7 @@ def test_after_the_echo_the_middle_of_long_faults_slips_again() -> None:
     assert "one to four pulses" in ANSWER[2]
 
 
+@pytest.mark.slow
 def test_a_stored_row_is_what_the_run_gives() -> None:
     """L = h in 2D: the same pulses, at the same times to 0.02 s."""
     fault = Fault(pulsing(LARGE), 1.0)

@@ -52,6 +52,7 @@ def test_a_patch_slips_as_in_the_volume(driver: float) -> None:
     assert errors[1] < 0.5 * errors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("driver", [inf, 0.3])
 def test_a_patch_slips_as_convolution_says(driver: float) -> None:

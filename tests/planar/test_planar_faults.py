@@ -34,6 +34,7 @@ def check_end(run: Any, status: str) -> None:
     assert all(np.isfinite(getattr(run, name)).all() for name in ("slip", "slip_rate", "traction", "heat"))
 
 
+@pytest.mark.slow
 def test_rate_and_state_friction_far_below_the_grid_is_not_finite_and_not_resolved(tmp_path: Path) -> None:
     """The states of some nodes overflow, at which these nodes would seem to rest."""
     run = ss.simulate(state_patch(1e-6), 3.0, frames=16, checkpoint=tmp_path / "run.zarr")
@@ -71,6 +72,7 @@ def test_friction_that_would_drive_slip_ends_the_run(formula: str) -> None:
     check_end(ss.simulate(contact(ss.friction.FromExpression(formula), {}), 12.0, frames=32), "negative friction")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "slab",
     [

@@ -133,6 +133,7 @@ LAWS = {
 QUICK = ("half-space above",)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in LAWS])
 def test_any_law_on_a_uniform_contact_is_the_slab_in_1d(name: str) -> None:
     problem = LAWS[name]

@@ -85,6 +85,7 @@ def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, wh
     check_same(ss.open_solution(path), whole)
 
 
+@pytest.mark.slow
 def test_a_run_with_states_continues_bit_for_bit(tmp_path: Path) -> None:
     path = tmp_path / "run.zarr"
     ss.simulate(state_patch(), 3.0, frames=16, checkpoint=path, progress=stop_after(5))
@@ -161,6 +162,7 @@ def test_two_devices_continue_what_one_device_began(store: Path, whole: Any) -> 
     assert np.abs(found.slip - whole.slip).max() < 1e-12 * whole.slip.max()
 
 
+@pytest.mark.slow
 def test_xarray_reads_a_folder_while_the_run_continues(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr(run_loop, "SHARE", 1e9)  # a checkpoint at each frame
     seen = []

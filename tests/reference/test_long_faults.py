@@ -112,6 +112,7 @@ def _force(front: Front, end: float) -> float:
     return float(np.polyfit(times[seen][momentum < 3.2], momentum[momentum < 3.2], 1)[0])
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("speed", "near"), [(0.3, 10.0), (0.9, 22.0)])
 def test_a_steady_front_releases_g0_whatever_its_speed(speed: float, near: float) -> None:
@@ -150,6 +151,7 @@ def test_behind_a_front_faster_than_c_the_echo_heals() -> None:
     assert front.run.slip[healed] == pytest.approx(np.full(healed.sum(), 2.0), rel=2e-2)
 
 
+@pytest.mark.slow
 def test_a_front_speeds_up_or_stops_as_fracture_energy_says() -> None:
     """Gc = 0.9, 1 and 1.05 G0: towards c, steady within 3 % of the mean, stopped."""
     fast = _run(0.9, 0.4, 2.0, 40, 9.0)

@@ -34,7 +34,13 @@ METHODS = (volume, convolution)
 Method = Callable[[PlanarCase, float, int], PlanarSeries]
 
 
-@pytest.mark.parametrize(("method", "drivers"), [(volume, ((math.inf, 0.05), (0.0, 0.0))), (convolution, ((3e6, 0.0),))])
+@pytest.mark.parametrize(
+    ("method", "drivers"),
+    [
+        pytest.param(volume, ((math.inf, 0.05), (0.0, 0.0)), marks=pytest.mark.slow),
+        (convolution, ((3e6, 0.0),)),
+    ],
+)
 def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine(
     method: Method, drivers: tuple[tuple[float, float], ...]
 ) -> None:
@@ -52,7 +58,7 @@ def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine
         assert found.slip_rate[smooth, 1] == pytest.approx(run.slip_rate(found.times[smooth]), abs=2e-3 * run.slip_rate(0.0))
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("driver_impedance", [math.inf, 0.3, 0.0])
 def test_methods_agree_and_the_difference_falls(driver_impedance: float) -> None:
     """Weakening, echoes and arrest: 1.5e-3 of the largest slip at 128 steps in R; arrest and onset spoil order 2 a little."""
@@ -141,6 +147,7 @@ def test_a_patch_breaks_if_its_weakening_exceeds_the_critical_one(share: float, 
     assert breaks or slip.max() < 0.01 * friction.distance[0]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("driver_impedance", [math.inf, 0.3, 0.0])
 def test_energy_balance_of_the_volume_method(driver_impedance: float) -> None:
     """Energy and heat add up to a constant within 1e-12; the constant stems from the jump at the start, and is of order 1."""

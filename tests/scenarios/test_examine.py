@@ -146,7 +146,7 @@ def test_examine_names_the_jump_at_the_start() -> None:
     assert "jumps" not in examine(Scenario(heavy, 10.0)).start
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("kind", LAWS)
 def test_every_law_that_weakens_with_rate_has_critical_values(kind: str) -> None:
     problem = read_scenario(template("slab", kind), "new").problem

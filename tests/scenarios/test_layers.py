@@ -80,7 +80,7 @@ def test_check_warns_of_rest_that_is_walked_through() -> None:
     assert "the run ends before the first echo returns at R = 1.14286 s" in examine(long.with_values({"duration": 1.0})).warnings
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", [*NAMES, STRING])
 def test_a_run_that_is_saved_goes_on_to_the_bit(name: str, tmp_path: Path) -> None:
     scenario = ss.load_scenario(name)

@@ -46,7 +46,7 @@ def test_each_scheme_balances_its_own_energy_to_rounding(name: str, case: str) -
             assert damped[-1] > 0.0
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("name", SCHEMES)
 def test_the_heat_of_each_scheme_tends_to_that_of_the_exact_slab(name: str) -> None:
     regularised = name == "regularised"

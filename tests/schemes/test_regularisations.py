@@ -43,7 +43,7 @@ KINDS: dict[str, tuple[str | Scheme, Callable[[ss.Problem, float], ss.Problem]]]
 }
 
 
-@pytest.fixture(scope="module", params=KINDS)
+@pytest.fixture(scope="module", params=[pytest.param("contact-mass", marks=pytest.mark.slow), "lag", "direct-effect"])
 def loop(request: pytest.FixtureRequest) -> Schemes:
     """The loop of Fig. 4 under every kind."""
     return schemes(LOOP, scheme=KINDS[request.param][0], cells=MESHES)

@@ -178,6 +178,7 @@ def test_of_the_schemes_only_those_without_numerical_waves_do_not_ring() -> None
     assert (ringing[names[3:]] > 5.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("search", "expected"), [("stick-first", "minimal"), ("continue", "perfect-delay")])
 def test_verdicts_by_scheme_on_the_loop(search: str, expected: str) -> None:

@@ -32,6 +32,7 @@ def little_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
 
 
+@pytest.mark.slow
 def test_long_members_run_when_all_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
     reports: list[SweepProgress] = []
     done_before: list[int] = []

@@ -15,7 +15,7 @@ FAST = Slab(alpha=1.0, pull_rate=0.1234)
 """Pulled so fast that hundreds of events of all kinds (ended by the echo, by folds, fragments) come within 400 round trips."""
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("table", [ALPHA_ONE, JUST_ABOVE_CRITICAL], ids=lambda table: table.name)
 @pytest.mark.parametrize("digits", [50, 60])
 def test_the_files_hold_what_the_generator_makes(table: Table, digits: int) -> None:
@@ -25,6 +25,7 @@ def test_the_files_hold_what_the_generator_makes(table: Table, digits: int) -> N
     assert [tuple(row.values()) for row in stored[:15]] == made
 
 
+@pytest.mark.slow
 def test_slip_sheds_load_as_impulse_says() -> None:
     """The load of a whole round trip, by the forward maps at each phase, falls by 2 Z slip; to 1e-18 of what has been shed."""
     with mp.workdps(30):

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.explorer.browser.harness import Watched, serve
@@ -13,6 +14,7 @@ from tests.explorer.browser.harness import Watched, serve
 SMALL = ("planar-patch", "--set", "contact.nodes=32", "--set", "run.duration=2 s")
 
 
+@pytest.mark.slow
 def test_the_page_of_a_fault_answers_moves_pins_and_fits_a_phone(
     tmp_path: Path, chromium: Any, visit: Callable[..., Watched]
 ) -> None:

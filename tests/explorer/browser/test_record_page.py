@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
 import stickslip as ss
 from tests.explorer.browser.harness import Watched, serve
 
 
+@pytest.mark.slow
 def test_a_slider_changes_the_misfit_that_the_page_shows(tmp_path: Path, chromium: Any, visit: Callable[..., Watched]) -> None:
     time = np.linspace(0.0, 6.0, 200)
     shear = ss.simulate("fig6-block-reconstructed").traction(time)
