@@ -398,7 +398,7 @@ def test_law_of_backward_slip_is_odd_and_has_both_limits_where_friction_changes_
     assert law.coefficient == pytest.approx(np.repeat([-1.0, 1.0], len(law.x) // 2) * at_speed, rel=1e-15, abs=0.0)
 
 
-@pytest.mark.parametrize(("most", "duration"), [(50, 1.0e4), pytest.param(MOST_EVENTS, 1.0e5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("most", "duration"), [(50, 9.5e4), pytest.param(MOST_EVENTS, 1.0e5, marks=pytest.mark.slow)])
 def test_run_of_many_events_is_answered_without_a_look_at_each_pulse(
     most: int, duration: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
