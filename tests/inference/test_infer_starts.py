@@ -70,6 +70,7 @@ def test_a_start_that_the_user_chose_is_taken() -> None:
     assert study.table.start["friction.dynamic"] == pytest.approx(0.5, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_stiffness_that_the_record_contradicts_is_asked_about() -> None:
     question = "shear rises by 4"
     wrong, right = (begun(guess(stiffness=one), stick_slip(12.0), ["dynamic"], by="features").notes for one in (6e6, 4e6))

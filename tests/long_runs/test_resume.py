@@ -189,6 +189,7 @@ def test_ctrl_c_leaves_a_solution_that_continues(tmp_path: Path) -> None:
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("events", [1, 2])
 def test_an_event_that_begins_as_the_last_one_ends_is_not_counted(events: int, tmp_path: Path) -> None:
