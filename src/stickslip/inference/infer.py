@@ -265,7 +265,6 @@ def infer(
     model = model.with_(free=(*shared, *(one for one in model.free if one.part is not None)))
     notes += said
     notes += rounded_times(given.body, [one.name for one in model.free])
-    notes.sort(key=lambda note: not note.endswith("?"))  # questions first: they may make an answer worthless
     with telling(progress, "infer") as tell:
         for doubt in [note for note in notes if note.endswith("?")]:
             tell(doubt)

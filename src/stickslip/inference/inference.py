@@ -78,8 +78,11 @@ class Inference(FittedRecord):
 
     @property
     def notes(self) -> list[str]:
-        """Notes to read before using the numbers, one sentence each: what is not determined, and what raises doubts."""
-        return list(dict.fromkeys(notes_of(self)))
+        """Notes to read before using the numbers, one sentence each: what is not determined, and what raises doubts.
+
+        Questions come first: a wrong unit or sign makes all else worthless.
+        """
+        return sorted(dict.fromkeys(notes_of(self)), key=lambda note: not note.endswith("?"))
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
