@@ -132,6 +132,7 @@ PARTS = {
 
 _ORDER = {part: n for n, part in enumerate(PARTS)}
 _PLACES = np.array([Run.places[part.name.lower()].first for part in PARTS])
+"""Place of the address of each part in a run's memory, in the order of PARTS."""
 _at_hand = np.zeros(len(PARTS), np.int64)
 """Addresses of the parts that this process has compiled or loaded so far, in the order of PARTS; 0 for the others."""
 

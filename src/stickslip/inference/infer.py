@@ -265,14 +265,14 @@ def infer(
     model = model.with_(free=(*shared, *(one for one in model.free if one.part is not None)))
     notes += said
     notes += rounded_times(given.body, [one.name for one in model.free])
+    doubts = [note for note in notes if note.endswith("?")]
     with telling(progress, "infer") as tell:
-        for doubt in [note for note in notes if note.endswith("?")]:
+        for doubt in doubts:
             tell(doubt)
         try:
             found = _inferred(model, tuple(whole), wishes, notes, tell)
         except InputError as error:
-            doubts = [note for note in notes if note.endswith("?")]  # a unit or a sign may be why no run succeeds
-            raise InputError("; ".join([str(error), *doubts])) from None
+            raise InputError("; ".join([str(error), *doubts])) from None  # a unit or a sign may be why no run succeeds
     options = {"begin": begin, "end": end} | vars(wishes)
     return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
 

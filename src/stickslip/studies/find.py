@@ -41,6 +41,8 @@ MOST_DOUBLINGS = 12
 """Largest number of times that a range is doubled where no upper end is given."""
 CYCLES = 100
 """Duration of the runs from rest, in times that a cycle of stick-slip takes at the critical rate."""
+UNSETTLED = "without load, in the state of steady sliding, because only rounding would disturb the problem's own steady sliding"
+"""How runs start that would begin in steady sliding, and why."""
 MOST_PIECES = 100_000
 """Largest number of pieces of each run from rest."""
 
@@ -93,9 +95,6 @@ class Edge(StudyWithDataset):
 
 def _word(value: bool | int) -> str:
     return ("yes" if value else "no") if isinstance(value, bool) else str(value)
-
-
-UNSETTLED = "without load, in the state of steady sliding, because only rounding would disturb the problem's own steady sliding"
 
 
 def unsettled(problem: Problem) -> Problem:

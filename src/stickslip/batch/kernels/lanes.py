@@ -243,9 +243,8 @@ def prove(lanes: LaneBlock, radii: int, moves: bool, degree: int) -> None:
     force = force_on_disc(lanes.k, lanes.ball, load_on_disc(lanes.load_along_slip, lanes.powers, lanes.ratio, degree))
     size = lanes.tolerance * size_of_rate(lanes.rate)
     if moves:
-        missed = (
-            lanes.length * abs(lanes.k.speed) / lanes.k.inertia * force + bound_of_slope(lanes.rate, lanes.ratio)
-        ) * lanes.shrunk
+        slope = bound_of_slope(lanes.rate, lanes.ratio)
+        missed = (lanes.length * abs(lanes.k.speed) / lanes.k.inertia * force + slope) * lanes.shrunk
         resistance = lanes.k.inertia / (lanes.length * abs(lanes.k.speed))
     else:
         missed = force / lanes.k.damping * lanes.shrunk
@@ -292,7 +291,7 @@ def calculate(lanes: LaneBlock, taking: int) -> None:
     The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
     """
     length, rate, load = lanes.length, lanes.rate, lanes.row.load
-    if (length == lanes.powers[1]) & taking != taking:
+    if (length == lanes.powers[1]) & taking != taking:  # some steps have another length than that which was tried last
         stretch(lanes)
     multiply(lanes.local, lanes.powers, load)
     straight = lanes.k.speed * length * moment(rate, 1)

@@ -178,9 +178,8 @@ def _show_changes(dataset: xr.Dataset, *, is_grid: bool) -> None:
         if len(found) < 2:
             continue
         names = {0.0: "no", 1.0: "yes"} if "flag_values" in dataset[name].attrs else {}
-        shown = [(names.get(value, f"{value:g}"), members) for value, members in found.items()]
-        (first, members), *others = shown
-        counts = ", ".join([f"{first} in {members} member{'s' * (members > 1)}", *(f"{value} in {more}" for value, more in others)])
+        first, *others = [f"{names.get(value, f'{value:g}')} in {members}" for value, members in found.items()]
+        counts = ", ".join([f"{first} member{'' if first.endswith(' in 1') else 's'}", *others])
         along = "; ".join(_told(change, dataset) for change in changes(dataset, name)) if is_grid else ""
         say(screen, f"{name}: {counts}" + (f"; changes {along}" if along else ""))
 

@@ -26,8 +26,7 @@ from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import constants_of, formula_at
 from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
-from stickslip.engine.memory.simd import fused
-from stickslip.engine.series.polynomial import bound_of_slope, bounds_on_disc, multiply, powers_of
+from stickslip.engine.series.polynomial import bound_of_slope, bounds_on_disc, multiply, powers_of, variation_on_disc
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop
 from stickslip.engine.state.workspace import Run
@@ -92,17 +91,6 @@ def load_on_disc(load: Floats, powers: Floats, ratio: float, degree: int) -> flo
     if degree <= 1:
         return abs(load[1]) * powers[1] * ratio
     return variation_on_disc(load, powers, ratio)
-
-
-@inlined
-def variation_on_disc(c: Floats, powers: Floats, ratio: float) -> float:
-    """Return a bound on |p - c_0| on a disc, whose radius is `ratio` times the length that has the given powers."""
-    square = ratio * ratio
-    power, found = square, fused(ratio, abs(c[2]) * powers[2], abs(c[1]) * powers[1])
-    for n in range(3, TERMS - 1, 2):
-        found = fused(power, fused(ratio, abs(c[n + 1]) * powers[n + 1], abs(c[n]) * powers[n]), found)
-        power = power * square
-    return ratio * found
 
 
 @inlined

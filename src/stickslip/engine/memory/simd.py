@@ -201,7 +201,7 @@ def _exchanged(builder: Any, low: Any, high: Any, apart: int, upper: bool) -> An
 def bits_as_number(typingctx: Any, x: Any) -> Any:
     """Return the 64 bits of a float that is not negative, or of each lane, read as an integer and converted to a float.
 
-    Processors without registers of 512 bits convert integers of 64 bits one by one, but those without a sign side by side.
+    Lanes are read as integers without a sign: only these are converted side by side by processors without registers of 512 bits.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:

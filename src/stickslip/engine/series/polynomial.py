@@ -24,7 +24,7 @@ NONE = math.inf
 RECIPROCAL = np.array([0.0, *(1.0 / k for k in range(1, 2 * TERMS))])
 """1 / k at index k, and 0 at index 0: a product is faster than a division."""
 ONES = np.ones(TERMS)
-"""Weights of plain sums over coefficients, and powers of a radius of 1."""
+"""Weights of plain sums over coefficients."""
 LOW = 9
 """Number of terms (1) in the first, cheap test for a root."""
 
@@ -148,31 +148,31 @@ def turn_over(c: Floats) -> None:
 
 
 @inlined
-def size_on_disc(c: Floats, powers: Floats, first: int) -> float:
-    """Return the sum of |c_k| r^k for k >= `first`, from the powers of r: with 1, a bound on |p - c_0| on a disc of radius r."""
-    a, b = abs(c[first]) * powers[first], abs(c[first + 1]) * powers[first + 1]
-    d, e = abs(c[first + 2]) * powers[first + 2], abs(c[first + 3]) * powers[first + 3]
+def sizes_from(c: Floats, first: int) -> float:
+    """Return the sum of |c_k| for k >= `first`."""
+    a, b, d, e = abs(c[first]), abs(c[first + 1]), abs(c[first + 2]), abs(c[first + 3])
     for k in range(first + 4, TERMS - 3, 4):
-        a, b = a + abs(c[k]) * powers[k], b + abs(c[k + 1]) * powers[k + 1]
-        d, e = d + abs(c[k + 2]) * powers[k + 2], e + abs(c[k + 3]) * powers[k + 3]
+        a, b, d, e = a + abs(c[k]), b + abs(c[k + 1]), d + abs(c[k + 2]), e + abs(c[k + 3])
     for k in range(TERMS - (TERMS - first) % 4, TERMS):
-        a = a + abs(c[k]) * powers[k]
+        a = a + abs(c[k])
     return (a + b) + (d + e)
 
 
 @inlined
 def magnitude(c: Floats) -> float:
     """Return the sum of |c_k| for k >= 1: a bound on |p - c_0| on [-1, 1]."""
-    return size_on_disc(c, ONES, 1)
+    return sizes_from(c, 1)
 
 
 @inlined
-def slope_on_disc(c: Floats, powers: Floats) -> float:
-    """Return the sum of k |c_k| r^(k - 1) for k >= 2, from the powers of r: a bound on |p' - c_1| on a disc of radius r."""
-    a, b = 2.0 * abs(c[2]) * powers[1], 3.0 * abs(c[3]) * powers[2]
-    for k in range(4, TERMS - 1, 2):
-        a, b = a + k * abs(c[k]) * powers[k - 1], b + (k + 1) * abs(c[k + 1]) * powers[k]
-    return a + b + (TERMS - 1) * abs(c[TERMS - 1]) * powers[TERMS - 2]
+def variation_on_disc(c: Floats, powers: Floats, ratio: float) -> float:
+    """Return a bound on |p - c_0| on a disc, whose radius is `ratio` times the length that has the given powers."""
+    square = ratio * ratio
+    power, found = square, fused(ratio, abs(c[2]) * powers[2], abs(c[1]) * powers[1])
+    for n in range(3, TERMS - 1, 2):
+        found = fused(power, fused(ratio, abs(c[n + 1]) * powers[n + 1], abs(c[n]) * powers[n]), found)
+        power = power * square
+    return ratio * found
 
 
 @inlined
@@ -304,7 +304,7 @@ def bound_below(c: Floats) -> float:
         for k in range(1, j + 1):
             coefficient += LOW_BERNSTEIN[k, j] * c[k]
         least = min(least, coefficient)
-    return least - size_on_disc(c, ONES, LOW)
+    return least - sizes_from(c, LOW)
 
 
 @kernel
@@ -445,7 +445,7 @@ def _bisect(c: Floats, sign: float, part: Floats, out: Floats, most: int) -> int
             start, width = _next_interval(start, width)
             continue
         definite = abs(part[0]) > tail
-        if not definite and abs(part[1]) <= slope_on_disc(part, ONES) and width >= SMALLEST_INTERVAL:
+        if not definite and abs(part[1]) <= bound_of_slope(part, 1.0) and width >= SMALLEST_INTERVAL:
             width *= 0.5
             continue
         before, after = evaluate(part, -1.0), total(part)

@@ -176,11 +176,11 @@ def as_begun(plan: Plan, path: Path, group: zarr.Group) -> Plan:
     """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
     ours = attributes(plan)
     for name in _VERSION:
-        theirs = str(group.attrs.get(name))[:60]
+        theirs = group.attrs.get(name)
         if theirs != ours[name]:
             raise InputError(
-                f"{path}: was made by another version of stickslip ({theirs!a}, this is {ours[name]!r}), which alone can"
-                " continue it: choose another name to begin anew"
+                f"{path}: was made by another version of stickslip ({str(theirs)[:60]!a}, this is {ours[name]!r}), which alone"
+                " can continue it: choose another name to begin anew"
             )
     different = "from another scenario" if group.attrs.get("scenario") != ours["scenario"] else _design_differs(plan, group)
     if different:
