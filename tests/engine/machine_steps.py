@@ -74,6 +74,7 @@ class Slab:
     pull: Callable[[float], float]
     pull_breaks: tuple[float, ...]
     stress: float  # at the start, everywhere in the slab
+    beyond: float = 0.0  # the far stress, minus that
 
     def run(self, trips: int) -> tuple[Parts, Parts, Parts, list[float]]:
         """Return the slip rate, the load and the machine's rate as functions of time, and the times of onset and arrest."""
@@ -126,7 +127,7 @@ class Slab:
                 return self.pull(at) + slope * (t - at)
 
             def change(t: float, y: np.ndarray, fit: Function = fit, pulled: Function = pulled) -> list[float]:
-                push = self.kp * pulled(t) + self.stress + self.ki * y[1] + float(fit(t - self.T))
+                push = self.kp * pulled(t) + self.stress + self.beyond + self.ki * y[1] + float(fit(t - self.T))
                 quick = push / (self.kp + self.Z) if self.inertia == 0.0 else y[0]
                 faster = 0.0 if self.inertia == 0.0 else (push - (self.kp + self.Z) * y[0]) / self.inertia
                 return [faster, pulled(t) - quick]
@@ -142,7 +143,9 @@ class Slab:
                 y = sol(t)
                 if self.inertia > 0.0:
                     return y[0]
-                return (self.kp * pulled(t) + self.stress + self.ki * y[1] + fit(np.asarray(t) - self.T)) / (self.kp + self.Z)
+                return (self.kp * pulled(t) + self.stress + self.beyond + self.ki * y[1] + fit(np.asarray(t) - self.T)) / (
+                    self.kp + self.Z
+                )
 
             machine.add(end, moved)
             lag = done.y[:, -1]

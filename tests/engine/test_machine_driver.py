@@ -72,6 +72,37 @@ def test_run_agrees_with_the_method_of_steps(body: ElasticSlab, law: ss.Friction
     assert np.quantile(apart, 0.995) < 1e-8 * np.abs(driven).max()
 
 
+@pytest.mark.sampled(every=3)
+@pytest.mark.parametrize(("inertia", "gain"), [(0.0, 0.02), (1.3, 0.3), (0.4, 1e-3)])
+def test_a_far_stress_acts_beside_an_integral_gain_as_the_method_of_steps_says(inertia: float, gain: float) -> None:
+    trips, pull, beyond, body = 6, 0.03, 4e4, slab(inertia, 0.55, gain)
+    problem = ss.Problem(body, COULOMB, pull_rate=pull, initial_excess=-2e4, far_stress=0.6 * STRESS - 2e4 + beyond)
+    solution = ss.simulate(problem, 2.0 * trips * T)
+    machine = body.driver_inertia, body.driver_impedance, body.driver_integral_gain
+    start = 0.6 * STRESS - 2e4, beyond
+    own = Slab(Z, T, 0.0, 0.6 * STRESS, lambda v: 0.4 * STRESS, *machine, lambda t: pull, (), *start)
+    rate, load, driver, events = own.run(trips)
+    assert len(events) >= 1
+    time = np.linspace(1e-3 * T, 2.0 * trips * T * 0.9999, 3001)
+    far = np.abs(load(time) - solution.load(time)) > 1e-7 * STRESS
+    assert far.mean() < 3e-3  # next to a front, whose time is known to 1e-13 s only
+    assert np.abs(solution.slip_rate(time) - rate(time))[~far].max() < 1e-8 * np.abs(rate(time)).max()
+    known = time[time < time[-1] - T]
+    apart = np.abs(solution.field(THICKNESS, known).velocity - driver(known))
+    assert np.quantile(apart, 0.995) < 1e-8 * np.abs(driver(known)).max()
+
+
+def test_a_gain_that_vanishes_leaves_the_far_stress_its_slip() -> None:
+    """The motion tends to that without a gain in proportion to the gain, with the far stress below and above the initial load."""
+    for far in (5.2e5, 8e5):
+        problem = ss.Problem(slab(0.0, 0.5), COULOMB, pull_rate=0.01, far_stress=far, initial_excess=0.0)
+        slipped = [
+            ss.simulate(replace(problem, body=slab(0.0, 0.5, gain)), 20.0 * T).slip(20.0 * T) for gain in (0.0, 1e-9, 1e-5, 1e-4)
+        ]
+        assert slipped[1] == pytest.approx(slipped[0], rel=1e-7, abs=0.0)
+        assert (slipped[3] - slipped[0]) / (slipped[2] - slipped[0]) == pytest.approx(10.0, rel=0.01, abs=0.0)
+
+
 def test_step_of_the_far_stress_moves_a_mass_as_an_exponential() -> None:
     inertia, impedance, step, when = 0.7 * Z * T, 1.5 * Z, 1e4, 0.25 * T
     body = replace(RIGID, driver_inertia=inertia, driver_impedance=impedance)

@@ -220,23 +220,20 @@ def gain_of(body: BodyOnCharacteristics) -> Any:
 def machine_at_first(problem: Problem) -> tuple[float, float]:
     """Return the rate (m/s) of a machine when the first wave of the run leaves it, and the force of its integral gain (Pa).
 
-    A machine with a mass starts at the pull rate. Its integral force makes up for a far stress that does not balance the stress in
-    the slab; without an integral gain such a far stress accelerates it. Without mass the balance of forces sets its rate at once.
+    A machine with a mass starts at the pull rate; without mass the balance of forces sets its rate at once. The integral is 0 at
+    the start, so that a far stress that does not balance the stress in the slab acts as a jump, whatever the gain: it accelerates
+    the machine. The smaller the gain, the closer the motion comes to that without one.
     """
     body = problem.body
-    far, push = problem.far_stress, 0.0
-    if body.driver_integral_gain > 0.0 and far is not None:
-        first = far.first if isinstance(far, LoadingHistory) else far
-        push = far_at_first(problem) - (first - problem.strength)
     if body.driver_inertia > 0.0:
-        return problem.first_pull_rate, push
+        return problem.first_pull_rate, 0.0
     if isinstance(body, OfLayers):
         force = float(inflow_of(problem).at(np.array(0.0)))
         left = body.last_impedance * (problem.rate + problem.initial_shear) - far_at_first(problem)
     else:
         force = float(inflow_of(problem).at(np.array(0.5 * body.round_trip_time)))
         left = body.impedance * problem.initial_shear - wave_before(problem)
-    return (force + push + left) / (body.last_impedance + body.driver_impedance), push
+    return (force + left) / (body.last_impedance + body.driver_impedance), 0.0
 
 
 def settled_rate(problem: Problem, time: Floats) -> Floats:
