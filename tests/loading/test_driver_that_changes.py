@@ -218,6 +218,25 @@ def test_a_step_to_the_same_driver_changes_no_bit() -> None:
     assert typed.driver_steps == ((0.0, typed.body.reflection), (R, -1.0), (2.0 * R, typed.body.reflection))
 
 
+LAYERS = [300.0, 700.0], [2000.0, 2800.0], [1500.0, 3500.0]
+
+
+@pytest.mark.parametrize("body", [SLAB, ss.LayeredSlab(*LAYERS, STRESS), ss.TwoSlabs(*LAYERS, *LAYERS, STRESS, sides="joined")])
+@pytest.mark.parametrize(
+    "far", [{"far_stress": 3e7, "far_stress_rate": 1e3}, {"far_stress": Steps([0.0, R], [3e7, 4e7])}], ids=["number", "history"]
+)
+def test_a_driver_that_only_ever_is_rigid_does_not_feel_the_far_stress(body: Any, far: dict[str, Any]) -> None:
+    """So a sweep over where the driver is set free, or to what, may include never, and the rigid driver."""
+    plain = ss.Problem(body, LAW, pull_rate=0.01, initial_load=5.9e7)
+    never = replace(plain, driver_reflection=steps((1.3, -1.0), (7.0, -1.0)), **far)
+    runs = [ss.simulate(problem, 30.0 * R) for problem in (plain, never)]
+    assert len(runs[0].events) > 0
+    assert runs[0].history.store.pieces.tobytes() == runs[1].history.store.pieces.tobytes()
+    assert balance(runs[1], np.linspace(R, 29.0 * R, 7)) < 1e-9
+    found = [ss.studies.steady(problem, from_rest=False).lines() for problem in (plain, never)]
+    assert found[0] == found[1]
+
+
 @pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("stop", [0.4, 1.7, 2.6, 5.5, 300.0])
 def test_a_run_that_is_taken_up_again_has_every_bit_of_one_that_never_stopped(stop: float, tmp_path: Path) -> None:
@@ -257,7 +276,7 @@ STRING = ss.load_scenario("drill-string").problem.body
             "driver_reflection needs a far_stress, because the driver is rigid at first: 0 Pa if nothing holds",
         ),
         (
-            {"driver_reflection": steps((1.0, -1.0))},
+            {"driver_reflection": None},
             "far_stress and far_stress_rate need a slab with a finite driver_impedance",
         ),
         (

@@ -145,6 +145,29 @@ def test_options_that_need_a_constant_pull_refuse_another(how: dict[str, float],
         ss.simulate(ss.Problem(SLAB, LAW, pull_rate=STEPS, initial_excess=-1.0), 1.0, **how)  # type: ignore[arg-type] # that is the point
 
 
+SOFT = replace(SLAB, driver_impedance=1e6)
+ROCK = {"friction": ss.friction.RateAndState(0.6, a=0.01, b=0.012, distance=1e-5), "initial_load": 5e7, "initial_state": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("fields", "missing"),
+    [
+        ({"pull_rate": Steps([0, 5], [1e-6, 1e-5])}, "a constant pull rate and normal load"),
+        ({"body": BLOCK, "pull_rate": Steps([0, 5], [1e-6, 1e-5])}, "a constant pull rate and normal load"),
+        ({"body": SOFT, "far_stress": Steps([0, 5], [5e7, 6e7])}, "a constant far stress"),
+        ({"body": SOFT, "far_stress_rate": 1.0}, "a constant far stress"),
+        ({"body": replace(SOFT, driver_inertia=1e3)}, "a driver without a mass and an integral gain"),
+        ({"ground_acceleration": PiecewiseLinear([0, 1, 2], [0, 1, 0])}, "ground at rest"),
+        ({"body": ss.LayeredSlab([100.0], [2800.0], [3500.0], SLAB.normal_stress)}, "a body of one layer"),
+        ({"pull_rate": 0.0}, "a pull rate that is not 0"),
+    ],
+)
+def test_the_reason_why_steady_sliding_cannot_be_leapt_over_is_the_right_one(fields: dict[str, Any], missing: str) -> None:
+    problem = ss.Problem(**{"body": SLAB, "pull_rate": 1e-6} | ROCK | fields)
+    with pytest.raises(ss.InputError, match=f"creep_rtol must be 0 here: leaps over creep need {missing}$"):
+        ss.simulate(problem, 1.0, creep_rtol=1e-6)
+
+
 def test_a_period_too_short_for_a_round_trip_is_refused() -> None:
     tone = Sinusoidal(1e-9, 1e-9, period=1e-9)
     with pytest.raises(

@@ -176,7 +176,7 @@ class _Steady:
         """Return why nothing slides steadily, "" if something may."""
         problem, law = self.problem, self.problem.friction
         first = " at first" if problem.loading_varies else ""
-        if problem.far_stress_rate:
+        if problem.far_stress_rate and not problem.is_driven_rigidly:
             return "the far stress keeps changing"
         if problem.body.has_machine and not problem.body.is_uniform:
             return "not sought for layers behind a driver with a mass or an integral gain"

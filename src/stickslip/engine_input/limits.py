@@ -22,6 +22,8 @@ from stickslip.bodies import BodyOnCharacteristics, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
+from stickslip.friction import FrictionLaw
+from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 MOST_ROUND_TRIPS = 2**53
@@ -61,8 +63,7 @@ def _but_pull(problem: Problem) -> Over:
     if not missing_for_creep(problem):
         return "creep"
     law = problem.friction
-    changes = problem.varies or (problem.far_stress_rate != 0.0 and not problem.body.is_driven_rigidly)
-    if changes or law.depends_on_slip or not (law.depends_on_rate or law.states):
+    if not _slides_alike(law) or _what_changes(problem):
         return ""
     body = problem.body
     never_rests = law.creeps and bool(law.states) and len(law.pieces) == 1
@@ -78,7 +79,7 @@ def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, nam
         allowed = f"0 (no leaps over creep, every round trip is run) or at most {LARGEST_RTOL:g}"
         raise InputError(f"{where}: {name} must be {allowed}, got {creep_rtol:g}")
     if creep_rtol > 0.0 and not leaps_over(problem):
-        missing = missing_for_creep(problem) or "a pull rate that is not 0"
+        missing = _missing_for_leaps(problem) or "a pull rate that is not 0"
         raise InputError(f"{where}: {name} must be 0 here: leaps over creep need {missing}")
     return creep_rtol
 
@@ -97,16 +98,41 @@ def missing_for_creep(problem: Problem) -> str:
     if has_dashpot(body):
         return f"a contact that waves alone damp (the damping of this {type(body).__name__} is not its impedance)"
     if law.states or law.depends_on_rate:
-        return f"a friction law of slip alone ({type(law).__name__} is not one)"
+        return f"a friction law of slip alone, or one without slip ({type(law).__name__} is neither)"
     if law.memory != "all":
         return "a friction law that remembers all slip (no memory of its own)"
     if problem.ground is not None or problem.one_way:
         return "ground at rest, and slip in both directions"
+    return _what_changes(problem)
+
+
+def _missing_for_leaps(problem: Problem) -> str:
+    """Return what a problem lacks for any leaps, besides a pull rate, in words; empty if it lacks nothing.
+
+    Steady sliding may be leapt over on any uniform body, unless something changes.
+    """
+    if not _slides_alike(problem.friction):
+        return missing_for_creep(problem)
+    return _what_changes(problem) if problem.body.is_uniform else "a body of one layer"
+
+
+def _slides_alike(law: FrictionLaw) -> bool:
+    """Return True if friction may be the same for ever while a contact slides: it depends on slip rate or state, not on slip."""
+    return not law.depends_on_slip and (law.depends_on_rate or bool(law.states))
+
+
+def _what_changes(problem: Problem) -> str:
+    """Return what would have to be constant for leaps, in words; empty if it is."""
     if problem.driver_changes:
         return "a driver that does not change"
-    if problem.varies:
-        return "a constant pull rate and normal load"
-    return ""
+    if problem.ground is not None:
+        return "ground at rest"
+    varies = isinstance(problem.far_stress, LoadingHistory) or problem.far_stress_rate != 0.0
+    if varies and not problem.body.is_driven_rigidly:
+        return "a constant far stress"
+    if problem.body.has_machine:
+        return "a driver without a mass and an integral gain"
+    return "a constant pull rate and normal load" if problem.varies else ""
 
 
 LARGEST_SHARE = 0.01

@@ -259,7 +259,7 @@ class ProblemFields(CheckedArguments):
                 "Problem: driver_reflection needs a far_stress, because the driver is rigid at first:"
                 f" 0 {unit} if nothing holds the far end that is set free"
             )
-        if not self.driver_changes and (self.far_stress is not None or self.far_stress_rate != 0.0):
+        if self.driver_reflection is None and (self.far_stress is not None or self.far_stress_rate != 0.0):
             noun = self.body.noun if self.body.has_waves else "slab"
             raise InputError(f"Problem: far_stress and far_stress_rate need a {noun} with a finite driver_impedance")
 
@@ -277,9 +277,14 @@ class ProblemFields(CheckedArguments):
         return tuple(name for name in MAY_VARY if isinstance(getattr(self, name), LoadingHistory))
 
     @property
+    def _felt(self) -> tuple[str, ...]:
+        """The names of what varies and acts on the body: a far stress behind a driver that stays rigid does not."""
+        return tuple(name for name in self._varying if name != "far_stress" or not self.is_driven_rigidly)
+
+    @property
     def varies(self) -> bool:
         """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or is a machine."""
-        return self.driver_changes or any(name != "driver_reflection" for name in self._varying) or self.body.has_machine
+        return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self.body.has_machine
 
     @cached_property
     def driver_steps(self) -> tuple[tuple[float, float], ...]:
@@ -317,7 +322,7 @@ class ProblemFields(CheckedArguments):
     @property
     def loading_varies(self) -> bool:
         """True if the pull rate or the far stress is a loading history, or the driver changes."""
-        return self.driver_changes or any(name not in HISTORIES_ONLY for name in self._varying)
+        return self.driver_changes or any(name not in HISTORIES_ONLY for name in self._felt)
 
     @cached_property
     def ground(self) -> Ground | None:

@@ -81,7 +81,7 @@ class GridContact:
         self._path = law.counts == "path"
         self._law_slip, self._slip = problem.law_slip, problem.initial_slip
         self._bottom = float(law.range()[0])
-        self._yields = problem.excess == 0.0 and (problem.first_pull_rate > 0.0 or problem.far_stress_rate > 0.0)
+        self._yields = problem.excess == 0.0 and (problem.first_pull_rate > 0.0 or _far_rate(problem) > 0.0)
 
     def meet(self, meeting: Meeting, before: float) -> Met:
         """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
@@ -192,11 +192,17 @@ def check_suitable(problem: Problem) -> None:
     GridContact(problem)
 
 
+def _far_rate(problem: Problem) -> float:
+    """Return the rate of change of the far stress (Pa/s) that the driver lets through: 0 if it is rigid."""
+    return 0.0 if problem.is_driven_rigidly else problem.far_stress_rate
+
+
 def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Grid:
     """Return the grid of a run of some duration (s). Raises InputError if it has too few or too many cells."""
     check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
     slab = _slab_of(problem)
-    far = problem.load if problem.far_stress is None else float(problem.far_stress)  # type: ignore[arg-type]
+    given = None if problem.is_driven_rigidly else problem.far_stress  # a rigid driver does not feel it
+    far = problem.load if given is None else float(given)  # type: ignore[arg-type] # constant here
     return Grid(
         cells=cells,
         density=slab.density,
@@ -206,7 +212,7 @@ def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Gr
         pull_rate=problem.first_pull_rate,
         stress=problem.load,
         far_stress=far - problem.load,
-        far_stress_rate=problem.far_stress_rate,
+        far_stress_rate=_far_rate(problem),
         slip=problem.initial_slip,
         courant=courant,
         problem=problem,

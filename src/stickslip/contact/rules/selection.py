@@ -176,9 +176,9 @@ def load_bound(problem: Problem, g: Resistance) -> float:
     distance |load - Z V| does not grow, or is at most |Z V| plus the largest friction, if v lies between 0 and V.
     """
     body, far = problem.body, problem.load if problem.far_stress is None else problem.far_stress
-    if problem.varies or problem.far_stress_rate != 0.0 or body.reflection >= 1.0:
+    rigid = problem.is_driven_rigidly
+    if problem.varies or (problem.far_stress_rate != 0.0 and not rigid) or body.reflection >= 1.0:
         return math.inf
-    rigid = math.isinf(body.driver_impedance)
     freely = problem.first_pull_rate + (0.0 if rigid else float(far) / body.driver_impedance)  # type: ignore[arg-type] # constant here
     apart = abs(problem.load) + 3.0 * body.impedance * max(abs(problem.first_pull_rate), abs(freely))
     return body.impedance * abs(freely) + max(apart, body.impedance * abs(freely) + g.largest_friction)
