@@ -92,6 +92,75 @@ def test_runs_from_rest_have_a_limit(monkeypatch: pytest.MonkeyPatch):
     assert "from rest: not known, because a run did not reach its end" in str(ss.studies.steady(AXIS))
 
 
+RISES = ss.friction.FromExpression("0.3 + 0.3*exp(-v/v1) + 0.001*v/v1", {"v1": "1 m/s"})
+SLOW = ss.ElasticSlab(density=2800, wave_speed=50, thickness=143, normal_stress="1.43 MPa")
+"""A slab in which waves run at 50 m/s; it sticks from rest up to more than that, though sliding is stable from 5.7 m/s on."""
+
+
+def test_the_search_from_rest_ends_where_a_body_would_slide_as_fast_as_its_waves():
+    problem = ss.Problem(SLOW, RISES, pull_rate=0.5, initial_load=0.0)
+    rest = ss.studies.steady(problem).from_rest
+    assert rest is not None
+    assert (rest.sticks_at, rest.slides_at, rest.fastest) == (50.0, None, 50.0)
+    assert f"from rest it sticks at every rate that was tried, up to 50 m/s, as fast as its waves run (by {rest.runs} exact" in str(
+        rest
+    )
+    with refused("find: at both loading.pull_rate = 5.1"):
+        ss.studies.find(problem, duration=rest.duration)
+    slower = replace(problem, body=replace(SLOW, density=28_000, wave_speed=5))
+    assert str(ss.studies.steady(slower).from_rest) == "from rest: not examined, because waves run at 5 m/s only"
+
+
+@pytest.mark.parametrize(
+    ("body", "fastest"),
+    [
+        (SLOW, 50.0),
+        (ss.TwoSlabs([1.0], [2.0], [30.0], [1.0, 1.0], [2.0, 2.0], [40.0, 20.0], 1.0), 20.0),
+        (ss.TorsionalString(1e3, 8000.0, 8e10, 0.2, normal_torque=1.0), 31_622.7766),
+        (ss.TorsionalString(1e3, 8000.0, 8e10, polar_moment=math.pi / 32.0 * 0.2**4, normal_torque=1.0), 31_622.7766),
+        (ss.SectionedString([10.0, 10.0], [0.2, 0.4], [0.0, 0.0], [8000.0] * 2, [8e10] * 2, normal_torque=1.0), 15_811.3883),
+        (BODY, math.inf),
+    ],
+)
+def test_the_fastest_rate_is_that_at_which_the_surface_moves_as_fast_as_waves(body: Any, fastest: float):
+    assert body.fastest_rate == pytest.approx(fastest, rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [
+        (
+            1800,
+            "sticks at 106 mm/s and slides at 212 mm/s (by 2 exact runs of 21.1 s); at 0.15 m/s it is not known",
+        ),
+        (5000, "sticks up to 155 mm/s (to 2 %, by 8 exact runs of 21.1 s)"),
+    ],
+)
+def test_what_is_not_known_from_rest_is_said_between_two_runs(limit: int, said: str, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(sys.modules["stickslip.studies.find"], "MOST_PIECES", limit)
+    assert f"from rest it {said}" in str(ss.studies.steady(AXIS))
+
+
+def test_what_is_not_known_from_rest_is_said_beyond_the_last_run(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(sys.modules["stickslip.studies.find"], "MOST_PIECES", 55_000)
+    rest = ss.studies.steady(ss.Problem(SLOW, RISES, pull_rate=0.5, initial_load=0.0)).from_rest
+    assert rest is not None
+    assert rest.stopped_at == pytest.approx(2.0 * rest.sticks_at, rel=1e-12, abs=0.0)
+    assert str(rest).startswith("from rest it still sticks at 11.6 m/s (by 2 exact runs of ")
+    assert str(rest).endswith("; at 23.3 m/s it is not known, because a run met its limit before its end")
+
+
+def test_each_range_of_stability_has_its_two_ends():
+    """Friction 0.3/(1 + v^2) + v/1e4 falls from 1/6000 m/s to 18.13 m/s, by hand: 0.6 v = (1 + v^2)^2/1e4."""
+    law = ss.friction.FromExpression("0.3/(1 + v**2/w**2) + 0.0001*v/w", {"w": "1 m/s"})
+    found = ss.studies.steady(ss.Problem(replace(BODY, damping=0.0), law, pull_rate=0.5, initial_load=0.0), from_rest=False)
+    low, high = (float(f"{one.rate:.9g}") for one in found.changes)
+    for rate in (low, high):
+        assert 0.6 * rate == pytest.approx((1.0 + rate**2) ** 2 / 1e4, rel=1e-7, abs=0.0)
+    ranges = f"stable below a pull rate of {low} m/s, unstable from {low} m/s to {high} m/s, stable above {high} m/s"
+    assert ranges in str(found.lines()[-1])
+
+
 def test_an_edge_and_steady_sliding_are_drawn(tmp_path: Path):
     edge = ss.studies.find(AXIS, "pull_rate", 0.05, 0.4, duration=5.0, within=0.3)
     drawn = edge.to_dataset()

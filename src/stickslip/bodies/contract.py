@@ -125,6 +125,11 @@ class BodyOnCharacteristics(Body, Protocol):
         """The impedance at the driver (Pa s/m)."""
         ...
 
+    @property
+    def fastest_rate(self) -> float:
+        """The slip rate (m/s) at which the body would slide as fast as its (slowest) waves run; inf without waves."""
+        ...
+
 
 MACHINE = "a driver with a mass or an integral gain"
 """Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
@@ -238,6 +243,11 @@ class WithWaves(WithNormalLoad):
         return self.impedance
 
     @property
+    def fastest_rate(self: BodyWithWaves) -> float:
+        """The slip rate (m/s) at which the body would slide as fast as its waves run."""
+        return self.wave_speed
+
+    @property
     def has_inertia(self: BodyWithWaves) -> bool:
         """True if a mass slips with the contact, so that its slip rate cannot jump."""
         return self.inertia > 0.0
@@ -319,6 +329,7 @@ class OnSpring(WithNormalLoad):
     driver_integral_gain: ClassVar[float] = 0.0
     reflection: ClassVar[float] = 0.0
     inflow_delay: ClassVar[float] = 0.0
+    fastest_rate: ClassVar[float] = math.inf
 
     @property
     def last_impedance(self: BodyOnCharacteristics) -> float:

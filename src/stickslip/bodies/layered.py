@@ -130,6 +130,11 @@ class OfLayers(WithWaves, ABC):
         """The thickness of all layers (m), with their travel times rounded to cells."""
         return math.fsum(h for one in self.stacks for h in one.thickness)
 
+    @property
+    def fastest_rate(self) -> float:
+        """The slip rate (m/s) at which the body would slide as fast as waves run in its slowest layer."""
+        return min(min(one.wave_speed) for one in self.stacks)
+
     @cached_property
     def reflection(self) -> float:
         """The reflection coefficient of the (first) driver for waves in the last layer."""

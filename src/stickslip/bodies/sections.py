@@ -95,6 +95,11 @@ class SectionedString(Declared, OnBit, OfOneSide):
         return tuple(math.sqrt(stiff / rho) for stiff, rho in zip(self.shear_modulus, self.density, strict=True))
 
     @property
+    def fastest_rate(self) -> float:
+        """The slip rate (rad/s) at which the surface of a section would move as fast as its waves run."""
+        return min(2.0 * speed / outer for speed, outer in zip(self.wave_speeds, self.outer_diameter, strict=True))
+
+    @property
     def inertia_per_length(self) -> tuple[float, ...]:
         """The moment of inertia per length rho J of each section (kg m)."""
         moments = (polar_moment_of(*both) for both in zip(self.outer_diameter, self.inner_diameter, strict=True))

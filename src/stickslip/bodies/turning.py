@@ -150,6 +150,15 @@ class TorsionalString(Declared, OnBit, WithWaves):
         return found
 
     @property
+    def fastest_rate(self) -> float:
+        """The slip rate (rad/s) at which the surface of the string would move as fast as its waves run.
+
+        Where the diameters are not known, the string is as thin as its polar moment allows.
+        """
+        outer = self.outer_diameter or (32.0 / math.pi * self.section) ** 0.25
+        return 2.0 * self.wave_speed / outer
+
+    @property
     def inertia_per_length(self) -> float:
         """The moment of inertia per length, I = rho J (kg m)."""
         return self.density * self.section

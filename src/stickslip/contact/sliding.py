@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Unpack
 
@@ -108,20 +109,44 @@ class FromRest:
     """Duration of each run (s)."""
     load_unit: str = field(default="Pa", repr=False)
     """Unit of loads of the body, which decides the other units."""
+    stopped_at: float | None = None
+    """The pull rate (m/s) of a run that met its limit before its end, so that nothing is known there; None if none did."""
+    fastest: float | None = None
+    """The pull rate (m/s) at which the body would slide as fast as its waves run, if the runs went up to it; else None."""
 
-    units: ClassVar = {"sticks_at": "slip_rate", "slides_at": "slip_rate", "duration": "s"}
+    units: ClassVar = dict.fromkeys(("sticks_at", "slides_at", "stopped_at", "fastest"), "slip_rate") | {"duration": "s"}
     __repr__ = brief_repr
 
     def __str__(self) -> str:
-        runs = f"{self.runs} exact run{'s' * (self.runs > 1)} of {brief(self.duration, 's', 3)}"
-        unit = si_unit("slip_rate", self.load_unit)
+        by = f"by {self.runs} exact run{'s' * (self.runs > 1)} of {brief(self.duration, 's', 3)}"
         if self.sticks_at is None:
-            if self.slides_at is None:
-                return "from rest: not known, because a run did not reach its end"
-            return f"from rest it slides at {brief(self.slides_at, unit, 3)}, too (by {runs})"
-        if self.slides_at is None:
-            return f"from rest it still sticks at {brief(self.sticks_at, unit, 3)} (by {runs}; stickslip find looks further)"
-        return f"from rest it sticks up to {brief(self.sticks_at, unit, 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
+            return self._unless_it_sticks(by)
+        sticks = self._rate(self.sticks_at)
+        if self.stopped_at is not None:
+            also = "" if self.slides_at is None else f" and slides at {self._rate(self.slides_at)}"
+            still = "still sticks" if self.slides_at is None else "sticks"
+            return f"from rest it {still} at {sticks}{also} ({by}); {self._unknown}"
+        if self.slides_at is not None:
+            return f"from rest it sticks up to {sticks} (to {100.0 * FROM_REST_WITHIN:g} %, {by})"
+        if self.fastest is not None:
+            return f"from rest it sticks at every rate that was tried, up to {sticks}, as fast as its waves run ({by})"
+        return f"from rest it still sticks at {sticks} ({by}; stickslip find looks further)"
+
+    def _unless_it_sticks(self, by: str) -> str:
+        """Return the sentence if no run stuck."""
+        if self.slides_at is not None:
+            return f"from rest it slides at {self._rate(self.slides_at)}, too ({by})"
+        if self.fastest is not None:
+            return f"from rest: not examined, because waves run at {self._rate(self.fastest)} only"
+        return "from rest: not known, because a run did not reach its end"
+
+    @property
+    def _unknown(self) -> str:
+        assert self.stopped_at is not None
+        return f"at {self._rate(self.stopped_at)} it is not known, because a run met its limit before its end"
+
+    def _rate(self, value: float) -> str:
+        return brief(value, si_unit("slip_rate", self.load_unit), 3)
 
 
 FROM_REST_WITHIN = 0.02
@@ -237,12 +262,19 @@ class SteadySlidings:
             return f"{self.slidings[0].verdict} at any other slip rate, too (proven{self._searched})" * (len(self.slidings) == 1)
         if not self.changes:
             return ""
-        texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
-        texts += [f"{self._place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
         hint = "" if self.regained is None else "; from rest it may stick at a higher rate all the same: stickslip find"
         hint = hint if self.from_rest is None else f"; {self.from_rest}"
         how = f"proven by interval arithmetic{self._searched}" if self.proven else f"found{self._searched}, not proven"
-        return f"{' '.join(texts)} ({how}){hint}"
+        return f"{', '.join(self._ranges())} ({how}){hint}"
+
+    def _ranges(self) -> Iterator[str]:
+        """Yield the words for each range of rates between two changes, and for the ranges below and above all of them."""
+        first, last, words = self.changes[0], self.changes[-1], ("unstable", "stable")
+        rates = [f"{one.rate:.9g} {self._rate}" for one in self.changes]
+        yield f"{words[not first.stable_above]} below {self._place(first)}"
+        for one, low, high in zip(self.changes[1:], rates, rates[1:], strict=False):
+            yield f"{words[not one.stable_above]} from {low} to {high}{self._pulled(one)}"
+        yield f"{words[last.stable_above]} above{f' {rates[-1]}' * (len(rates) > 1)}"
 
     @property
     def _rate(self) -> str:
@@ -257,12 +289,15 @@ class SteadySlidings:
 
     def _place(self, change: StabilityChange) -> str:
         """Return the words for where stability changes."""
-        if change.pull_rate is None:
-            return f"a slip rate of {change.rate:.9g} {self._rate}"
-        if change.pull_rate == change.rate:
-            return f"a pull rate of {change.rate:.9g} {self._rate}"
+        of = "pull" if change.pull_rate == change.rate else "slip"
+        return f"a {of} rate of {change.rate:.9g} {self._rate}{self._pulled(change)}"
+
+    def _pulled(self, change: StabilityChange) -> str:
+        """Return the words for the pull rate that leads to a change, if it is not the slip rate."""
+        if change.pull_rate is None or change.pull_rate == change.rate:
+            return ""
         back = " (the driver would have to move back)" * (self.far_stress is not None and change.pull_rate * self.pull_rate < 0.0)
-        return f"a slip rate of {change.rate:.9g} {self._rate}, at a pull rate of {change.pull_rate:.9g} {self._rate}{back}"
+        return f", at a pull rate of {change.pull_rate:.9g} {self._rate}{back}"
 
 
 def driven_at(rate: float, *, is_driven_rigidly: bool, unit: str = "m/s") -> str:

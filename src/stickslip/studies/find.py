@@ -192,20 +192,32 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
     lasts = CYCLES * (body.round_trip_time + max(fall, 0.0) / (body.stiffness * critical))
     scenario = Scenario(problem, lasts)
     search = _EdgeSearch(scenario, find_parameter(scenario, "pull_rate", "steady"), "sticking", lasts, tell, MOST_PIECES)
-    sticks, slides = None, None
+    sticks, slides, stopped, fastest = None, None, None, fastest_pull(found)
+    rate = critical * (1.0 + FROM_REST_WITHIN)
+    if rate > fastest:
+        return FromRest(None, None, 0, lasts, found.unit, fastest=fastest)
     try:
-        rate = critical * (1.0 + FROM_REST_WITHIN)
         for _ in range(MOST_DOUBLINGS):
             if not search.at(math.copysign(rate, found.pull_rate)):
                 slides = rate
                 break
-            sticks, rate = rate, 2.0 * rate
+            sticks, rate = rate, min(2.0 * rate, fastest)
+            if sticks == fastest:
+                break
         while sticks is not None and slides is not None and slides - sticks > FROM_REST_WITHIN * slides:
-            middle = math.sqrt(sticks * slides)
-            sticks, slides = (middle, slides) if search.at(math.copysign(middle, found.pull_rate)) else (sticks, middle)
+            rate = math.sqrt(sticks * slides)
+            sticks, slides = (rate, slides) if search.at(math.copysign(rate, found.pull_rate)) else (sticks, rate)
     except InputError:  # a run did not reach its end: what was found before holds
-        pass
-    return FromRest(sticks, slides, len(search.seen), lasts, found.unit)
+        stopped = rate
+    return FromRest(sticks, slides, len(search.seen), lasts, found.unit, stopped, fastest if sticks == fastest else None)
+
+
+def fastest_pull(found: SteadySlidings) -> float:
+    """Return the pull rate (m/s) that makes the body slide as fast as its waves run: faster is not meant; inf without waves."""
+    assert found.problem is not None
+    changes = [one for one in found.changes if one.pull_rate is not None]
+    given_way = max((abs(one.pull_rate) - one.rate for one in changes), default=0.0)  # type: ignore[arg-type] # filtered above
+    return found.problem.body.fastest_rate + max(given_way, 0.0)
 
 
 @dataclass(frozen=True)
@@ -248,17 +260,18 @@ class _EdgeSearch:
             return min(low, high), max(low, high)
         if self.parameter.name != "loading.pull_rate" or (low is None) != (high is None):
             raise InputError(f"find: give two values of {self.parameter.name} between which to look")
-        gained = [one.pull_rate for one in steady_slidings(self.scenario.problem).changes if one.stable_above and one.pull_rate]
+        found = steady_slidings(self.scenario.problem)
+        gained, fastest = [one.pull_rate for one in found.changes if one.stable_above and one.pull_rate], fastest_pull(found)
         if not gained:
             raise InputError(
                 "find: give two pull rates between which to look: there is none at which steady sliding becomes stable"
             )
         least = 0.9 * abs(gained[-1])
-        most = 2.0 * least
+        most = min(2.0 * least, fastest) if least < fastest else 2.0 * least
         for _ in range(MOST_DOUBLINGS):
-            if self.at(most) != self.at(least):
-                return least, most
-            most *= 2.0
+            if self.at(most) != self.at(least) or most == fastest:
+                break
+            most = min(2.0 * most, fastest)
         return least, most
 
     def edge(self, low: float, high: float, within: float) -> Edge:
