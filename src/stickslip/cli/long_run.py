@@ -113,10 +113,10 @@ class Request:
         assert self.scenario is not None
         return load_with("run", self.scenario, self.changes, contact=True, **self.overrides)
 
-    def file_of(self, solution: Solution) -> Path | None:
-        """Return the file into which the run wrote its solution: a full history is written only if --max-pieces was given."""
-        writes = self.max_pieces is not None or solution.status.name != "too many pieces"
-        return (self.out or self.resume) if writes else None
+    @property
+    def file(self) -> Path | None:
+        """The file into which the run writes its solution, or None."""
+        return self.out or self.resume
 
 
 def solve_contact(request: Request) -> PlanarSolution:

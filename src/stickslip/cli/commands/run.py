@@ -33,8 +33,8 @@ SHORTEST_EVENT = (
     "only where a round trip has more than 4096 pieces. 0 resolves them all."
 )
 MAX_PIECES = (
-    "Largest number of pieces of history (0.42 kB each); the history is written whatever ended the run. Not given: a million, and "
-    "a run that needs more is not written."
+    "Largest number of pieces of history (0.42 kB each). Not given: a million. A run that needs more, or more than a sixth of the "
+    "free memory, ends there; --out keeps what there is, and --resume goes on with a larger number."
 )
 OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] a new folder (.zarr)."
 CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
@@ -86,6 +86,7 @@ def run(
     from stickslip.cli.long_run import Request, list_events, solve, solve_contact
     from stickslip.cli.output.contact import show_run
     from stickslip.cli.output.summary import show_catalogue, show_solution
+    from stickslip.trajectory.status import SHORT_OF_MEMORY, TOO_MANY
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
@@ -114,10 +115,13 @@ def run(
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
-    file = request.file_of(solution)
-    if (out or resume) and file is None:
-        typer.echo(f"not written: {out or resume} ({len(solution.history)} pieces; --max-pieces allows more, and writes them)")
-    announce(file, *pictures.draw(solution))
+    announce(request.file, *pictures.draw(solution))
+    if request.file is not None and solution.status.name == TOO_MANY:
+        again = f"stickslip run --resume {request.file}"
+        if solution.status.message.startswith(SHORT_OF_MEMORY):
+            typer.echo(f"nothing is lost: {again} goes on from there once more memory is free")
+        else:
+            typer.echo(f"nothing is lost: {again} --max-pieces {2 * len(solution.history)} goes on from there")
     _leave(solution.status)
 
 
