@@ -220,7 +220,7 @@ def test_laws_of_slip_lump_nothing() -> None:
 # ---- histories that are full --------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("options", [{}, {"max_pieces": 2000}], ids=["default", "asked for"])
+@pytest.mark.parametrize("options", [{}, pytest.param({"max_pieces": 2000}, marks=pytest.mark.slow)], ids=["default", "asked for"])
 def test_a_full_history_is_written_and_goes_on_with_more_pieces(
     options: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,7 +13,6 @@ from uuid import uuid4
 
 import pytest
 
-
 SETTING = """
 import hashlib, sys, threading
 import stickslip as ss

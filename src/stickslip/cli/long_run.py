@@ -114,6 +114,14 @@ class Request:
         return load_with("run", self.scenario, self.changes, contact=True, **self.overrides)
 
     @property
+    def most_pieces(self) -> int:
+        """The largest number of pieces that the history of a catalogue may have."""
+        from stickslip.run.catalogue import CAPACITY
+        from stickslip.run.options import MAX_PIECES
+
+        return max(self.max_pieces or MAX_PIECES, CAPACITY)
+
+    @property
     def file(self) -> Path | None:
         """The file into which the run writes its solution, or None."""
         return self.out or self.resume

@@ -25,6 +25,8 @@ SIZES |= {"KiB": 2.0**10, "MiB": 2.0**20, "GiB": 2.0**30, "TiB": 2.0**40}
 """Bytes of each unit of a size."""
 GROUPS = Path("/sys/fs/cgroup")
 """Where Linux shows control groups."""
+OWN_GROUPS = Path("/proc/self/cgroup")
+"""Where it says to which of them this process belongs."""
 FILES = {
     "": ("memory.max", "memory.current", "inactive_file"),
     "memory": ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
@@ -36,28 +38,31 @@ is short: of the second version, and of the first, where memory has a folder of 
 def granted(wanted: float, taken: float) -> float:
     """Return how much memory a result may take (bytes): what is wanted, or a share of what is free and of what it has taken so far.
 
-    Raises InputError as `free_memory` does.
+    Raises InputError as `chosen_memory` does.
     """
-    is_set = bool(os.environ.get(SETTING))
-    if wanted <= SMALL and not is_set:
-        return wanted
-    return min(wanted, SHARE * (free_memory() + (0.0 if is_set else taken)))
+    chosen = chosen_memory()
+    if chosen is not None:
+        return min(wanted, SHARE * chosen)
+    return wanted if wanted <= SMALL else min(wanted, SHARE * (free_memory() + taken))
+
+
+def chosen_memory() -> float | None:
+    """Return the memory to count on that the environment variable STICKSLIP_MEMORY names (bytes), or None if it is not set.
+
+    Raises InputError if that is no size.
+    """
+    text = os.environ.get(SETTING)
+    return size_of(text) if text else None
 
 
 def free_memory() -> float:
-    """Return the number of bytes that this process may still take, or infinity if nothing is known about it.
-
-    Raises InputError if the environment variable STICKSLIP_MEMORY is set to what is no size.
-    """
-    chosen = os.environ.get(SETTING)
-    if chosen:
-        return size_of(chosen)
+    """Return the number of bytes that this process may still take, or infinity if nothing is known about it."""
     return max(0.0, min((*_of_system(), *_of_groups(), *_of_limits()), default=math.inf))
 
 
 def size_of(text: str) -> float:
     """Return a size in bytes from a text such as "8 GB". Raises InputError for any other text."""
-    found = re.fullmatch(r"\s*(\d{1,20}(?:\.\d{1,20})?)\s*([A-Za-z]*)\s*", text)
+    found = re.fullmatch(r"\s*([0-9]{1,20}(?:\.[0-9]{1,20})?)\s*([A-Za-z]*)\s*", text)
     if found is None or found[2] not in SIZES or float(found[1]) == 0.0:
         raise InputError(f"{SETTING}: {ascii(text)[:60]} is not a size of memory; write it like 8 GB")
     return float(found[1]) * SIZES[found[2]]
@@ -77,7 +82,7 @@ def _of_system() -> Iterator[float]:
 def _of_groups() -> Iterator[float]:
     """Yield what each control group above this process has left, where it has a limit."""
     with suppress(OSError):
-        for line in Path("/proc/self/cgroup").read_text().splitlines():
+        for line in OWN_GROUPS.read_text().splitlines():
             _, kinds, place = line.split(":", 2)
             kind = "memory" if "memory" in kinds.split(",") else ""
             if kinds and not kind:

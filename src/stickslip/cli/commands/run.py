@@ -86,7 +86,6 @@ def run(
     from stickslip.cli.long_run import Request, list_events, solve, solve_contact
     from stickslip.cli.output.contact import show_run
     from stickslip.cli.output.summary import show_catalogue, show_solution
-    from stickslip.trajectory.status import SHORT_OF_MEMORY, TOO_MANY
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
@@ -112,17 +111,24 @@ def run(
         show_catalogue(chosen, found)
         if pictures.wanted:
             announce(*pictures.draw_events(found.read(), chosen.title or chosen.name, chosen.problem.load_unit))
+        _say_how_to_go_on(found.status, found.files[-1], request.most_pieces)
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
     announce(request.file, *pictures.draw(solution))
-    if request.file is not None and solution.status.name == TOO_MANY:
-        again = f"stickslip run --resume {request.file}"
-        if solution.status.message.startswith(SHORT_OF_MEMORY):
-            typer.echo(f"nothing is lost: {again} goes on from there once more memory is free")
-        else:
-            typer.echo(f"nothing is lost: {again} --max-pieces {2 * len(solution.history)} goes on from there")
+    _say_how_to_go_on(solution.status, request.file, len(solution.history))
     _leave(solution.status)
+
+
+def _say_how_to_go_on(status: Status, file: Path | None, pieces: int) -> None:
+    """Say in one line how a run whose history is full goes on from its file, if it has one."""
+    from stickslip.trajectory.status import SHORT_OF_MEMORY, TOO_MANY
+
+    if file is None or status.name != TOO_MANY:
+        return
+    short = status.message.startswith(SHORT_OF_MEMORY)
+    more, once = ("", " once more memory is free") if short else (f" --max-pieces {2 * pieces}", "")
+    typer.echo(f"nothing is lost: stickslip run --resume {file}{more} goes on from there{once}")
 
 
 def _leave(status: Status) -> NoReturn:
