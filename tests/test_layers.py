@@ -39,7 +39,7 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "axis", "determined", "names", "units"),
+        ("arguments", "atomic_write", "axis", "determined", "memory", "names", "units"),
         ("conversion", "headings", "netcdf_file"),
         ("columns", "quantities"),
         ("other_values", "show", "text_columns"),

@@ -17,6 +17,7 @@ import stickslip as ss
 from stickslip.cli.output.files import file_size
 from stickslip.io.catalogue_rows import read_table
 from stickslip.run.progress import Progress, Report
+from stickslip.scenarios.scenario import Scenario
 from tests.long_runs.problems import differences
 
 
@@ -141,18 +142,60 @@ def test_progress_is_shown_in_sensible_units():
     assert str(start) == "0 of 12 s, 1 of 4 slip events, slipping"
 
 
-@pytest.mark.slow
-def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def typed_in(line: str) -> list[str]:
+    """Return the words of the command that a line of output names."""
+    return line.partition("stickslip ")[2].partition(" goes on")[0].split()
+
+
+@pytest.mark.parametrize("limit", [(), pytest.param(("--max-pieces", "600"), marks=pytest.mark.slow)], ids=["default", "asked for"])
+def test_a_full_history_is_written_and_the_line_that_says_how_goes_on(
+    command, limit: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 500)
-    arguments = "run", "fig5-slab-printed", "--duration", "10 minutes", "--out", "run.nc"
-    shown = command(*arguments)
-    assert shown.code == 1
-    assert "too many pieces" in shown.out
-    assert "not written: run.nc" in shown.out
-    assert not (tmp_path / "run.nc").exists()
-    assert "\nwritten: run.nc" in command(*arguments, "--max-pieces", "600").out
+    shown = command("run", "fig5-slab-printed", "--duration", "3 minutes", "--out", "run.nc", *limit)
+    assert (shown.code, shown.err) == (1, "")
+    assert "\ntoo many pieces" in shown.out
+    assert "\nwritten: run.nc" in shown.out
+    lines = [line for line in shown.out.splitlines() if line.startswith("nothing is lost")]
+    pieces = len(ss.open_solution(tmp_path / "run.nc").history)
+    assert pieces > (600 if limit else 500)
+    assert lines == [f"nothing is lost: stickslip run --resume run.nc --max-pieces {2 * pieces} goes on from there"]
+    again = command(*typed_in(lines[0]))
+    assert len(ss.open_solution(tmp_path / "run.nc").history) > 1.5 * pieces
+    assert again.code == (0 if "\nfinished" in again.out else 1)
     assert command("run", "--resume", "run.nc", "--max-pieces", "20000").code == 0
+    whole = ss.simulate("fig5-slab-printed", "3 minutes", max_pieces=20_000)
+    assert differences(ss.open_solution(tmp_path / "run.nc"), whole) == []
+
+
+def test_a_history_for_which_memory_is_short_is_written(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("STICKSLIP_MEMORY", "3 MB")
+    shown = command("run", "fig5-slab-printed", "--duration", "3 minutes", "--out", "run.nc", "--max-pieces", "100000000")
+    assert (shown.code, shown.err) == (1, "")
+    assert "\ntoo many pieces: memory is short: " in shown.out
+    lines = [line for line in shown.out.splitlines() if line.startswith("nothing is lost")]
+    assert lines == ["nothing is lost: stickslip run --resume run.nc goes on from there once more memory is free"]
+    monkeypatch.delenv("STICKSLIP_MEMORY")
+    assert command(*typed_in(lines[0])).code == 0
     assert ss.open_solution(tmp_path / "run.nc").status.name == "finished"
+
+
+def test_a_size_of_memory_that_is_none_is_refused_in_one_line(command, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("STICKSLIP_MEMORY", "much")
+    said = "STICKSLIP_MEMORY: 'much' is not a size of memory; write it like 8 GB\n"
+    assert command("run", "fig5-slab-printed").refusal == said
+
+
+def test_a_catalogue_whose_history_is_full_says_how_it_goes_on(command, tmp_path: Path):
+    """A block that always slides has one event, whose history is kept."""
+    pull = ss.loading.Sinusoidal(1.0, 0.5, 1.0)
+    block = ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0), "0.5 + 0.01*v", pull_rate=pull, initial_rate=1.0, initial_load=0.5)
+    Path("slides.toml").write_text(Scenario(block, 3000.0).to_toml())
+    shown = command("run", "slides.toml", "--catalogue", "events.csv", "--max-pieces", "300")
+    assert shown.code == 1
+    lines = [line for line in shown.out.splitlines() if line.startswith("nothing is lost")]
+    assert lines == ["nothing is lost: stickslip run --resume events.checkpoint.nc --max-pieces 32768 goes on from there"]
+    assert command(*typed_in(lines[0])).code == 0
 
 
 def test_a_large_file_is_named_with_its_size(command, monkeypatch: pytest.MonkeyPatch):

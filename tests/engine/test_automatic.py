@@ -220,19 +220,55 @@ def test_laws_of_slip_lump_nothing() -> None:
 # ---- histories that are full --------------------------------------------------------------------------------------------------
 
 
-def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("options", [{}, pytest.param({"max_pieces": 2000}, marks=pytest.mark.slow)], ids=["default", "asked for"])
+def test_a_full_history_is_written_and_goes_on_with_more_pieces(
+    options: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
     monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 1000)
-    full = ss.simulate(printed(1), short, checkpoint=file)
+    full = ss.simulate(printed(1), short, checkpoint=file, **options)
+    kept = ss.open_solution(file)
     assert full.status.name == "too many pieces"
-    assert not file.exists()
-    ss.simulate(printed(1), short, checkpoint=file, max_pieces=2000)
-    assert ss.open_solution(file).status.name == "too many pieces"
-    before = file.read_bytes()
-    assert ss.resume(file).status.name == "too many pieces"
-    assert file.read_bytes() == before
-    assert ss.resume(file, max_pieces=20_000).status.name == "finished"
+    assert kept.status == full.status
+    assert same_pieces(kept, full, len(full.history))
+    again = ss.resume(file)
+    assert again.status.name == "too many pieces"
+    assert len(again.history) == len(full.history)
+    more = ss.resume(file, max_pieces=20_000)
+    whole = ss.simulate(printed(1), short, max_pieces=20_000)
+    assert more.status.name == "finished"
     assert ss.open_solution(file).status.name == "finished"
+    assert len(more.history) == len(whole.history)
+    assert same_pieces(more, whole, len(whole.history))
+
+
+def test_a_long_run_that_was_stopped_goes_on_without_a_number_of_pieces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It had more than the default allows, because it was allowed more; it is not full."""
+    file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
+
+    def stop(report: Any) -> None:
+        if report.pieces > 3000:
+            raise KeyboardInterrupt
+
+    stopped = ss.simulate(printed(1), short, checkpoint=file, max_pieces=20_000, progress=stop)
+    monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 1000)
+    assert stopped.status.name == "interrupted"
+    more = ss.resume(file)
+    assert len(more.history) > 1.25 * len(stopped.history)
+
+
+def test_a_history_takes_a_share_of_the_memory_that_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """12 MB are counted on, of which a history may take 2: some 4 000 pieces."""
+    file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
+    monkeypatch.setenv("STICKSLIP_MEMORY", "12 MB")
+    full = ss.simulate(printed(1), short, checkpoint=file, max_pieces=100_000_000)
+    assert full.status.name == "too many pieces"
+    assert full.status.message.startswith("memory is short: the history takes 0.002 GB with ")
+    assert 3000 < len(full.history) < 5000
+    assert "max_pieces" not in full.status.message
+    assert same_pieces(ss.open_solution(file), full, len(full.history))
+    monkeypatch.delenv("STICKSLIP_MEMORY")
+    assert ss.resume(file).status.name == "finished"
 
 
 CROWDS: dict[str, tuple[ss.Problem, float, dict[str, Any], set[str]]] = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,9 +37,6 @@ from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
 
-LOADING = Lock()
-"""Lock around the compilation of formulas: if two threads loaded the same formula, machine code whose address the other thread
-holds would be freed."""
 PARTS = 4
 """Parts into which the interval of a fold is cut: few, because many folds are found together."""
 MOST_TURNS = 64
@@ -65,13 +61,12 @@ def alike(scenario: Scenario, values: Values) -> Alike:
     """Return what the members of one group (`vectorised_problem.groups`) share. Compiles the law's formulas if they are new."""
     problem = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
     law = problem.friction
-    with LOADING:
-        compiled = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
-        functions = functions_of(compiled, problem)
-        in_lanes = [] if steps_alone(problem) else compiled
-        parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes", "values_in_lanes"
-        jets = np.array([formula.address(part) for formula in in_lanes for part in parts], np.int64)
-        prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
+    compiled = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
+    functions = functions_of(compiled, problem)
+    in_lanes = [] if steps_alone(problem) else compiled
+    parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes", "values_in_lanes"
+    jets = np.array([formula.address(part) for formula in in_lanes for part in parts], np.int64)
+    prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
     set_lumping(counts, problem, scenario.shortest_event)
     wait_for_creep(counts, problem, scenario.creep_rtol)

@@ -113,10 +113,18 @@ class Request:
         assert self.scenario is not None
         return load_with("run", self.scenario, self.changes, contact=True, **self.overrides)
 
-    def file_of(self, solution: Solution) -> Path | None:
-        """Return the file into which the run wrote its solution: a full history is written only if --max-pieces was given."""
-        writes = self.max_pieces is not None or solution.status.name != "too many pieces"
-        return (self.out or self.resume) if writes else None
+    @property
+    def most_pieces(self) -> int:
+        """The largest number of pieces that the history of a catalogue may have."""
+        from stickslip.run.catalogue import CAPACITY
+        from stickslip.run.options import MAX_PIECES
+
+        return max(self.max_pieces or MAX_PIECES, CAPACITY)
+
+    @property
+    def file(self) -> Path | None:
+        """The file into which the run writes its solution, or None."""
+        return self.out or self.resume
 
 
 def solve_contact(request: Request) -> PlanarSolution:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ctypes
 import weakref
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import Any
 
 from numpy.typing import NDArray
 
+from stickslip.engine.compile.lock import LOCK, made_once
 from stickslip.engine.compile.uncompiled import MATHS, UNCOMPILED, as_python, handle_of
 from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import ORDER, SIDE_BY_SIDE, SIGNATURES, FormulaWriter
@@ -30,7 +30,8 @@ NAMES: dict[str, Any] = {**vars(ball_radii), **CALLED, "fused": fused, "sine": s
 class CompiledFormula:
     """The compiled functions of a friction formula (see `formula_code.taylor_series`); `size` is the number of constants they need.
 
-    Each function is written and compiled when it is first needed.
+    Each function is written and compiled when it is first needed, once for all threads: addresses of its machine code are handed
+    on, and are good as long as this object lives.
     """
 
     def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> None:
@@ -41,11 +42,15 @@ class CompiledFormula:
     def address(self, part: str) -> int:
         """Return the address of one of the functions, given its name in `taylor_series.SIGNATURES`."""
         if part not in self._functions:
-            text = self._writer.statements(part)
-            self._functions[part] = (
-                _Python(part, text) if UNCOMPILED else MachineCode(text, SIGNATURES[part], part in SIDE_BY_SIDE, NAMES)
-            )
+            with LOCK:
+                if part not in self._functions:
+                    self._functions[part] = self._made(part)
         return int(self._functions[part].address)
+
+    def _made(self, part: str) -> Any:
+        """Write and compile one of the functions."""
+        text = self._writer.statements(part)
+        return _Python(part, text) if UNCOMPILED else MachineCode(text, SIGNATURES[part], part in SIDE_BY_SIDE, NAMES)
 
     def fill(self, values: Floats, reference: float, constants: Floats) -> None:
         """Fill `constants`, of length `size`, from the values of the formula's parameters and the reference slip (m)."""
@@ -77,7 +82,7 @@ class _Python:
         self.address = handle_of(self.function)
 
 
-@lru_cache(maxsize=32)
+@made_once(32)
 def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> CompiledFormula:
     """Return the compiled functions of a formula; equal formulas share one object in problems that follow each other.
 

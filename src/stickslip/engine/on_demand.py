@@ -5,12 +5,12 @@ Most runs need none of them, and each costs seconds to compile. A part is one fu
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from stickslip.engine.compile.kernels import address_of, kernel
+from stickslip.engine.compile.lock import made_once
 from stickslip.engine.compile.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.contact.pressing import press_ahead
 from stickslip.engine.contact_step.implicit_step import slip_implicitly, stick_with_state
@@ -108,7 +108,7 @@ def negative_friction(memory: int, task: int, length: float) -> float:
     return 1.0 if goes_below_zero(run, run.history[run.counts.length].rate, length) else 0.0
 
 
-@cache
+@made_once()
 def part_at(part: Any) -> int:
     """Return the address of a part. Compiles it, or takes it from the cache on disk."""
     if not UNCOMPILED:

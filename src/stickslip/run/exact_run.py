@@ -107,7 +107,7 @@ class ExactRun(Session):
     def finish(self, code: int) -> Solution:
         """Return the solution with the status that belongs to this code, and write it if a file for it was given."""
         solution = self.solution(code)
-        if self.options.checkpoint is not None and self.options.keeps(code):
+        if self.options.checkpoint is not None:
             solution.to_netcdf(self.options.checkpoint)
         return solution
 
@@ -127,7 +127,8 @@ class ExactRun(Session):
         if heals and body.has_waves and body.is_driven_rigidly and counts[-2:].max() > counts[len(counts) // 2]:
             cures.append("a driver that lets waves out and yet holds the slab (driver_impedance and driver_integral_gain)")
         half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
-        return Crowd(self.length, history.duration, half, last, options.duration).status(cures)
+        taken = self.taken if self.is_short_of_memory else None
+        return Crowd(self.length, history.duration, half, last, options.duration, taken).status(cures)
 
     def forget_reported(self) -> int:
         """Discard history that neither events to come nor the engine need. Returns the number of pieces discarded.

@@ -12,12 +12,13 @@ from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.memory import chosen_memory
 from stickslip.foundation.quantities import declare
 from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
 from stickslip.scenarios.source import read_source
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES
+from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, TOO_MANY
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -38,8 +39,7 @@ LARGEST_HISTORY = 1_000_000_000
 class RunOptions:
     """How long and how accurately to run a problem, and what to report and store on the way.
 
-    The fields are the arguments of `stickslip.simulate`, where they are described. In a catalogue `checkpoint` is not used. A
-    history of MAX_PIECES pieces is written to the file only if `max_pieces` was given.
+    The fields are the arguments of `stickslip.simulate`, where they are described. In a catalogue `checkpoint` is not used.
     """
 
     duration: Number = declare(DURATION)
@@ -68,9 +68,12 @@ class RunOptions:
     def to_continue(cls, stopped: Solution, duration: float | str | WithUnit | None, max_events: int | None, **others: Any) -> Self:
         """Return the options to continue a stopped run: its own where none are given, and `others` beside them.
 
-        A run that has already had its number of events continues without one.
+        A run that has already had its number of events continues without one. Without a limit of its own it may come to half as
+        many pieces again as it has, unless it has stopped because it had as many as it was allowed.
         """
-        had_them = stopped.status == STATUSES[ENOUGH_EVENTS]
+        had_them, had = stopped.status == STATUSES[ENOUGH_EVENTS], len(stopped.history)
+        if others.get("max_pieces") is None and stopped.status.name != TOO_MANY:
+            others["max_pieces"] = max(MAX_PIECES, had + had // 2)
         return cls(
             stopped.asked_duration if duration is None else duration,
             stopped.rtol,
@@ -90,6 +93,7 @@ class RunOptions:
         checked = self.checked(who)
         check_creep_rtol(problem, checked.creep_rtol, who)
         check_shortest_event(problem, checked.shortest_event, who)
+        chosen_memory()  # refused now, and not when a history has grown
         return checked
 
     def checked(self, who: str) -> Self:
@@ -115,10 +119,6 @@ class RunOptions:
     def most_pieces(self) -> int:
         """The largest number of pieces that the history may have."""
         return MAX_PIECES if self.max_pieces is None else self.max_pieces
-
-    def keeps(self, code: int) -> bool:
-        """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
-        return code != FULL_HISTORY or self.max_pieces is not None
 
 
 def options_of(source: Problem | PlanarSlab | Scenario, **given: Any) -> RunOptions:

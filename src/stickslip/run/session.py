@@ -21,6 +21,7 @@ from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import renewed
 from stickslip.engine_input.limits import creep_tolerance, lumping_note, split_time
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.memory import granted
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.trajectory.history import NO_LEAPS, History
@@ -33,6 +34,8 @@ FIRST_ROWS = 64
 """Initial number of rows of waves of a body of layers; it grows fourfold when they are not enough for two round trips."""
 SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
+WORTH = 1.25
+"""Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
 
 
 @dataclass(eq=False)
@@ -56,6 +59,8 @@ class Session:
     """Number of pieces of history that have been discarded."""
     end_is_ahead: bool = False
     """True if the next call must let the end of the run cut pieces and leaps."""
+    is_short_of_memory: bool = False
+    """True if the history is full because memory is short."""
 
     def __post_init__(self) -> None:
         self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
@@ -85,6 +90,7 @@ class Session:
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
+        capacity = max(checkpoint.length, min(capacity, options.most_pieces + SPARE))
         run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
         run.restore(checkpoint)
         return run
@@ -158,14 +164,33 @@ class Session:
             return self._more_rows()
         if self.length >= max_pieces:
             return False
-        with suppress(MemoryError):
-            self.reserve(min(4 * len(self.store.pieces), max_pieces + SPARE))
-            return True
+        room, waves = len(self.store.pieces), self.waves.nbytes
+        wanted = min(4 * room, max_pieces + SPARE)
+        fits = int((granted(wanted * self.size_of_piece + waves, self.taken) - waves) / self.size_of_piece)
+        if fits >= min(wanted, WORTH * room):
+            with suppress(MemoryError):
+                self.reserve(min(wanted, fits))
+                return True
+        self.is_short_of_memory = True
         return False
+
+    @property
+    def size_of_piece(self) -> float:
+        """What a piece of history takes in memory, bytes."""
+        return (self.store.pieces.nbytes + self.store.state.nbytes + self.echoes.nbytes) / len(self.store.pieces)
+
+    @property
+    def taken(self) -> float:
+        """What history and waves take in memory, bytes; the system gives room for pieces only when they are written."""
+        return self.length * self.size_of_piece + self.waves.nbytes
 
     def _more_rows(self) -> bool:
         """Make room for more rows of waves. Returns False if memory is short."""
         before = len(self.waves) - FIRST_ROW
+        wanted = self.taken + 3 * self.waves.nbytes
+        if granted(wanted, self.taken) < wanted:
+            self.is_short_of_memory = True
+            return False
         with suppress(MemoryError):
             waves = np.zeros((FIRST_ROW + 4 * before, *self.waves.shape[1:]))
             waves[:FIRST_ROW] = self.waves[:FIRST_ROW]
@@ -174,6 +199,7 @@ class Session:
             self.waves = waves
             self._lend()
             return True
+        self.is_short_of_memory = True
         return False
 
     def reserve(self, pieces: int) -> None:

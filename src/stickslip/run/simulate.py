@@ -102,7 +102,7 @@ def simulate(
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
         Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
-        million, some 0.4 GB in memory and in a file.
+        million, some 0.4 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
     title : str
         Title of the run, for figures; by default the scenario's title.
 
@@ -129,8 +129,8 @@ def simulate(
     there does not change; after it only the statistics of longer events are meaningful, and `solution.lumping_note` says so. A
     positive shortest_event sets another length and lumps from the start.
 
-    A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
-    it was. With max_pieces the file is written whatever ended the run.
+    A run that needs more pieces than it may have, or more memory, ends with the status "too many pieces". Its checkpoint file holds
+    what it has computed, and `resume` goes on from there with a larger max_pieces.
 
     See Also
     --------

@@ -78,7 +78,11 @@ def rounding_note(steps: int, share: float) -> str:
 
 
 FULL_HISTORY = -2
-"""The history has reached its limit of pieces."""
+"""The history has reached its limit of pieces, or memory is short."""
+TOO_MANY = "too many pieces"
+"""The name of its status."""
+SHORT_OF_MEMORY = "memory is short"
+"""How its message begins in the second case."""
 MOST_WORTH_ASKING = 10_000_000
 """Largest number of pieces that a message proposes to allow: 4 GB."""
 GROWING = 2.0
@@ -123,7 +127,7 @@ STATUSES = {
         False,
     ),
     FULL_HISTORY: Status(
-        "too many pieces",
+        TOO_MANY,
         "the history reached its limit of pieces (a million takes 0.42 GB)",
         False,
     ),
@@ -142,18 +146,21 @@ STATUSES = {
 
 @dataclass(frozen=True)
 class Crowd:
-    """A history that has reached its limit of pieces."""
+    """A history that has reached its limit of pieces, or the share of the memory that it may take."""
 
     pieces: int
     reached: float  # time, s
     at_half: float  # time when it had half of the pieces, s
     before_last: float  # last time with room for more pieces than an event takes, s
     asked: float  # time that was asked for, s
+    taken: float | None = None  # memory that it takes, bytes, if that is why it is full
 
     def status(self, cures: Sequence[str]) -> Status:
         """Return the status of its run; `cures` are further remedies in this case, besides more pieces and a shorter run."""
         later, when = self.reached - self.at_half, f"{brief(self.reached, 's')} of {brief(self.asked, 's')}"
         said = f"the history reached its limit of {self.pieces} pieces at {when}"
+        if self.taken is not None:
+            said = f"{SHORT_OF_MEMORY}: the history takes {self.taken / 1e9:.2g} GB with {self.pieces} pieces at {when}"
         shorter = f"a duration of up to {brief(SHORTER * self.before_last, 's', 3)}"
         if later * GROWING < self.at_half:
             said += ", and comes to more pieces in each round trip"
@@ -161,7 +168,10 @@ class Crowd:
         else:
             needed = self.pieces + (self.asked - self.reached) * 0.5 * self.pieces / later
             said += f", and would need {needed:.2g} of them"
-            helps = *cures, *([f"max_pieces = {_rounded_up(needed)}"] if needed <= MOST_WORTH_ASKING else []), shorter
+            more = [f"max_pieces = {_rounded_up(needed)}"] if needed <= MOST_WORTH_ASKING and self.taken is None else []
+            helps = *cures, *more, shorter
+        if self.taken is not None:
+            helps = *helps, "more memory (STICKSLIP_MEMORY says how much there is)"
         return replace(STATUSES[FULL_HISTORY], message=f"{said}; what helps: {', or '.join(helps)}")
 
 

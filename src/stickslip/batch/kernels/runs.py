@@ -9,7 +9,6 @@ arrays are counted only when a run has ended.
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import Any, NamedTuple
 
 from numba import carray, types
@@ -28,6 +27,7 @@ from stickslip.batch.kernels.reduction import (
 )
 from stickslip.batch.kernels.workspace import LaneStage, Setups, Workspace
 from stickslip.engine.compile.kernels import address_of, inlined, kernel
+from stickslip.engine.compile.lock import made_once
 from stickslip.engine.loop import run_until
 from stickslip.engine.memory.addresses import ahead, call_prepare, floats, integers
 from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
@@ -74,7 +74,7 @@ class Group(NamedTuple):
 # ---- functions called through their addresses, so that the code of a batch needs no second copy of the engine ----------------
 
 
-@cache
+@made_once()
 def engine_address() -> int:
     """Return the address of the machine code of `loop.run_until`; compile it if no single run has done so."""
     return address_of(run_until, ARGUMENTS)

@@ -33,8 +33,8 @@ SHORTEST_EVENT = (
     "only where a round trip has more than 4096 pieces. 0 resolves them all."
 )
 MAX_PIECES = (
-    "Largest number of pieces of history (0.42 kB each); the history is written whatever ended the run. Not given: a million, and "
-    "a run that needs more is not written."
+    "Largest number of pieces of history (0.42 kB each). Not given: a million. A run that needs more, or more than a sixth of the "
+    "free memory, ends there; --out keeps what there is, and --resume goes on with a larger number."
 )
 OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] a new folder (.zarr)."
 CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
@@ -111,14 +111,24 @@ def run(
         show_catalogue(chosen, found)
         if pictures.wanted:
             announce(*pictures.draw_events(found.read(), chosen.title or chosen.name, chosen.problem.load_unit))
+        _say_how_to_go_on(found.status, found.files[-1], request.most_pieces)
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
-    file = request.file_of(solution)
-    if (out or resume) and file is None:
-        typer.echo(f"not written: {out or resume} ({len(solution.history)} pieces; --max-pieces allows more, and writes them)")
-    announce(file, *pictures.draw(solution))
+    announce(request.file, *pictures.draw(solution))
+    _say_how_to_go_on(solution.status, request.file, len(solution.history))
     _leave(solution.status)
+
+
+def _say_how_to_go_on(status: Status, file: Path | None, pieces: int) -> None:
+    """Say in one line how a run whose history is full goes on from its file, if it has one."""
+    from stickslip.trajectory.status import SHORT_OF_MEMORY, TOO_MANY
+
+    if file is None or status.name != TOO_MANY:
+        return
+    short = status.message.startswith(SHORT_OF_MEMORY)
+    more, once = ("", " once more memory is free") if short else (f" --max-pieces {2 * pieces}", "")
+    typer.echo(f"nothing is lost: stickslip run --resume {file}{more} goes on from there{once}")
 
 
 def _leave(status: Status) -> NoReturn:

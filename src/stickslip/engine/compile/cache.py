@@ -38,7 +38,7 @@ LARGEST_CACHE = 500_000_000
 """Largest size (bytes) of the cache; beyond it, the least recently used files are removed."""
 SEAL = b"stickslip cache 1\n"
 """First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
-NOT_COMPILED = ("cache.py", "private_folder.py")
+NOT_COMPILED = ("cache.py", "lock.py", "private_folder.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 COMPILED_FOLDERS = ("engine", "batch/kernels", "friction/formula/operations")
 """Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""

@@ -10,7 +10,6 @@ import atexit
 import hashlib
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,6 +18,7 @@ from numba import types
 from numba.extending import models, register_model, typeof_impl
 
 from stickslip.engine.compile.cache import CACHE, cache_folder, read_sealed, remove, tell, write_sealed
+from stickslip.engine.compile.lock import LOCK
 from stickslip.engine.compile.numba_privates import WHY_PLAIN
 from stickslip.engine.compile.uncompiled import UNCOMPILED, as_python
 
@@ -80,29 +80,26 @@ elif not UNCOMPILED:
 class Kernel:
     """A compiled function of the engine: `entry` is what Python calls, `part` what compiled code calls.
 
-    Both are made when one is first needed: most processes need a few of all kernels.
+    Both are made when one is first needed: most processes need a few of all kernels. They are made once, whatever threads ask for
+    them: the addresses of machine code are handed on, and it goes with its entry.
     """
+
+    part: Any
+    entry: Any
 
     def __init__(self, function: Callable[..., Any], **options: bool) -> None:
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
         self.__wrapped__ = function
         self._options = options
 
-    @cached_property
-    def _both(self) -> tuple[Any, Any]:
-        """`part` and `entry`."""
-        made: tuple[Any, Any] = dispatchers(self.__wrapped__, OPTIONS, self._options)
-        return made
-
-    @property
-    def part(self) -> Any:
-        """What compiled code calls."""
-        return self._both[0]
-
-    @cached_property
-    def entry(self) -> Any:
-        """What Python calls."""
-        return self._both[1]
+    def __getattr__(self, name: str) -> Any:
+        """Make `part` and `entry`; Python asks here for what an object does not have."""
+        if name not in ("part", "entry"):
+            raise AttributeError(f"{type(self).__name__} has no attribute {name}")
+        with LOCK:
+            if name not in vars(self):
+                self.part, self.entry = dispatchers(self.__wrapped__, OPTIONS, self._options)
+        return vars(self)[name]
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the machine code, which the first call compiles or loads."""
@@ -144,6 +141,7 @@ def _compiled(function: F, **options: bool) -> F:
 
 def address_of(function: Any, arguments: tuple[Any, ...]) -> int:
     """Return the address of a kernel's machine code, which lives as long as the kernel. Compiles it if it is new."""
-    function.entry.compile(arguments)
-    compiled = function.entry.overloads[arguments]
-    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
+    with LOCK:
+        function.entry.compile(arguments)
+        compiled = function.entry.overloads[arguments]
+        return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))

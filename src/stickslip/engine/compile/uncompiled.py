@@ -13,12 +13,14 @@ import os
 import sys
 import weakref
 from collections.abc import Callable
+from itertools import count
 from types import SimpleNamespace
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.compile.lock import LOCK
 from stickslip.friction.formula.operations import OPERATIONS
 
 UNCOMPILED = os.environ.get("STICKSLIP_UNCOMPILED", "") not in ("", "0")
@@ -65,14 +67,17 @@ class Pointer:
         return type(self)(self.memory.view(np.float64), self.first)
 
 
-_lent: list[weakref.ref[Array]] = []
-"""Weak references to the arrays whose addresses have been handed to the engine."""
+_lent: tuple[weakref.ref[Array], ...] = ()
+"""Weak references to the arrays whose addresses have been handed to the engine; another tuple for each change, which other threads
+do not see while they search in one."""
 
 
 def lend_memory(*arrays: Array) -> None:
     """Register arrays whose addresses the engine receives, so that pointers into them can be checked."""
-    alive = [known for known in _lent if known() is not None]
-    _lent[:] = alive + [weakref.ref(array) for array in arrays if not any(known() is array for known in alive)]
+    global _lent
+    with LOCK:
+        alive = tuple(known for known in _lent if known() is not None)
+        _lent = alive + tuple(weakref.ref(array) for array in arrays if not any(known() is array for known in alive))
 
 
 def pointer_at(address: int, kind: type) -> Pointer:
@@ -87,19 +92,21 @@ def pointer_at(address: int, kind: type) -> Pointer:
     raise IndexError(f"{address} is no address in an array that was lent")
 
 
-_functions: list[Callable[..., Any]] = []
-"""Functions of formulas and of parts of the engine; the handle of a function is its index here plus 1."""
+_functions: dict[int, Callable[..., Any]] = {}
+"""Functions of formulas and of parts of the engine, by their handles."""
+_handles = count(1)
 
 
 def handle_of(function: Callable[..., Any]) -> int:
     """Register a function and return its handle, which takes the place of the address in compiled code."""
-    _functions.append(function)
-    return len(_functions)
+    handle = next(_handles)
+    _functions[handle] = function
+    return handle
 
 
 def call(handle: int, *arguments: Any) -> Any:
     """Call the function with the given handle."""
-    return _functions[int(handle) - 1](*arguments)
+    return _functions[int(handle)](*arguments)
 
 
 MATHS = SimpleNamespace(
