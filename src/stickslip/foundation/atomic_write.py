@@ -156,7 +156,8 @@ def held(path: Path, refusal: str) -> Iterator[None]:
     try:
         number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
     except OSError as error:
-        raise InputError(f"{beside or path}: cannot be written: {error.strerror or error}") from None
+        wrong = beside if beside is not None and os.path.lexists(beside) else path  # what stands there, or the file that was named
+        raise InputError(f"{wrong}: cannot be written: {error.strerror or error}") from None
     try:
         yield
     finally:

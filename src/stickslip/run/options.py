@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.atomic_write import held
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import declare
@@ -119,6 +121,15 @@ class RunOptions:
     def keeps(self, code: int) -> bool:
         """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
         return code != FULL_HISTORY or self.max_pieces is not None
+
+    def alone(self) -> AbstractContextManager[None]:
+        """Reserve the run's file, if it has one, against other runs until the `with` block ends.
+
+        Raises InputError if another run is writing into it, or if nothing can be written beside it.
+        """
+        if self.checkpoint is None:
+            return nullcontext()
+        return held(self.checkpoint, f"{self.checkpoint}: another run is writing into it: choose another name")
 
 
 def options_of(source: Problem | PlanarSlab | Scenario, **given: Any) -> RunOptions:
