@@ -99,7 +99,9 @@ def _takes_an_interval(parameter: ParameterPath) -> bool:
 def check_size(parameter: ParameterPath, size: int, where: str, most: float = LARGEST_AXIS) -> None:
     """Raise InputError for more values than `most`."""
     if size > most:
-        raise InputError(f"{where}: {parameter.name} has {size} values, at most {most} are allowed")
+        raise InputError(
+            f"{where}: {parameter.name} has {size if size < 10**15 else f'{size:.3g}'} values, at most {most} are allowed"
+        )
 
 
 def _without_unit(parameter: ParameterPath, value: Any, where: str) -> Any:
@@ -143,7 +145,7 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> DesignAxis:
     if not equals or not name or not content:
         raise InputError(f"{where} must be {FORM}, got {shown(text)}")
     parameter = find_parameter(scenario, name, where)
-    found = TypedRange.of(content)
+    found = TypedRange.of(content, f"{where}: {parameter.name}")
     values = [typed_value(parameter, one) for one in (found[:2] if found else content.split(","))]
     if found is None:
         return DesignAxis(parameter, read_values(parameter, values, where))
