@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
@@ -44,7 +43,7 @@ def _count(text: str, where: str) -> int:
     with suppress(ValueError):
         if float(text).is_integer():
             return int(text) if text.isdecimal() else int(float(text))
-    raise InputError(f"{where}: the number of points of a range must be a whole number, as in LOW..HIGH:40, got {shown(text)}")
+    raise InputError(f"{where}: the number of points of a range must be a whole number, as in LOW..HIGH:40, got {ascii(text)[:60]}")
 
 
 def check_ends(name: str, low: float, high: float, *, log: bool = False, unit: str = "") -> None:

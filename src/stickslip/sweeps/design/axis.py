@@ -24,6 +24,8 @@ Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""
 LARGEST_AXIS = 10_000_000
 """Largest number of values of an axis, and of members of a random design: 80 MB for each parameter."""
+LONG_COUNT = 10**15
+"""From this number of values on, it is shown with three digits."""
 EQUAL = 1e-9
 """Ratios of successive values that differ by less than this (relative) count as equal."""
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
@@ -99,9 +101,8 @@ def _takes_an_interval(parameter: ParameterPath) -> bool:
 def check_size(parameter: ParameterPath, size: int, where: str, most: float = LARGEST_AXIS) -> None:
     """Raise InputError for more values than `most`."""
     if size > most:
-        raise InputError(
-            f"{where}: {parameter.name} has {size if size < 10**15 else f'{size:.3g}'} values, at most {most} are allowed"
-        )
+        count = size if size < LONG_COUNT else f"{size:.3g}"
+        raise InputError(f"{where}: {parameter.name} has {count} values, at most {most} are allowed")
 
 
 def _without_unit(parameter: ParameterPath, value: Any, where: str) -> Any:
