@@ -10,12 +10,16 @@ import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from threading import Thread
 from unittest.mock import Mock
 
 import pytest
 
 from stickslip.engine.compile import one_module
+from stickslip.engine.compile.cache import read_sealed, write_sealed
+from stickslip.engine.compile.kernels import _checksum_of
 from stickslip.engine.compile.private_folder import NotPrivateError, private_folder
+from stickslip.foundation.atomic_write import DRAFT
 
 SCRIPT = """
 import stickslip as ss
@@ -120,6 +124,9 @@ DAMAGE: dict[str, Callable[[Path, bytes], object]] = {
     "another file's bytes": lambda path, other: path.write_bytes(other),
     "a folder": lambda path, _: (path.unlink(), path.mkdir(), (path / "inside").touch()),
     "unreadable": lambda path, _: (path.unlink(), path.symlink_to(path)),
+    "a pipe": lambda path, _: (path.unlink(), os.mkfifo(path)),
+    "a link to an endless device": lambda path, _: (path.unlink(), path.symlink_to("/dev/zero")),
+    "a file without end": lambda path, _: os.truncate(path, 2**40),
 }
 KINDS = {
     "kernels": ("0", "compiled-*/__main__.*", 2, 1),
@@ -205,6 +212,68 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
     cache.tell.cache_clear()
     assert kernel(lambda x: 2.0 * x)(21.0) == 42.0
     assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
+
+
+NOT_READ: dict[str, Callable[[Path], object]] = {
+    "a pipe": os.mkfifo,
+    "a link to an endless device": lambda path: path.symlink_to("/dev/zero"),
+    "a link to a sound file": lambda path: path.symlink_to(path.rename(path.with_name("other"))),
+    "a file larger than any": lambda path: os.truncate(path, 2**40),
+    "a folder": lambda path: (path.mkdir(), (path / "inside").touch()),
+}
+
+
+@pytest.mark.parametrize("stands", NOT_READ)
+def test_what_is_no_file_of_the_cache_is_not_read(stands: str, tmp_path: Path) -> None:
+    """It is read in a thread, because a read that never ends would hold up the tests."""
+    path = tmp_path / "kept.nbc"
+    write_sealed(path, b"code")
+    assert read_sealed(path) == b"code"
+    if stands not in ("a link to a sound file", "a file larger than any"):
+        path.unlink()
+    NOT_READ[stands](path)
+    found: list[object] = []
+    reader = Thread(target=lambda: found.extend([_checksum_of(path), read_sealed(path), os.path.lexists(path)]), daemon=True)
+    reader.start()
+    reader.join(20.0)
+    assert found == [b"", None, False]
+
+
+def test_a_file_of_another_user_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "kept.nbc"
+    write_sealed(path, b"code")
+    monkeypatch.setattr("os.geteuid", lambda: 12345)
+    assert read_sealed(path) is None
+    assert not path.exists()
+
+
+def test_a_draft_that_is_a_pipe_holds_up_nobody(tmp_path: Path) -> None:
+    pipe = tmp_path / f"{DRAFT}0"
+    os.mkfifo(pipe)
+    os.utime(pipe, (0.0, 0.0))
+    writer = Thread(target=write_sealed, args=(tmp_path / "kept.nbc", b"code"), daemon=True)
+    writer.start()
+    writer.join(20.0)
+    assert read_sealed(tmp_path / "kept.nbc") == b"code"
+    assert not pipe.exists()
+
+
+def test_a_long_process_looks_again_at_the_size_of_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that has written 10 MB since it last looked removes what has not been used for longest."""
+    from stickslip.engine.compile import cache
+
+    folder = tmp_path / "compiled-0"
+    folder.mkdir()
+    monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(cache, "CACHE", folder)
+    monkeypatch.setattr(cache, "TIDY", cache.Tidy())
+    monkeypatch.setattr(cache.make_room, "__defaults__", (12_000_000,))
+    sizes = []
+    for n in range(30):
+        cache.Kept(f"formula{n}", "text").write(bytes(1_000_000))
+        sizes.append(sum(path.stat().st_size for path in folder.iterdir()))
+    assert max(sizes) <= 12_000_000 + cache.LOOK_AFTER
+    assert sizes[-1] < 30_000_000  # all that was written
 
 
 def test_the_cache_keeps_the_files_that_were_used_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import logging
+import logging.handlers
 import re
 import socket
 import subprocess
@@ -14,7 +16,9 @@ import weakref
 import webbrowser
 from collections.abc import Awaitable, Callable
 from functools import partial
+from itertools import product
 from pathlib import Path
+from queue import Queue
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
@@ -31,6 +35,7 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.page import build
 from stickslip.explorer.server import serve as serving
 from stickslip.explorer.server.desk import ThreadDesk, Warming
 from stickslip.explorer.server.serve import Endpoint, ExplorerServer
@@ -341,6 +346,77 @@ def test_nothing_of_a_closed_page_is_kept(monkeypatch: pytest.MonkeyPatch) -> No
         await until(lambda: gc.collect() >= 0 and explorer() is None)  # callbacks that were under way end first
 
     with_server(test)
+
+
+ODD = ["1" * 400, "NaN", '{"type": "number", "value": "nan"}', '"x"', "null", "[1]"]
+"""What a browser may send for a number, as JSON."""
+FORMS = [
+    '{"cursor": %s}',
+    '{"step": %s}',
+    '{"path": "body.density", "value": %s}',
+    '{"parameter": %s, "low": 1}',
+    '{"do": %s}',
+    "%s",
+]
+"""What the scripts of the page send with a number."""
+
+
+async def tell(line: WebSocketClientConnection, event: str) -> None:
+    """Send one change of a document as Bokeh's scripts do."""
+    for part in ('{"msgid": "1", "msgtype": "PATCH-DOC"}', "{}", f'{{"events": [{event}]}}'):
+        await line.write_message(part)
+
+
+def test_whatever_a_browser_sends_gets_one_short_line_in_the_log_and_no_traceback() -> None:
+    """Numbers beyond all floats and NaN, as what is entered, in place of each property, and as the place of a click."""
+    log: Queue[logging.LogRecord] = Queue()
+    handler = logging.handlers.QueueHandler(log)
+    handler.setFormatter(serving._Lines())
+
+    async def test(served: Served) -> None:
+        served.server._build = build
+        await served.enter()
+        line = await served.connect(await served.get())
+        await until(lambda: served.open_pages == 1)
+        document = served.server._bokeh.get_sessions("/")[0].document
+        scripts = [model for model in document.models if type(model).__name__ == "ReactiveESM"]
+        assert len(scripts) == 6
+        for script in scripts:
+            for value in (entry % odd for entry in FORMS for odd in ODD):
+                data = f'[["model", {{"id": "{script.id}"}}], ["data", {value}]]'
+                values = f'{{"type": "event", "name": "data_event", "values": {{"type": "map", "entries": {data}}}}}'
+                await tell(line, f'{{"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {values}}}')
+            for name, odd in product(sorted(script.data.properties_with_values()), ODD[:2]):
+                model = f'{{"id": "{script.data.id}"}}'
+                await tell(line, f'{{"kind": "ModelChanged", "model": {model}, "attr": "{name}", "new": {odd}}}')
+        seen = log.qsize
+        await until(lambda: bool(seen()))
+        await asyncio.sleep(0.5)
+        explorer = served.explorers[0]()
+        assert explorer is not None
+        assert "program fault" not in explorer.fault
+        assert explorer.cursor == 0.0
+
+    loggers = [logging.getLogger(name) for name in serving.LOGGERS]
+    before = [(logger.handlers, logger.propagate) for logger in loggers]
+    try:
+        for logger in loggers:
+            logger.handlers, logger.propagate = [handler], False
+        with_server(test)
+    finally:
+        for logger, (handlers, propagates) in zip(loggers, before, strict=True):
+            logger.handlers, logger.propagate = handlers, propagates
+    lines = [log.get().msg for _ in range(log.qsize())]
+    assert any("failed to validate" in line for line in lines)
+    assert [line for line in lines if not line.isprintable() or len(line) > serving.LONGEST_LINE] == []
+
+
+def test_a_fault_of_our_own_code_keeps_its_traceback_in_the_log() -> None:
+    try:
+        Explorer.refuse(None, None)  # type: ignore[arg-type]
+    except AttributeError:
+        record = logging.LogRecord("bokeh.server", logging.ERROR, __file__, 1, "failed", None, sys.exc_info())
+    assert "explorer.py" in serving._Lines().format(record)
 
 
 def test_a_taken_port_is_one_line_and_by_default_the_next_one_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -129,6 +129,31 @@ def test_an_earlier_end_is_refused(tmp_path: Path) -> None:
         ss.resume(tmp_path / "run.nc", 1.0)
 
 
+@pytest.mark.skipif(os.name != "posix", reason="needs locks")
+def test_a_second_run_does_not_write_into_the_file_of_one_that_goes_on(tmp_path: Path) -> None:
+    """Whether it begins anew or takes the file up; another file, and the same one afterwards, may be written."""
+    problem, duration = RUNS["slip law, slab"]
+    path = ss.simulate(problem, 0.5 * duration).to_netcdf(tmp_path / "run.nc")
+    said: list[str] = []
+
+    def disturb(_: Report) -> None:
+        for second in (lambda: ss.simulate(problem, duration, checkpoint=path), lambda: ss.resume(path, 2.0 * duration)):
+            with pytest.raises(ss.InputError) as told:
+                second()
+            said.append(str(told.value))
+        ss.resume(path, 2.0 * duration, checkpoint=tmp_path / "other.nc")
+
+    for first in (
+        lambda: ss.simulate(problem, duration, checkpoint=path, progress=disturb),
+        lambda: ss.resume(path, 1.5 * duration, progress=disturb),
+    ):
+        first()
+        assert set(said) == {f"{path}: another run is writing into it: choose another name"}
+        said.clear()
+    assert {one.name for one in tmp_path.iterdir()} == {"run.nc", "other.nc"}
+    assert differences(ss.open_solution(path), ss.simulate(problem, 1.5 * duration)) == []
+
+
 def test_another_engine_is_refused(tmp_path: Path) -> None:
     problem, duration = RUNS["slip law, slab"]
     run = ss.simulate(problem, duration)

@@ -371,6 +371,20 @@ def test_nothing_is_written_through_a_link(store: Path, tmp_path: Path) -> None:
     assert before == {path: path.stat().st_mtime_ns for path in store.rglob("*")}
 
 
+@pytest.mark.skipif(os.name != "posix", reason="needs links")
+@pytest.mark.parametrize("name", ["slip", "waves", "waves/sent", "zarr.json", "nothing"])
+def test_no_run_is_continued_through_a_link_inside_its_folder(name: str, store: Path, tmp_path: Path) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    if name == "nothing":
+        (store / "waves" / name).symlink_to(tmp_path / "not there")
+    else:
+        (store / name).rename(elsewhere)
+        (store / name).symlink_to(elsewhere)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.exists()}
+    refused(lambda: ss.resume(store, 6.0), f"{name} in it is a link: put the folder or the file itself there")
+    assert before == {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.exists()}
+
+
 def test_a_folder_that_was_killed_before_its_first_checkpoint_is_used_again(tmp_path: Path, whole: Any, monkeypatch: Any) -> None:
     path = tmp_path / "run.zarr"
 

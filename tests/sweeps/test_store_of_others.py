@@ -143,6 +143,16 @@ def test_a_pipe_in_place_of_a_chunk_is_not_waited_for(store: Path) -> None:
     refused(lambda: open_store(store), f"{store}: slip/c.0.0: not an ordinary file: remove {store / 'status' / 'c.0.0'}")
 
 
+@pytest.mark.parametrize("name", ["slip", "status", "status/zarr.json"])
+def test_no_sweep_is_continued_through_a_link_inside_its_store(store: Path, name: str, tmp_path: Path) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    (store / name).rename(elsewhere)
+    (store / name).symlink_to(elsewhere)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")}
+    refused(lambda: sweep(store), f"{name} in it is a link: put the folder or the file itself there")
+    assert before == {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")}
+
+
 def test_a_folder_with_the_name_of_a_draft_is_left_alone(store: Path) -> None:
     for name in ("x.partial", "status/c.0.partial"):
         (store / name / "mine.partial").mkdir(parents=True)

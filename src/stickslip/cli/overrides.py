@@ -116,7 +116,7 @@ def read_axis(problem: Problem, text: str, where: str) -> Axis:
     The axis has 40 points if no number is given. Raises InputError with a message that begins with `where`.
     """
     name, _, ends = text.partition("=")
-    typed = TypedRange.of(ends)
+    typed = TypedRange.of(ends, f"{where}: {shown(name.strip())}")
     if typed is None:
         raise InputError(f'{where} must be NAME=LOW..HIGH[:POINTS][:log], as "friction.alpha=0.01..10:50:log", got {shown(text)}')
     try:

@@ -33,24 +33,26 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 @contextmanager
-def open_bounded(path: Path, largest: int) -> Iterator[BinaryIO]:
-    """Open a regular file of at most `largest` bytes for reading.
+def open_bounded(path: Path, largest: int, *, own: bool = False) -> Iterator[BinaryIO]:
+    """Open a regular file of at most `largest` bytes for reading; with `own`, only one of this user, and not through a link.
 
     Pipes and devices are refused at once, because they may never begin or never end. Raises OSError, and InputError with a message
     that is meant to follow the name of the file.
     """
-    with open(path, "rb", opener=_opened_at_once) as stream:
+    with open(path, "rb", opener=_opened_without_link if own else _opened_at_once) as stream:
         about = os.fstat(stream.fileno())
         if not stat.S_ISREG(about.st_mode):
             raise InputError("not an ordinary file")
+        if own and hasattr(os, "geteuid") and about.st_uid != os.geteuid():
+            raise InputError("of another user")
         if about.st_size > largest:
             raise InputError(f"larger than {largest} bytes")
         yield stream
 
 
-def read_bounded(path: Path, largest: int) -> bytes:
+def read_bounded(path: Path, largest: int, *, own: bool = False) -> bytes:
     """Return the content of a regular file of at most `largest` bytes. Raises OSError and InputError as `open_bounded` does."""
-    with open_bounded(path, largest) as stream:
+    with open_bounded(path, largest, own=own) as stream:
         content = stream.read(largest + 1)
     if len(content) > largest:  # it has grown, or has no size of its own
         raise InputError(f"larger than {largest} bytes")
@@ -59,6 +61,10 @@ def read_bounded(path: Path, largest: int) -> bytes:
 
 def _opened_at_once(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _opened_without_link(path: str, flags: int) -> int:
+    return _opened_at_once(path, flags | getattr(os, "O_NOFOLLOW", 0))
 
 
 def write_atomically(path: Path, write: Callable[[Path], object], *, folder: bool = False) -> Path:
@@ -150,7 +156,8 @@ def held(path: Path, refusal: str) -> Iterator[None]:
     try:
         number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
     except OSError as error:
-        raise InputError(f"{beside or path}: cannot be written: {error.strerror or error}") from None
+        wrong = beside if beside is not None and os.path.lexists(beside) else path  # what stands there, or the file that was named
+        raise InputError(f"{wrong}: cannot be written: {error.strerror or error}") from None
     try:
         yield
     finally:
@@ -168,7 +175,7 @@ def _locked(path: Path, refusal: str = "", flags: int = os.O_RDONLY) -> int | No
         import fcntl
     except ImportError:  # Windows
         return None
-    number = os.open(path, flags, 0o666)
+    number = os.open(path, flags | os.O_NONBLOCK, 0o666)  # a pipe of this name would never open
     try:
         fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +14,8 @@ from stickslip.foundation.errors import InputError
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
-_RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")
+_RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+?)(?P<log>\s*:\s*log)?", re.DOTALL)
+_COUNTED = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+?)\s*:(?P<points>.*?)(?P<log>:\s*log)?", re.DOTALL)
 
 
 class TypedRange(NamedTuple):
@@ -25,10 +27,23 @@ class TypedRange(NamedTuple):
     log: bool
 
     @classmethod
-    def of(cls, text: str) -> TypedRange | None:
-        """Return the range in a text, or None if it has another form."""
-        found = _RANGE.fullmatch(text.strip())
-        return found and cls(found["low"], found["high"], int(found["points"]) if found["points"] else None, bool(found["log"]))
+    def of(cls, text: str, where: str) -> TypedRange | None:
+        """Return the range in a text, or None if it has another form.
+
+        Raises InputError, which begins with `where`, for a number of points that is not whole; 1e3 is.
+        """
+        if found := _RANGE.fullmatch(text.strip()):
+            return cls(found["low"], found["high"], None, bool(found["log"]))
+        counted = _COUNTED.fullmatch(text.strip())
+        return counted and cls(counted["low"], counted["high"], _count(counted["points"].strip(), where), bool(counted["log"]))
+
+
+def _count(text: str, where: str) -> int:
+    """Return a number of points that was typed. Raises InputError, which begins with `where`."""
+    with suppress(ValueError):
+        if float(text).is_integer():
+            return int(text) if text.isdecimal() else int(float(text))
+    raise InputError(f"{where}: the number of points of a range must be a whole number, as in LOW..HIGH:40, got {ascii(text)[:60]}")
 
 
 def check_ends(name: str, low: float, high: float, *, log: bool = False, unit: str = "") -> None:

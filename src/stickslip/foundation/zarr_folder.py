@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import errno
 import math
+import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -93,6 +94,26 @@ def check_folder(path: Path) -> None:
     """Refuse a folder that is a link: what is written would go elsewhere. Raises InputError."""
     if path.is_symlink():
         raise InputError(f"{path}: is a link: name the folder itself")
+
+
+def check_writable(path: Path) -> None:
+    """Refuse to write into a folder that is a link, or in which anything is one, at whatever depth. Raises InputError."""
+    check_folder(path)
+    try:
+        link = next(_links_in(path), None) if path.is_dir() else None
+    except OSError as error:
+        raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
+    if link is not None:
+        raise InputError(f"{path}: {clean(os.path.relpath(link, path))} in it is a link: put the folder or the file itself there")
+
+
+def _links_in(folder: str | Path) -> Iterator[str]:
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_symlink():
+                yield entry.path
+            elif entry.is_dir(follow_symlinks=False):
+                yield from _links_in(entry.path)
 
 
 def consolidate(place: Any) -> None:

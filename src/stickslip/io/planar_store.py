@@ -98,7 +98,7 @@ class PlanarStore(Frames):
     @contextmanager
     def at(cls, path: Path) -> Iterator[Self]:
         """Open the folder of a run to continue it, locked against other processes. Raises InputError for anything else."""
-        zarr_folder.check_folder(path)
+        zarr_folder.check_writable(path)
         with held(path, f"{path}: {BUSY}"):
             with FORMAT.reading(path):
                 if _is_unbegun(path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.atomic_write import held
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
@@ -119,6 +121,15 @@ class RunOptions:
     def most_pieces(self) -> int:
         """The largest number of pieces that the history may have."""
         return MAX_PIECES if self.max_pieces is None else self.max_pieces
+
+    def alone(self) -> AbstractContextManager[None]:
+        """Reserve the run's file, if it has one, against other runs until the `with` block ends.
+
+        Raises InputError if another run is writing into it, or if nothing can be written beside it.
+        """
+        if self.checkpoint is None:
+            return nullcontext()
+        return held(self.checkpoint, f"{self.checkpoint}: another run is writing into it: choose another name")
 
 
 def options_of(source: Problem | PlanarSlab | Scenario, **given: Any) -> RunOptions:

@@ -96,10 +96,11 @@ def resume(
 
 def resume_run(stopped: Solution, path: Path, options: RunOptions) -> Solution:
     """Continue a run that was read from a file. Raises InputError as `resume` does."""
-    run = taken_up(stopped, path, options)
-    if run.options.max_events is not None:
-        check_events(path, run.options.max_events, events_in(run))
-    return run_to_end(run, WholeHistory(run))
+    with options.alone():
+        run = taken_up(stopped, path, options)
+        if run.options.max_events is not None:
+            check_events(path, run.options.max_events, events_in(run))
+        return run_to_end(run, WholeHistory(run))
 
 
 @dataclass(frozen=True)

@@ -172,8 +172,9 @@ def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solutio
     if options.checkpoint is not None:
         check_replaceable(options.checkpoint, f"simulate: {options.checkpoint}")
     problem = source if isinstance(source, Problem) else source.problem
-    run = ExactRun.begin(problem, options.check("simulate", problem))
-    return run_to_end(run, WholeHistory(run))
+    with options.alone():
+        run = ExactRun.begin(problem, options.check("simulate", problem))
+        return run_to_end(run, WholeHistory(run))
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ def find(
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     name, given, ends = along.partition("=")
-    typed = TypedRange.of(ends)
+    typed = TypedRange.of(ends, "find: --along")
     if given and (typed is None or typed.points is not None or typed.log):
         raise InputError(f'find: --along must be NAME or NAME=LOW..HIGH, as "pull_rate=1 mm/s..1 m/s", got {ascii(along)[:60]}')
     chosen = load_with("find", scenario, changes, duration=duration)

@@ -189,7 +189,7 @@ def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
         return None
     found = {}
     for name, value in (_values(texts, "--bound") or {}).items():
-        typed = TypedRange.of(str(value))
+        typed = TypedRange.of(str(value), "infer: --bound")
         if typed is None or typed.points is not None or typed.log:
             raise InputError(
                 f'infer: --bound must be NAME=LOW..HIGH, as "friction.a=0.001..0.1", got {ascii(name)[:40]}={ascii(value)[:40]}'

@@ -31,13 +31,19 @@ import platformdirs
 
 from stickslip.engine.compile.private_folder import private_folder
 from stickslip.engine.compile.uncompiled import UNCOMPILED
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.atomic_write import read_bounded, write_atomically
 from stickslip.foundation.errors import InputError
 
 LARGEST_CACHE = 500_000_000
 """Largest size (bytes) of the cache; beyond it, the least recently used files are removed."""
+LARGEST_FILE = 50_000_000
+"""Largest size (bytes) of a file of the cache, far more than any machine code takes; what is larger is neither written nor read."""
+LOOK_AFTER = 10_000_000
+"""The size of the cache is looked at again after a process has written this many bytes, so that a long one keeps the bound."""
 SEAL = b"stickslip cache 1\n"
 """First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
+OF_SEAL = len(SEAL) + hashlib.sha256().digest_size
+"""Number of bytes before the content of a file."""
 NOT_COMPILED = ("cache.py", "lock.py", "private_folder.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 COMPILED_FOLDERS = ("engine", "batch/kernels", "friction/formula/operations")
@@ -89,12 +95,15 @@ def write_sealed(path: Path, content: bytes) -> None:
 
 
 def read_sealed(path: Path) -> bytes | None:
-    """Return the content of a file, or None if it is missing or damaged; remove it in the second case."""
-    start = len(SEAL) + hashlib.sha256().digest_size
-    with suppress(OSError):  # it cannot be read
-        sealed = path.read_bytes()
-        content = sealed[start:]
-        if sealed[:start] == SEAL + _checksum(path, content):
+    """Return the content of a file, or None if it is missing or damaged; remove it in the second case.
+
+    Whatever else has the name of the file counts as damage and is not read: a pipe or a device, which might never end, a link, a
+    file of another user, and one that is larger than any of the cache.
+    """
+    with suppress(OSError, InputError):  # it cannot be read, or may not be
+        sealed = read_bounded(path, LARGEST_FILE, own=True)
+        content = sealed[OF_SEAL:]
+        if sealed[:OF_SEAL] == SEAL + _checksum(path, content):
             return content
     if os.path.lexists(path):
         tell(f"the cache of compiled code in {path.parent} is damaged: what is damaged is compiled again")
@@ -206,17 +215,19 @@ class Kept:
         """Return the machine code, or None if it must be compiled."""
         if self.path is None:
             return None
-        with suppress(OSError):  # it is not there, or belongs to a medium that cannot be written
-            os.utime(self.path)  # it has been used
-        return read_sealed(self.path)
+        content = read_sealed(self.path)
+        if content is not None:
+            with suppress(OSError):  # it belongs to a medium that cannot be written
+                os.utime(self.path)  # it has been used
+        return content
 
     def write(self, code: bytes) -> None:
         """Keep machine code for later starts, or say that it cannot be written."""
-        if self.path is None:
+        if self.path is None or len(code) > LARGEST_FILE - OF_SEAL:
             return
         try:
             write_sealed(self.path, code)
-            tidy()
+            TIDY.after(len(code))
         except OSError as error:
             tell(
                 f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again; "
@@ -229,7 +240,7 @@ def make_room(largest: int = LARGEST_CACHE) -> None:
     found = []
     for path in cache_root().glob("compiled-*/**/*.nb[ico]"):  # numba's own cache has all of these endings
         with suppress(OSError):  # another process removes it, too, or it is damaged
-            about = path.stat()
+            about = path.lstat()  # a link takes no room, whatever it leads to
             found.append((about.st_mtime, about.st_size, path))
     excess = sum(size for _, size, _ in found) - largest
     for _, size, path in sorted(found):
@@ -240,10 +251,25 @@ def make_room(largest: int = LARGEST_CACHE) -> None:
             excess -= size
 
 
-@cache
-def tidy() -> None:
-    """Make room once in each process that writes: to look at all files for each function would slow down a first start."""
-    make_room()
+class Tidy:
+    """Makes room in the cache when a process first writes, and again whenever it has written `LOOK_AFTER` bytes.
+
+    To look at all files for each function would slow down a first start.
+    """
+
+    def __init__(self) -> None:
+        self._written = LOOK_AFTER
+
+    def after(self, size: int) -> None:
+        """Count a file of `size` bytes, which has been written, and make room if it is time to."""
+        self._written += size
+        if self._written >= LOOK_AFTER:
+            self._written = 0
+            make_room()
+
+
+TIDY = Tidy()
+"""What this process has written, and its look at the size of the cache."""
 
 
 # ---- announcements ---------------------------------------------------------------------------------------------------------

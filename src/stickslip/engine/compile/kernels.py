@@ -17,10 +17,12 @@ import numba
 from numba import types
 from numba.extending import models, register_model, typeof_impl
 
-from stickslip.engine.compile.cache import CACHE, cache_folder, read_sealed, remove, tell, write_sealed
+from stickslip.engine.compile.cache import CACHE, LARGEST_FILE, cache_folder, read_sealed, remove, tell, write_sealed
 from stickslip.engine.compile.lock import LOCK
 from stickslip.engine.compile.numba_privates import WHY_PLAIN
 from stickslip.engine.compile.uncompiled import UNCOMPILED, as_python
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.errors import InputError
 
 F = TypeVar("F", bound=Callable[..., Any])
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
@@ -43,10 +45,11 @@ class Plain:
             atexit.register(self._note)
 
     def _files(self) -> list[Path]:
-        """Return all files, and folders where numba has files."""
+        """Return all files and links, and folders where numba has files."""
         if self.folder is None:
             return []
-        return [path for path in self.folder.rglob("*") if not path.is_dir() or path.suffix in (".nbi", ".nbc")]
+        found = self.folder.rglob("*")
+        return [path for path in found if path.is_symlink() or not path.is_dir() or path.suffix in (".nbi", ".nbc")]
 
     def _note(self) -> None:
         """Note the checksums of all files that numba has kept."""
@@ -64,11 +67,12 @@ class Plain:
 
 
 def _checksum_of(path: Path) -> bytes:
-    """Return the checksum of a file's place and content, or nothing if it cannot be read."""
+    """Return the checksum of a file's place and content, or nothing if it cannot be read or may not be (see `read_sealed`)."""
     try:
-        return hashlib.sha256(f"{path.parent.name}/{path.name}\n".encode() + path.read_bytes()).hexdigest().encode()
-    except OSError:
+        content = read_bounded(path, LARGEST_FILE, own=True)
+    except (OSError, InputError):
         return b""
+    return hashlib.sha256(f"{path.parent.name}/{path.name}\n".encode() + content).hexdigest().encode()
 
 
 if WHY_PLAIN and not UNCOMPILED:

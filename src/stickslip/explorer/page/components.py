@@ -104,6 +104,14 @@ class Markup(HTML):  # type: ignore[misc] # panel has no types
         model.update(text=self._transform_object(self.object)["object"])
 
 
+def finite(value: Any) -> float | None:
+    """Return a number from a browser as a float; None for what is no number or not finite, and for one beyond all floats."""
+    try:
+        return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
+    except OverflowError:
+        return None
+
+
 class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
     """The time bar: it brings answers to the panels, moves the cursor of all of them, and tells Python where the cursor rests."""
 
@@ -120,9 +128,9 @@ class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
         super().__init__(look=look(), stylesheets=[asset("player.css")], **params)
 
     def _handle_msg(self, data: Any) -> None:
-        seconds = data.get("cursor") if isinstance(data, dict) else None
-        if isinstance(seconds, int | float) and math.isfinite(seconds):
-            self._moved(float(seconds))
+        seconds = finite(data.get("cursor")) if isinstance(data, dict) else None
+        if seconds is not None:
+            self._moved(seconds)
 
 
 class ControlRows(JSComponent):  # type: ignore[misc] # panel has no types

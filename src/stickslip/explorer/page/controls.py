@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from stickslip.explorer.model.controls import Control, ControlGroup, controls_of
 from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.page.components import ControlRows
+from stickslip.explorer.page.components import ControlRows, finite
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.figures.names import symbol
 from stickslip.foundation.errors import InputError
@@ -144,8 +144,8 @@ def changed(setting: Setting, controls: Iterable[ControlGroup], entered: dict[st
     control = next((one for group in controls for one in group.controls if one.path == path), None)
     if control is None:
         raise InputError(f"{path} is not an entry of this scenario")
-    if isinstance(value, int | float) and math.isfinite(value):
-        return setting.with_value(path, control.entry(value * control.size))
+    if (number := finite(value)) is not None:
+        return setting.with_value(path, control.entry(number * control.size))
     if path == "friction.expression":
         return with_expression(setting, control.read(str(value)))
     return setting.with_value(path, control.read(str(value)))

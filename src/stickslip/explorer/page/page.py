@@ -47,7 +47,7 @@ class Panels:
     """The linked panels and the time bar of one page: `plots` by name, and the `player`, which shows each `view` in the browser."""
 
     def __init__(self, explorer: Explorer) -> None:
-        self._explorer, self._hears, self.view = explorer, False, View()
+        self._explorer, self._hears, self._moves, self.view = explorer, False, 0, View()
         self.layout = layout_of(explorer)
         self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in self.layout.plots(Stage()).items()}
         self.player = PlayerBar(self._moved, sizing_mode="stretch_width")
@@ -71,7 +71,8 @@ class Panels:
 
     def _move(self) -> None:
         if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile
-            self.player.cursor = {"seconds": self._explorer.cursor, "number": self.player.cursor.get("number", 0) + 1}
+            self._moves += 1  # counted here: a browser may send another number
+            self.player.cursor = {"seconds": self._explorer.cursor, "number": self._moves}
 
     def _moved(self, seconds: float) -> None:
         self._explorer.cursor, self._hears = seconds, True

@@ -24,7 +24,7 @@ from stickslip.explorer.model.strip import (
     strip_text,
     usual_range,
 )
-from stickslip.explorer.page.components import Markup, asset, paint
+from stickslip.explorer.page.components import Markup, asset, finite, paint
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import LegendKey, View, axis_label, heading, limits
@@ -36,6 +36,8 @@ from stickslip.scenarios.entries import typed_number
 from stickslip.scenarios.parameter_paths import ParameterPath
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
+LARGEST_POWER = 300.0
+"""Largest power of ten on a logarithmic axis that is looked for."""
 HEIGHT = 124
 """Height (px) of the plots with their headings."""
 COLOURS = {"pulses": "ink", "slip": "slip", "first_end": "traction", "peak_rate": "rate"}
@@ -196,9 +198,10 @@ class StripView:
             self._stage.named[f"here:strip_{name}"].location = here
 
     def _tapped(self, event: Any) -> None:
-        if self.strip is None or event.x is None:
+        x = finite(event.x)
+        if self.strip is None or x is None:
             return
-        value = (10.0**event.x if self.strip.log else event.x) * self._unit[1]
+        value = (10.0 ** min(max(x, -LARGEST_POWER), LARGEST_POWER) if self.strip.log else x) * self._unit[1]
         explorer = self._explorer
         nearest = float(self.strip.values[self.strip.nearest(value)])
         explorer.change(setting_at(explorer.setting, self.strip.parameter, nearest))

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
+from traceback import walk_tb
 from typing import Any, Literal
 
 from stickslip.explorer.model.solve import Stopped, Told
@@ -161,6 +162,16 @@ class ThreadDesk:
     def _on_page(self, call: Call) -> None:
         if not self._closed:
             self._deliver(call)
+
+
+OWN = "stickslip"
+"""Name of our own loggers and modules."""
+
+
+def is_ours(error: BaseException) -> bool:
+    """Return True if our own code is among what failed with an error; otherwise a library refused what a browser sent."""
+    frames = walk_tb(error.__traceback__)
+    return any(str(frame.f_globals.get("__name__")).startswith(f"{OWN}.") for frame, _ in frames)
 
 
 def unforeseen(error: Exception) -> InputError:

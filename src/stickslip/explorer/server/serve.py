@@ -22,12 +22,14 @@ from weakref import ref
 import bokeh
 import panel as pn
 from tornado.ioloop import IOLoop, PeriodicCallback
+from typing_extensions import override
 
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.tools import begin
 from stickslip.explorer.server.access import LOOPBACK, Access
-from stickslip.explorer.server.desk import Call, ThreadDesk, Warming, unforeseen
+from stickslip.explorer.server.desk import OWN, Call, ThreadDesk, Warming, is_ours, unforeseen
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import clean
 
 LINGER_MS = 5_000.0
 """How long (ms) a page that has lost its connection is kept: it may come back after a gap in the network."""
@@ -84,6 +86,8 @@ LONGEST_LOADING = 60.0
 """A page that has not reported that it is loaded counts as loaded after this time (s)."""
 LOGGERS = ("panel", "bokeh", "tornado", "asyncio", "stickslip")
 """Loggers of the libraries in the server."""
+LONGEST_LINE = 500
+"""Characters of a line of the log that a library wrote."""
 MOST_LINES = 1000
 """Lines of the log that wait to be written; further ones are lost."""
 STDERR = 2
@@ -114,6 +118,25 @@ class Endpoint:
         return self.address in ("127.0.0.1", "localhost", "::1")
 
 
+class _Lines(logging.Formatter):
+    """Writes one line for what a library logs, and cuts it: a browser may have sent anything, and libraries repeat it at length.
+
+    Where our own code is among what failed, the traceback follows, because it is a fault of the program.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("%(asctime)s %(levelname)s %(name)s: %(message)s")
+
+    @override
+    def format(self, record: logging.LogRecord) -> str:
+        error = record.exc_info[1] if record.exc_info else None
+        if record.name.startswith(OWN) or (error is not None and is_ours(error)):
+            return super().format(record)
+        record.message, record.asctime = record.getMessage(), self.formatTime(record)
+        line = self.formatMessage(record) + ("" if error is None else f": {type(error).__name__}: {error}")
+        return clean(" ".join(line.split()))[:LONGEST_LINE]
+
+
 class _Log(QueueHandler):
     """Hands what is logged to a thread of its own; what that cannot write in time is lost.
 
@@ -123,7 +146,7 @@ class _Log(QueueHandler):
 
     def __init__(self) -> None:
         super().__init__(Queue(MOST_LINES))
-        self.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+        self.setFormatter(_Lines())
         self.setLevel(logging.WARNING)  # Panel's logger passes on all that is for finding faults in it
         Thread(target=self._write, name="log", daemon=True).start()
 
@@ -264,12 +287,20 @@ class ExplorerServer:
                 self._desks.discard(one)
 
         pn.state.on_session_destroyed(gone)
-        pn.config.exception_handler = lambda error: explorer.refuse(str(unforeseen(error)))
+        pn.config.exception_handler = partial(_failed, explorer)
         page = self._build(explorer)
         freeze = getattr(document.models, "freeze", nullcontext)
         with freeze():  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
             page.server_doc(document, title=TITLE, location=False)
         begin(explorer, {name: values[-1].decode("utf-8", "replace") for name, values in pn.state.session_args.items() if values})
+
+
+def _failed(explorer: Explorer, error: Exception) -> None:
+    """Tell a page of an error while it changed, or the log alone if a library refused what the browser sent."""
+    if is_ours(error):
+        explorer.refuse(str(unforeseen(error)))
+    else:
+        logging.getLogger("panel").error("what a browser sent was refused", exc_info=error)
 
 
 def application_of(server: Any) -> Any:

@@ -24,6 +24,8 @@ Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""
 LARGEST_AXIS = 10_000_000
 """Largest number of values of an axis, and of members of a random design: 80 MB for each parameter."""
+LONG_COUNT = 10**15
+"""From this number of values on, it is shown with three digits."""
 EQUAL = 1e-9
 """Ratios of successive values that differ by less than this (relative) count as equal."""
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
@@ -99,7 +101,8 @@ def _takes_an_interval(parameter: ParameterPath) -> bool:
 def check_size(parameter: ParameterPath, size: int, where: str, most: float = LARGEST_AXIS) -> None:
     """Raise InputError for more values than `most`."""
     if size > most:
-        raise InputError(f"{where}: {parameter.name} has {size} values, at most {most} are allowed")
+        count = size if size < LONG_COUNT else f"{size:.3g}"
+        raise InputError(f"{where}: {parameter.name} has {count} values, at most {most} are allowed")
 
 
 def _without_unit(parameter: ParameterPath, value: Any, where: str) -> Any:
@@ -143,7 +146,7 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> DesignAxis:
     if not equals or not name or not content:
         raise InputError(f"{where} must be {FORM}, got {shown(text)}")
     parameter = find_parameter(scenario, name, where)
-    found = TypedRange.of(content)
+    found = TypedRange.of(content, f"{where}: {parameter.name}")
     values = [typed_value(parameter, one) for one in (found[:2] if found else content.split(","))]
     if found is None:
         return DesignAxis(parameter, read_values(parameter, values, where))

@@ -70,7 +70,7 @@ class ResultStore:
 
         Temporary files, left by a sweep that was killed, are removed first.
         """
-        zarr_folder.check_folder(path)
+        zarr_folder.check_writable(path)
         if not path.exists():
             with writing(path):
                 create(path, lambda draft: lay_out(plan, draft))
