@@ -101,7 +101,7 @@ def step_proof(run: Run) -> StepProof:
 
 @kernel
 def begin_proof(run: Run, h: float, force: float) -> None:
-    """Begin the proof of a step of h seconds that ignores a force (Pa or N); the caller sets what is allowed."""
+    """Begin the proof of a step of h seconds that ignores a force (Pa or N); the caller says what is allowed."""
     proof = step_proof(run)
     proof.duration, proof.force, proof.bound, proof.proven_to, proof.reaches_zero = h, force, 0.0, 0.0, 0
 

@@ -201,8 +201,6 @@ def error_of(run: Run, force: float, lost: float) -> float:
         error = max(error, missed / (params.tolerance * farthest + run.state_noise[n]))
     if run.counts.mode == 0:
         error = max(error, strength_ahead(run))
-    if error > 1.0:
-        return error
     begin_proof(run, h, force)
     proof = step_proof(run)
     proof.rate_allowed, proof.rate_rounding = params.tolerance * fastest + noise + lost, DEFECT_ROUNDING * fastest
@@ -214,7 +212,7 @@ def error_of(run: Run, force: float, lost: float) -> float:
         farthest = farthest_state(run, n)
         proof.state_allowed[n] = params.tolerance * farthest + run.state_noise[n]
         proof.state_rounding[n] = DEFECT_ROUNDING * farthest
-    return proven_error(run, error)
+    return error if error > 1.0 else proven_error(run, error)
 
 
 @kernel
@@ -223,15 +221,33 @@ def proven_error(run: Run, error: float) -> float:
 
     A step that has no bound is shortened to the part that has, and never kept.
     """
+    share = noted_share(run)
+    if share < math.inf:
+        return max(error, share) if share > 1.0 else error
+    proven_to = max(step_proof(run).proven_to, SHORTEST_PROVEN)
+    return max(proven_to ** -(STAGES + 1.0), 2.0 * LARGEST_ROUNDING)
+
+
+@kernel
+def noted_share(run: Run) -> float:
+    """Return the share of the step (`radau.parts.share_of_step`), and note the bound on its residual: NaN if there is none."""
     proof = step_proof(run)
     share = share_of_step(run)
     run.state.residual = proof.bound + (abs(proof.force) if run.counts.mode != 0 else 0.0)
-    if proof.reaches_zero == 1:
+    if proof.reaches_zero == 1 or share == math.inf:
         run.state.residual = math.nan
-    if share < math.inf:
-        return max(error, share) if share > 1.0 else error
-    proven_to = max(proof.proven_to, SHORTEST_PROVEN)
-    return max(proven_to ** -(STAGES + 1.0), 2.0 * LARGEST_ROUNDING)
+    return share
+
+
+@kernel
+def prove_anyway(run: Run, error: float) -> None:
+    """Note the bound of a step that is kept although its error is this many times what is allowed, and then more is allowed."""
+    proof = step_proof(run)
+    begin_proof(run, proof.duration, proof.force)
+    proof.rate_allowed *= error
+    for n in range(run.counts.states):
+        proof.state_allowed[n] *= error
+    noted_share(run)
 
 
 @kernel
@@ -377,6 +393,8 @@ def collocate(run: Run, left: float) -> float:
                 if error > 1.0 and not settles_unseen(run, error):
                     run.counts.rough += 1
                     run.state.roughest = max(run.state.roughest, error * run.params.tolerance)
+                if error > 1.0:
+                    prove_anyway(run, error)
                 # Where this step had to shrink, the next one probably has to shrink as well.
                 change = max(trial / longest, LEAST_TREND) if before < math.inf else 5.0
                 run.counts.unproven += 1 if math.isnan(run.state.residual) else 0
