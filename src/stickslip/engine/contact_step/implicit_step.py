@@ -19,7 +19,7 @@ from stickslip.engine.contact_step.negative_friction import last_place_above_zer
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.memory.addresses import ahead
-from stickslip.engine.radau.step import collocate
+from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
@@ -57,7 +57,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
 def hangs(run: Run) -> bool:
     """Return True if a contact with bristles hangs in them over the whole step: its slip rate is negligible at all points.
 
-    A slip rate that is only rounding is set to zero, so that a slab does not ring with it.
+    A slip rate that is only rounding is set to zero, so that a slab does not ring with it; what is missed then is proven.
     """
     if run.counts.reverses == 0:
         return False
@@ -69,6 +69,7 @@ def hangs(run: Run) -> bool:
         for n in range(run.counts.states):
             fill(ahead(run.state_jet, at.TERMS * n), 0.0)
             run.state_jet[at.TERMS * n] = run.state.state_now[n]
+        prove_anyway(run, 1.0)
     return fastest <= run.state.hanging
 
 

@@ -12,7 +12,8 @@ from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_st
 from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
 from stickslip.engine.memory.addresses import ahead
-from stickslip.engine.radau.proof import passes_zero, prove_step
+from stickslip.engine.radau.parts import share_of_step
+from stickslip.engine.radau.proof import begin_proof, step_proof
 from stickslip.engine.radau.stages import (
     defects,
     larger,
@@ -46,9 +47,6 @@ DEFECT_ROUNDING = 1e-14
 """Rounding of the defect, as a share (1) of the largest slip rate or state: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
 """Share of the defect (1) that counts: it changes its sign at every point, and its effect on slip and state nearly cancels."""
-UNPROVEN = 1e-4
-"""Share of the proven bound (1) that counts: the bound exceeds the defect by orders of magnitude, but a hidden feature of the law
-would make it far larger still."""
 LEAST_TREND = 0.7
 """After a step that had to be shortened, the next one may be longer by a factor of at most its own shortening, but at least this
 (1)."""
@@ -57,6 +55,8 @@ LAW_ROUNDING = 5.0
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
 """The error of a step is taken to be rounding if it has not halved in PATIENCE consecutive attempts, each shorter (1). A step with
 an error above LARGEST_ROUNDING tolerances (1) is never kept."""
+SHORTEST_PROVEN = 0.1
+"""A step without a bound is shortened to the part that has one, but at a time to no less than this share (1) of its length."""
 UNSEEN = 1e-3
 """The settling time of mass is far shorter than a step if it is below this share (1) of it."""
 
@@ -201,21 +201,53 @@ def error_of(run: Run, force: float, lost: float) -> float:
         error = max(error, missed / (params.tolerance * farthest + run.state_noise[n]))
     if run.counts.mode == 0:
         error = max(error, strength_ahead(run))
-    if error > 1.0:
-        return error
-    missed = prove_step(run, h, force)
+    begin_proof(run, h, force)
+    proof = step_proof(run)
+    proof.rate_allowed, proof.rate_rounding = params.tolerance * fastest + noise + lost, DEFECT_ROUNDING * fastest
     if run.counts.mode == 0:
-        noise, fastest = NUMBER_ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
-    proven = larger(0.0, UNPROVEN * missed / (params.tolerance * fastest + noise + lost))
+        held = params.reference + abs(run.load_along_slip[0])
+        noise = NUMBER_ROUNDING * params.reference / params.tolerance
+        proof.rate_allowed, proof.rate_rounding = params.tolerance * held + noise + lost, 0.0
     for n in range(run.counts.states):
-        allowed = params.tolerance * farthest_state(run, n) + run.state_noise[n]
-        proven = larger(proven, UNPROVEN * run.state_error[n] / allowed)
-    if proven <= 1.0:
-        return error
-    if passes_zero(run):
+        farthest = farthest_state(run, n)
+        proof.state_allowed[n] = params.tolerance * farthest + run.state_noise[n]
+        proof.state_rounding[n] = DEFECT_ROUNDING * farthest
+    return error if error > 1.0 else proven_error(run, error)
+
+
+@kernel
+def proven_error(run: Run, error: float) -> float:
+    """Return the error of a step after its proof, and note the bound on its residual. `step_proof` says what is allowed.
+
+    A step that has no bound is shortened to the part that has, and never kept.
+    """
+    share = noted_share(run)
+    if share < math.inf:
+        return max(error, share) if share > 1.0 else error
+    proven_to = max(step_proof(run).proven_to, SHORTEST_PROVEN)
+    return max(proven_to ** -(STAGES + 1.0), 2.0 * LARGEST_ROUNDING)
+
+
+@kernel
+def noted_share(run: Run) -> float:
+    """Return the share of the step (`radau.parts.share_of_step`), and note the bound on its residual: NaN if there is none."""
+    proof = step_proof(run)
+    share = share_of_step(run)
+    run.state.residual = proof.bound + (abs(proof.force) if run.counts.mode != 0 else 0.0)
+    if proof.reaches_zero == 1 or share == math.inf:
         run.state.residual = math.nan
-        return error
-    return proven
+    return share
+
+
+@kernel
+def prove_anyway(run: Run, error: float) -> None:
+    """Note the bound of a step that is kept although its error is this many times what is allowed, and then more is allowed."""
+    proof = step_proof(run)
+    begin_proof(run, proof.duration, proof.force)
+    proof.rate_allowed *= error
+    for n in range(run.counts.states):
+        proof.state_allowed[n] *= error
+    noted_share(run)
 
 
 @kernel
@@ -361,6 +393,8 @@ def collocate(run: Run, left: float) -> float:
                 if error > 1.0 and not settles_unseen(run, error):
                     run.counts.rough += 1
                     run.state.roughest = max(run.state.roughest, error * run.params.tolerance)
+                if error > 1.0:
+                    prove_anyway(run, error)
                 # Where this step had to shrink, the next one probably has to shrink as well.
                 change = max(trial / longest, LEAST_TREND) if before < math.inf else 5.0
                 run.counts.unproven += 1 if math.isnan(run.state.residual) else 0

@@ -513,6 +513,28 @@ class Between(MemoryRecord):
     evolved: Floats = floats_inside(STATES)  # units of the states: their derivatives
 
 
+class StepProof(MemoryRecord):
+    """Hold what is to be proven of an implicit step, and what has been found on the part of it that was looked at last."""
+
+    duration: float  # s: of the step
+    force: float  # Pa or N: the part of the load that the step ignores
+    rate_allowed: float  # m/s at slip, Pa or N at rest: allowed error of the slip rate, or of the strength
+    rate_rounding: float  # the same unit: rounding of what is missed, which counts as nothing
+    width: float  # 1: length of the part, as a share of the step
+    walked: float  # m: slip from the start of the step to the middle of the part
+    measured: float  # Pa or N: largest residual at places of the part
+    hidden: float  # Pa or N: bound on the residual between these places, beyond what is measured
+    bound: float  # Pa or N: largest bound on the residual of any part so far
+    proven_to: float  # 1: place up to which the step is proven
+    reaches_zero: int  # 1 if a part has no bound, because the law is singular where the slip rate is zero
+    rate_yields: float  # m/s over Pa or N, or 1 at rest: error of the slip rate, or of the strength, per residual
+    state_allowed: Floats = floats_inside(STATES)  # units of the states: allowed errors
+    state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of what is missed
+    state_measured: Floats = floats_inside(STATES)  # units of the states over s: as `measured`, for the rates of change
+    state_hidden: Floats = floats_inside(STATES)  # units of the states over s: as `hidden`
+    state_yields: Floats = floats_inside(STATES)  # s: error of each state per residual
+
+
 # ---- a problem and its history ----------------------------------------------------------------------------------------------
 
 
