@@ -32,6 +32,8 @@ from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
 from stickslip.friction.formula.operations.sets import Disc
+from stickslip.friction.pressed import Pressed
+from stickslip.observables.given_on_discs import NormalLoads, missed_growth
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
 
@@ -121,6 +123,9 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     bound = store.residual + _rounding_of_terms(history)
     moving = np.flatnonzero((store.mode != 0) & np.isfinite(bound) & ~np.isin(store.trip, history.creep[:, 0]))
     chosen, anew = _chosen(store, moving), 0
+    if history.problem.normal_load is not None and len(chosen) < len(moving):
+        others = np.setdiff1d(moving, chosen)
+        bound[others] += _missed_normal_load(history, others)
     for some in np.array_split(chosen, len(chosen) // AT_ONCE + 1):
         seen, hidden, found = _bounds(history, some)
         known = hidden <= bound[some] + seen
@@ -153,6 +158,14 @@ def _rounding_of_terms(history: History) -> Floats:
     store, problem = history.store, history.problem
     size = problem.strength + np.abs(store.load).sum(axis=1) + problem.body.damping * np.abs(store.rate).sum(axis=1)
     return np.asarray(POLYNOMIAL * np.where(store.mode != 0, size, 0.0))
+
+
+def _missed_normal_load(history: History, n: Places) -> Floats:
+    """Return by how much (Pa or N) friction is wrong in pieces n because the engine took another normal load than the given one."""
+    motion = MotionOnDiscs.of(history, n)
+    size = sum(np.abs(one).sum(axis=1) for one in (motion.load, history.problem.body.damping * motion.rate, motion.thrust))
+    lowest = history.problem.contact_law.least if isinstance(history.problem.contact_law, Pressed) else 1.0
+    return np.asarray(missed_growth(history, n) * size / lowest)
 
 
 # ---- one step after the other, from the history and the formula alone ------------------------------------------------------------
@@ -196,6 +209,10 @@ class MotionOnDiscs(NamedTuple):
         states = [places(state) for state in self.states]
         return MotionOnDiscs(places(self.slip), places(self.rate), places(self.load), places(self.thrust), states)
 
+    def pressed(self, given: list[Disc]) -> MotionOnDiscs:
+        """Return the same with the last states, which follow from time alone, as given."""
+        return self._replace(states=[*self.states[: -len(given)], *given])
+
     @classmethod
     def of(cls, history: History, n: Places) -> MotionOnDiscs:
         """Return the polynomials of pieces n of a history."""
@@ -225,6 +242,9 @@ def _bounds(history: History, n: Places) -> Floats:
         own = np.flatnonzero(piece == i)
         motion, unsure = MotionOnDiscs.of(history, n[own]), _unsure_duration(history, n[own])
         there, around = motion.on(_at_points), motion.on(_around_middle)
+        if history.problem.normal_load is not None:  # S(t) is known from the problem: what the engine wrote is no premise
+            normal = NormalLoads.of(history, n[own])
+            there, around = there.pressed(normal.at(_POINT)), around.pressed(normal.around_middle(RADII))
         with np.errstate(over="ignore", invalid="ignore"):  # where nothing is known, radii are infinite or no numbers
             values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
             everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
