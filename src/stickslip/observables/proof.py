@@ -122,7 +122,7 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     store = history.store
     bound = store.residual + _rounding_of_terms(history)
     moving = np.flatnonzero((store.mode != 0) & np.isfinite(bound) & ~np.isin(store.trip, history.creep[:, 0]))
-    chosen, anew = _chosen(store, moving), 0
+    chosen, anew = chosen_steps(store, moving), 0
     if history.problem.normal_load is not None and len(chosen) < len(moving):
         others = np.setdiff1d(moving, chosen)
         bound[others] += _missed_normal_load(history, others)
@@ -134,7 +134,7 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     return bound, len(moving), anew
 
 
-def _chosen(store: Any, moving: Places) -> Places:
+def chosen_steps(store: Any, moving: Places) -> Places:
     """Return the steps that are proven anew, of those given: a kind is a piece of the law, a direction and a form of step."""
     if len(moving) <= SHARE:
         return moving
@@ -172,8 +172,8 @@ def _missed_normal_load(history: History, n: Places) -> Floats:
 
 DEGREE = TERMS + 2
 """Number of coefficients (1) of the slip of a step, whose time is a parabola next to a fold."""
-_POINT = 0.5 - 0.5 * np.cos(np.pi * np.arange(ORDER + 1) / ORDER)
-_POWERS = _POINT ** np.arange(DEGREE)[:, None]
+POINTS_OF_STEP = 0.5 - 0.5 * np.cos(np.pi * np.arange(ORDER + 1) / ORDER)
+_POWERS = POINTS_OF_STEP ** np.arange(DEGREE)[:, None]
 """Powers of the Chebyshev points of a step, its two ends among them."""
 _SHIFT = np.array([[comb(n, k) * 0.5 ** (n - k) if k <= n else 0.0 for k in range(DEGREE)] for n in range(DEGREE)])
 """Matrix from coefficients in xi to those in y = xi - 1/2."""
@@ -181,13 +181,13 @@ _RATIO = 2.0 * RADII + np.sqrt(4.0 * RADII**2 - 1.0)
 """q for each disc: the Chebyshev coefficients of a function that is bounded on the disc fall by q from order to order."""
 
 
-def _at_points(c: Floats) -> Disc:
+def at_points(c: Floats) -> Disc:
     """Return the values of polynomials, one per row, at the Chebyshev points."""
     first, rest, powers = c[:, :1], c[:, 1:], _POWERS[1:]
     return Disc.of(first + rest @ powers, POLYNOMIAL * (np.abs(rest) @ powers) + SUM * np.abs(first))
 
 
-def _around_middle(c: Floats) -> Disc:
+def around_middle(c: Floats) -> Disc:
     """Return what polynomials, one per row, are on the discs of RADII around the middle of the step."""
     middle, orders = c @ _SHIFT, np.arange(1, DEGREE)[:, None]
     radius = np.abs(middle[:, 1:]) @ RADII**orders
@@ -241,14 +241,14 @@ def _bounds(history: History, n: Places) -> Floats:
     for i in np.unique(piece).tolist():
         own = np.flatnonzero(piece == i)
         motion, unsure = MotionOnDiscs.of(history, n[own]), _unsure_duration(history, n[own])
-        there, around = motion.on(_at_points), motion.on(_around_middle)
+        there, around = motion.on(at_points), motion.on(around_middle)
         if history.problem.normal_load is not None:  # S(t) is known from the problem: what the engine wrote is no premise
             normal = NormalLoads.of(history, n[own])
-            there, around = there.pressed(normal.at(_POINT)), around.pressed(normal.around_middle(RADII))
+            there, around = there.pressed(normal.at(POINTS_OF_STEP)), around.pressed(normal.around_middle(RADII))
         with np.errstate(over="ignore", invalid="ignore"):  # where nothing is known, radii are infinite or no numbers
             values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
             everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
-            found[:, own] = _from_points(values, everywhere)
+            found[:, own] = from_points(values, everywhere)
     return found
 
 
@@ -280,7 +280,7 @@ def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
     return Disc(centre, radius + SUM * terms, 0.0)
 
 
-def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
+def from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the largest value at the points of each step, the error between them, and a bound on both, from bounds M on RADII."""
     rounding, highest = values.radius.max(axis=1), np.abs(values.centre).max(axis=1)
     parts = np.abs(dct(values.centre, type=1, axis=1)) / ORDER
