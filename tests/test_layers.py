@@ -85,10 +85,10 @@ ROOMS = {
     "observables": (
         ("given_load", "given_on_discs", "layer_machine", "layer_records", "planar", "predictability", "severity", "quadrature"),
         ("layer_replay", "proof", "rule_influence"),
-        ("layers", "proof_of_states", "waves"),
+        ("layers", "proof_of_rest", "proof_of_slip", "proof_of_states", "waves"),
         ("inside_layers", "layers_found_again"),
         ("energy", "field", "proof_of_load"),
-        ("event_table",),
+        ("event_table", "proof_of_run"),
         ("energetics", "event_stream"),
     ),
     "solution": (("evaluation",), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
