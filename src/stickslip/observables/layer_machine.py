@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.polynomial import polynomial as poly
+from numpy.typing import NDArray
 
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine_input.forcing import settled_rate
@@ -38,6 +41,44 @@ class LayerMachine:
         """Return the rate (m/s) at places in time, and the way (m) since the start of each round trip."""
         shape = trip.shape
         trips, phases = trip.ravel(), phase.ravel()
+        piece, xi, known = self._placed(trips, phases)
+        rest = self._settled(trips)
+        rate = np.where(known, poly.polyval(xi, self.series[piece].T, tensor=False), rest)
+        way = np.where(known, self.before[piece] + poly.polyval(xi, self.way[piece].T, tensor=False), rest * phases)
+        return np.reshape(rate, shape), np.reshape(way, shape)
+
+    def acceleration(self, trip: Integers, phase: Floats) -> Floats:
+        """Return how fast the rate grows (m/s^2) at places in time, one-dimensional."""
+        piece, xi, known = self._placed(trip, phase)
+        slope = poly.polyval(xi, (self.series[piece, 1:] * np.arange(1, self.series.shape[1])).T, tensor=False)
+        pace = self.store.speed[piece] + 2.0 * self.store.bend[piece] * xi
+        return np.where(known, slope / np.where(pace > 0.0, pace, 1.0), 0.0)
+
+    def moved(self, trip: Integers, phase: Floats) -> Floats:
+        """Return the way (m) since the start of the run at places in time, one-dimensional."""
+        rank = np.searchsorted(self._trips, trip, side="right") - 1
+        begun, lasted = self._begun[rank], trip - self._trips[rank]
+        of_trip = np.where(lasted > 0, self._whole[rank], 0.0)
+        rested = np.maximum(lasted - 1, 0) * self._settled(self._trips[rank] + 1) * self.round
+        return np.asarray(begun + of_trip + rested + self.motion(trip, phase)[1])
+
+    @cached_property
+    def _whole(self) -> Floats:
+        """The way (m) in each whole round trip that was kept."""
+        return self.before[self._starts[1:] - 1] + self.way[self._starts[1:] - 1].sum(axis=1)
+
+    @cached_property
+    def _begun(self) -> Floats:
+        """The way (m) up to the start of each of these, over the rests between them, too."""
+        rests = (np.diff(self._trips) - 1) * self._settled(self._trips[:-1] + 1) * self.round
+        return np.append(0.0, np.cumsum(self._whole[:-1] + rests))
+
+    def _settled(self, trip: Integers) -> Floats:
+        """Return the rate (m/s) of a long rest, under the loading of round trips."""
+        return settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float))
+
+    def _placed(self, trips: Integers, phases: Floats) -> tuple[NDArray[np.intp], Floats, NDArray[np.bool_]]:
+        """Return the piece at each place in time, the place xi in it, and whether anything was kept of that round trip."""
         rank = np.minimum(np.searchsorted(self._trips, trips), len(self._trips) - 1)
         known = self._trips[rank] == trips
         first, last = self._starts[rank], self._starts[rank + 1] - 1
@@ -48,11 +89,7 @@ class LayerMachine:
         since = phases - self.store.phase_from[piece]
         speed, bend = self.store.speed[piece], self.store.bend[piece]
         pace = speed + np.sqrt(np.maximum(speed * speed + 4.0 * bend * np.maximum(since, 0.0), 0.0))
-        xi = np.clip(2.0 * since / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
-        rest = settled_rate(self.problem, np.asarray((trips + 0.5) * self.round, float))
-        rate = np.where(known, poly.polyval(xi, self.series[piece].T, tensor=False), rest)
-        way = np.where(known, self.before[piece] + poly.polyval(xi, self.way[piece].T, tensor=False), rest * phases)
-        return np.reshape(rate, shape), np.reshape(way, shape)
+        return piece, np.clip(2.0 * since / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0), known
 
     def kinetic(self, now: Epoch) -> float:
         """Return the kinetic energy of the machine (J/m^2) at a moment."""

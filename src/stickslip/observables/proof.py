@@ -32,6 +32,8 @@ from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
 from stickslip.friction.formula.operations.sets import Disc
+from stickslip.friction.pressed import Pressed
+from stickslip.observables.given_on_discs import NormalLoads, missed_growth
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
 
@@ -120,7 +122,10 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     store = history.store
     bound = store.residual + _rounding_of_terms(history)
     moving = np.flatnonzero((store.mode != 0) & np.isfinite(bound) & ~np.isin(store.trip, history.creep[:, 0]))
-    chosen, anew = _chosen(store, moving), 0
+    chosen, anew = chosen_steps(store, moving), 0
+    if history.problem.normal_load is not None and len(chosen) < len(moving):
+        others = np.setdiff1d(moving, chosen)
+        bound[others] += _missed_normal_load(history, others)
     for some in np.array_split(chosen, len(chosen) // AT_ONCE + 1):
         seen, hidden, found = _bounds(history, some)
         known = hidden <= bound[some] + seen
@@ -129,7 +134,7 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     return bound, len(moving), anew
 
 
-def _chosen(store: Any, moving: Places) -> Places:
+def chosen_steps(store: Any, moving: Places) -> Places:
     """Return the steps that are proven anew, of those given: a kind is a piece of the law, a direction and a form of step."""
     if len(moving) <= SHARE:
         return moving
@@ -155,12 +160,20 @@ def _rounding_of_terms(history: History) -> Floats:
     return np.asarray(POLYNOMIAL * np.where(store.mode != 0, size, 0.0))
 
 
+def _missed_normal_load(history: History, n: Places) -> Floats:
+    """Return by how much (Pa or N) friction is wrong in pieces n because the engine took another normal load than the given one."""
+    motion = MotionOnDiscs.of(history, n)
+    size = sum(np.abs(one).sum(axis=1) for one in (motion.load, history.problem.body.damping * motion.rate, motion.thrust))
+    lowest = history.problem.contact_law.least if isinstance(history.problem.contact_law, Pressed) else 1.0
+    return np.asarray(missed_growth(history, n) * size / lowest)
+
+
 # ---- one step after the other, from the history and the formula alone ------------------------------------------------------------
 
 DEGREE = TERMS + 2
 """Number of coefficients (1) of the slip of a step, whose time is a parabola next to a fold."""
-_POINT = 0.5 - 0.5 * np.cos(np.pi * np.arange(ORDER + 1) / ORDER)
-_POWERS = _POINT ** np.arange(DEGREE)[:, None]
+POINTS_OF_STEP = 0.5 - 0.5 * np.cos(np.pi * np.arange(ORDER + 1) / ORDER)
+_POWERS = POINTS_OF_STEP ** np.arange(DEGREE)[:, None]
 """Powers of the Chebyshev points of a step, its two ends among them."""
 _SHIFT = np.array([[comb(n, k) * 0.5 ** (n - k) if k <= n else 0.0 for k in range(DEGREE)] for n in range(DEGREE)])
 """Matrix from coefficients in xi to those in y = xi - 1/2."""
@@ -168,13 +181,13 @@ _RATIO = 2.0 * RADII + np.sqrt(4.0 * RADII**2 - 1.0)
 """q for each disc: the Chebyshev coefficients of a function that is bounded on the disc fall by q from order to order."""
 
 
-def _at_points(c: Floats) -> Disc:
+def at_points(c: Floats) -> Disc:
     """Return the values of polynomials, one per row, at the Chebyshev points."""
     first, rest, powers = c[:, :1], c[:, 1:], _POWERS[1:]
     return Disc.of(first + rest @ powers, POLYNOMIAL * (np.abs(rest) @ powers) + SUM * np.abs(first))
 
 
-def _around_middle(c: Floats) -> Disc:
+def around_middle(c: Floats) -> Disc:
     """Return what polynomials, one per row, are on the discs of RADII around the middle of the step."""
     middle, orders = c @ _SHIFT, np.arange(1, DEGREE)[:, None]
     radius = np.abs(middle[:, 1:]) @ RADII**orders
@@ -195,6 +208,10 @@ class MotionOnDiscs(NamedTuple):
         """Return the discs of values that `places` makes of each polynomial."""
         states = [places(state) for state in self.states]
         return MotionOnDiscs(places(self.slip), places(self.rate), places(self.load), places(self.thrust), states)
+
+    def pressed(self, given: list[Disc]) -> MotionOnDiscs:
+        """Return the same with the last states, which follow from time alone, as given."""
+        return self._replace(states=[*self.states[: -len(given)], *given])
 
     @classmethod
     def of(cls, history: History, n: Places) -> MotionOnDiscs:
@@ -224,11 +241,14 @@ def _bounds(history: History, n: Places) -> Floats:
     for i in np.unique(piece).tolist():
         own = np.flatnonzero(piece == i)
         motion, unsure = MotionOnDiscs.of(history, n[own]), _unsure_duration(history, n[own])
-        there, around = motion.on(_at_points), motion.on(_around_middle)
+        there, around = motion.on(at_points), motion.on(around_middle)
+        if history.problem.normal_load is not None:  # S(t) is known from the problem: what the engine wrote is no premise
+            normal = NormalLoads.of(history, n[own])
+            there, around = there.pressed(normal.at(POINTS_OF_STEP)), around.pressed(normal.around_middle(RADII))
         with np.errstate(over="ignore", invalid="ignore"):  # where nothing is known, radii are infinite or no numbers
             values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
             everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
-            found[:, own] = _from_points(values, everywhere)
+            found[:, own] = from_points(values, everywhere)
     return found
 
 
@@ -260,7 +280,7 @@ def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
     return Disc(centre, radius + SUM * terms, 0.0)
 
 
-def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
+def from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the largest value at the points of each step, the error between them, and a bound on both, from bounds M on RADII."""
     rounding, highest = values.radius.max(axis=1), np.abs(values.centre).max(axis=1)
     parts = np.abs(dct(values.centre, type=1, axis=1)) / ORDER

@@ -14,7 +14,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, how_long, html_table
 from stickslip.observables.event_table import events_table
-from stickslip.observables.proof import Proof, proven
+from stickslip.observables.proof_of_run import ProofOfRun, proof_of_run
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.scenarios.scenario import UNNAMED, Scenario
@@ -249,9 +249,9 @@ class Solution(Exports):
         return trapped_note(self.history)
 
     @cached_property
-    def proven(self) -> Proof:
-        """A proven bound of how far the run misses the contact equation at any moment: see `Proof`."""
-        return proven(self.history).proof(self.problem)
+    def proven(self) -> ProofOfRun:
+        """What is proven of the run: how far it misses the contact equation at any moment, and its other equations."""
+        return proof_of_run(self.history)
 
     @cached_property
     def horizon_note(self) -> str:

@@ -1,0 +1,72 @@
+"""What drivers and moving ground do at given times, from the fields of a problem alone.
+
+The engine works on tables that `engine_input` makes of these fields. A comparison that read the tables would agree with whatever
+stands in them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.engine_input.forcing import far_at_first
+from stickslip.foundation.arrays import Floats
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import Problem
+
+
+def value_at(given: float | LoadingHistory, time: Floats, inside: Floats) -> Floats:
+    """Return what may vary in time at times (s), by the straight parts that hold at the times `inside`; constant before 0 s."""
+    if not isinstance(given, LoadingHistory):
+        return np.full(np.shape(time), given)
+    start, value, slope = np.array(given.segments).T
+    n = np.maximum(np.searchsorted(start, inside, side="right") - 1, 0)
+    amplitude, frequency, phase = given.tone
+    since = np.maximum(time, 0.0)
+    return np.asarray(value[n] + slope[n] * (since - start[n]) + amplitude * np.sin(frequency * since + phase))
+
+
+def pulled(problem: Problem, time: Floats) -> Floats:
+    """Return how far (m) the driver has been pulled since the start at times (s)."""
+    if not isinstance(problem.pull_rate, LoadingHistory):
+        return np.asarray(problem.pull_rate * time)
+    start, value, slope = np.array(problem.pull_rate.segments).T
+    amplitude, frequency, phase = problem.pull_rate.tone
+    lasting = np.diff(start)
+    whole = np.append(0.0, np.cumsum(lasting * (value[:-1] + 0.5 * slope[:-1] * lasting)))
+    n = np.maximum(np.searchsorted(start, time, side="right") - 1, 0)
+    since = time - start[n]
+    swung = 2.0 * amplitude / frequency * np.sin(0.5 * frequency * time) * np.sin(0.5 * frequency * time + phase)
+    return np.asarray(whole[n] + since * (value[n] + 0.5 * slope[n] * since) + swung)
+
+
+def far_excess_at(problem: Problem, time: Floats, inside: Floats) -> Floats:
+    """Return the stress far beyond the first driver minus the reference strength (Pa) at times (s); see `value_at`."""
+    if problem.far_stress is None:
+        first = np.full(np.shape(time), far_at_first(problem))
+    else:
+        first = value_at(problem.far_stress, time, inside) - problem.strength
+    return np.asarray(first + problem.far_stress_rate * time)
+
+
+def share_at(problem: Problem, inside: Floats) -> Floats:
+    """Return the share (1) of a wave that the driver of a uniform body sends back at times (s)."""
+    start, share = np.array(problem.driver_steps).T
+    return np.asarray(share[np.maximum(np.searchsorted(start, inside, side="right") - 1, 0)])
+
+
+def sent_at(problem: Problem, time: Floats, inside: Floats) -> Floats:
+    """Return what the driver of a uniform body sends at times (s) beside the wave that it reflects (Pa), minus its reference.
+
+    It is Z (1 - r) V + (1 + r) s, with the far stress s and the share r of the moment.
+    """
+    body, share = problem.body, share_at(problem, inside)
+    pulls = body.impedance * (1.0 - share) * value_at(problem.pull_rate, time, inside)
+    gives = share > -1.0
+    return np.asarray(pulls + np.where(gives, (1.0 + share) * far_excess_at(problem, time, inside), 0.0) if gives.any() else pulls)
+
+
+def of_ground(problem: Problem, time: Floats, inside: Floats) -> tuple[Floats, Floats]:
+    """Return the velocity (m/s) and the acceleration (m/s^2) of the ground at times (s); zeros where it is at rest."""
+    if problem.ground is None:
+        return np.zeros(np.shape(time)), np.zeros(np.shape(time))
+    return problem.ground.velocity_at(time, inside), problem.ground.acceleration_at(time, inside)

@@ -1,0 +1,92 @@
+"""The load of a contact under layers, found again from the replayed waves of its slip, and the equation of a machine."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.bodies import OfLayers
+from stickslip.engine_input.forcing import machine_at_first
+from stickslip.foundation.arrays import Floats
+from stickslip.observables.given_load import far_excess_at, of_ground, pulled, value_at
+from stickslip.observables.layers import LayerWaves
+from stickslip.trajectory.history import History, Positions
+
+REPLAYED = 2e7
+"""Number of cells times round trips times phases through which waves are replayed; that takes a tenth of a second."""
+PHASES = 64
+"""Largest number of phases at which loads are compared."""
+LEAST_PHASES = 4
+"""With fewer phases than this, the last round trips of a run are left out instead."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+"""Multiples of this share of a round trip fill it evenly."""
+EDGE = 1e-3
+"""Places nearer to an end of a step than this (1) are not compared: loads may jump there."""
+
+
+def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
+    """Return how far (Pa) the loads of a history are from those of the replayed waves, and the number of steps compared."""
+    piece, phase = _places(history, body)
+    if not len(piece):
+        return 0.0, 0
+    store = history.store
+    xi = history.xi(piece, phase - store.phase_from[piece])
+    inside = (xi > EDGE) & (xi < 1.0 - EDGE)
+    piece, phase, xi = piece[inside], phase[inside], xi[inside]
+    trip = store.trip[piece].astype(np.int64)
+    waves = LayerWaves(history, body)
+    rows = waves.waves(trip, phase)
+    time, at = trip * history.round_trip_time + phase, Positions.inside(piece, xi)
+    middle = trip * history.round_trip_time + store.phase_from[piece] + 0.5 * store.speed[piece] + 0.25 * store.bend[piece]
+    found = _load(history, body, (waves.starts, rows), at, (time, middle))
+    differs = np.abs(found - history.excess(at))
+    if waves.machine is not None:
+        differs = np.maximum(differs, np.abs(_missed_by_machine(history, waves, rows[:, waves.last[0]], (trip, phase, middle))))
+    return float(differs.max(initial=0.0)), len(np.unique(piece))
+
+
+def _places(history: History, body: OfLayers) -> tuple[NDArray[np.intp], Floats]:
+    """Return pieces and phases (s) in them at which loads are compared: the same phases in every round trip."""
+    store, cells = history.store, sum(body.cells.counts)
+    last = int(history.creep[:, 0].min(initial=store.trip[-1] + 1))
+    many = int(np.clip(REPLAYED / (cells * max(last, 1)), LEAST_PHASES, PHASES))
+    last = min(last, int(REPLAYED / (cells * many)) + 1)
+    own = np.flatnonzero(store.trip < last)
+    slips = own[store.mode[own] != 0]
+    drawn = slips[np.linspace(0, len(slips) - 1, many // 2).astype(int)] if len(slips) else slips
+    middles = store.phase_from[drawn] + 0.5 * store.speed[drawn] + 0.25 * store.bend[drawn]
+    even = history.round_trip_time * np.modf(GOLDEN * np.arange(1, many - len(drawn) + 1))[0]
+    found = [(own[(store.phase_from[own] < phase) & (phase < store.phase_to[own])], phase) for phase in np.append(middles, even)]
+    return np.concatenate([n for n, _ in found]), np.repeat([phase for _, phase in found], [len(n) for n, _ in found])
+
+
+def _load(
+    history: History, body: OfLayers, waves: tuple[NDArray[np.int64], Floats], at: Positions, times: tuple[Floats, Floats]
+) -> Floats:
+    """Return the load minus the reference (Pa) from the first cell of each side and all waves; `times` as for `of_ground`."""
+    problem, rate, (starts, rows) = history.problem, history.rate(at), waves
+    velocity, acceleration = of_ground(problem, *times)
+    impedances, damping = [one.cell_impedances[0] for one in body.stacks], problem.body.damping
+    if len(impedances) == 1 or body.is_joined:
+        load = np.zeros(len(rate))
+        for z, cell in zip(impedances, starts[:-1], strict=True):
+            load += 2.0 * z * (rate + velocity) - rows[:, cell]
+    else:
+        near, far = impedances
+        load = 2.0 * damping * rate - (far * rows[:, starts[0]] + near * rows[:, starts[1]]) / (near + far)
+    return np.asarray(load - damping * velocity - body.inertia * acceleration)
+
+
+def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: tuple[NDArray[np.int64], Floats, Floats]) -> Floats:
+    """Return by how much (Pa) a machine behind layers misses its equation of motion, `last` being the wave that it sends.
+
+    M dVd/dt = kp (V0 - Vd) + q + s - Z Vd + w, with q the force of the integral gain, and w = 2 Z Vd - `last` what it meets.
+    """
+    problem, machine, (trip, phase, middle) = history.problem, waves.machine, when
+    assert machine is not None
+    body, time = problem.body, trip * history.round_trip_time + phase
+    rate, faster = machine.motion(trip, phase)[0], machine.acceleration(trip, phase)
+    force = body.driver_impedance * value_at(problem.pull_rate, time, middle) + far_excess_at(problem, time, middle)
+    push = machine_at_first(problem)[1] + body.driver_integral_gain * (pulled(problem, time) - machine.moved(trip, phase))
+    met = 2.0 * body.last_impedance * rate - last
+    return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)

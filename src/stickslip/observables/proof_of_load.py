@@ -1,0 +1,122 @@
+"""Compare the loads of a history with what its slip and the problem make of them: the waves, the spring, the drivers, the ground.
+
+The contact equation, and the energy that it balances, take the load of a step from the history. Here the load is found again: for a
+block from the way of its driver and from its slip; for a uniform body from the wave that left the contact one round trip before,
+and from what the driver of the moment adds; for layers from all their waves, replayed from the slip rate alone. It is compared at
+places inside the steps: a measurement, not a bound.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.bodies import OfLayers, as_waves
+from stickslip.engine_input.forcing import wave_before
+from stickslip.foundation.arrays import Floats
+from stickslip.observables.given_load import of_ground, pulled, sent_at, share_at
+from stickslip.observables.layers_found_again import loads_of_layers
+from stickslip.observables.proof import Places, chosen_steps
+from stickslip.observables.waves import FromMachine
+from stickslip.trajectory.history import History, Positions
+
+INSIDE = 0.5 - 0.5 * np.cos(np.pi * (np.arange(12) + 0.5) / 12)
+"""Places (1) in a step where loads are compared; not its ends, where a load may jump."""
+AT_ONCE = 1024
+"""Number of steps that are compared together: it keeps the memory bounded."""
+SHORT = 1e-11
+"""Steps shorter than this share (1) of the round trip, or of the time since the start, are not compared: times are rounded."""
+
+
+class LoadCompared(NamedTuple):
+    """How the loads of a history compare with those that are found again."""
+
+    missed: float = 0.0
+    """Largest difference (Pa, N or N m)."""
+    compared: int = 0
+    """Number of steps, and of rests, whose loads were compared."""
+
+
+def load_compared(history: History) -> LoadCompared:
+    """Return how far the loads of a history are from those that follow from its slip and its problem."""
+    body = history.problem.body
+    if isinstance(body, OfLayers):
+        return LoadCompared(*loads_of_layers(history, body))
+    n = chosen_steps(history.store, comparable(history))
+    expected = _of_waves if body.has_waves else _of_spring
+    worst, compared = 0.0, 0
+    for some in np.array_split(n, len(n) // AT_ONCE + 1):
+        xi = np.tile(INSIDE, len(some))
+        piece = np.repeat(some, len(INSIDE))
+        differs = np.abs(expected(history, piece, xi) - history.excess(Positions.inside(piece, xi))).reshape(-1, len(INSIDE))
+        known = ~np.isnan(differs).any(axis=1)
+        worst, compared = max(worst, float(differs[known].max(initial=0.0))), compared + int(np.count_nonzero(known))
+    return LoadCompared(worst, compared)
+
+
+def comparable(history: History) -> Places:
+    """Return the pieces of a history that are long enough, and neither averages nor echoes of averages."""
+    store, trips = history.store, history.store.trip
+    lasting, since = store.speed + store.bend, trips * history.round_trip_time + store.phase_from
+    known = lasting > SHORT * np.maximum(history.round_trip_time, since)
+    for first, leaped in history.creep[:, :2]:
+        known &= (trips < first) | (trips > first + leaped)
+    return np.flatnonzero(known)
+
+
+def _times(history: History, piece: Places, xi: Floats) -> tuple[NDArray[np.int64], Floats, Floats, Floats]:
+    """Return the round trips and phases (s) of places in pieces, their times (s since the start), and that of each middle (s)."""
+    store, trip = history.store, history.store.trip[piece]
+    phase = store.phase_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
+    middle = store.phase_from[piece] + 0.5 * store.speed[piece] + 0.25 * store.bend[piece]
+    return trip, phase, trip * history.round_trip_time + phase, trip * history.round_trip_time + middle
+
+
+def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
+    """Return the load of a block minus the reference strength (N): that of its spring, and inertia on moving ground."""
+    problem = history.problem
+    _, _, time, inside = _times(history, piece, xi)
+    slip = history.slipped(Positions.inside(piece, xi))
+    _, acceleration = of_ground(problem, time, inside)
+    return np.asarray(
+        problem.excess + problem.body.stiffness * (pulled(problem, time) - slip) - problem.body.inertia * acceleration
+    )
+
+
+def _of_waves(history: History, piece: Places, xi: Floats) -> Floats:
+    """Return the load of a uniform body minus the reference strength (Pa): the echo, what the driver sends, and moving ground."""
+    problem, body = history.problem, as_waves(history.problem.body)
+    trip, phase, time, inside = _times(history, piece, xi)
+    leaving = np.empty(len(piece))
+    first = trip == 0
+    slope = body.impedance * problem.initial_shear / (0.5 * history.round_trip_time)
+    leaving[first] = slope * (history.round_trip_time - phase[first]) - wave_before(problem)
+    leaving[~first] = _left(history, piece[~first], trip[~first], phase[~first], inside[~first])
+    delay = 0.5 * history.round_trip_time
+    if body.has_machine:
+        load = FromMachine(history).at(time) - leaving
+    else:
+        load = share_at(problem, inside - delay) * leaving + sent_at(problem, time - delay, inside - delay)
+    load = np.where(first & (inside < delay), problem.excess + slope * phase, load)
+    velocity, acceleration = of_ground(problem, time, inside)
+    return np.asarray(load - body.impedance * velocity - body.inertia * acceleration)
+
+
+def _left(history: History, piece: Places, trip: NDArray[np.int64], phase: Floats, inside: Floats) -> Floats:
+    """Return the wave 2 Z v - load, plus the reference (Pa), that left the contact one round trip before places in pieces."""
+    problem, store = history.problem, history.store
+    if not len(piece):
+        return np.empty(0)
+    before = np.searchsorted(store.trip, trip, side="left") - 1
+    source = history.phases.latest(phase, before)
+    known = source >= 0
+    source = np.where(known, source, 0)
+    echoed = history.xi(source, np.maximum(phase - store.phase_from[source], 0.0))
+    rests = (trip - 1 - store.trip[source]).astype(float)
+    at = Positions(source, echoed, rests, np.zeros(len(piece), bool), source)
+    velocity, acceleration = of_ground(problem, (trip - 1) * history.round_trip_time + phase, inside - history.round_trip_time)
+    left = 2.0 * problem.body.impedance * history.rate(at) - history.excess(at)
+    left += problem.body.impedance * velocity - problem.body.inertia * acceleration
+    return np.where(known, left, np.nan)

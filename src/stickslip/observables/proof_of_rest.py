@@ -1,0 +1,102 @@
+"""Compare the load with the static strength while a contact rests, and where slip begins: rest and slip must not be mistaken.
+
+While a contact rests its load, forward or backward, is no larger than the static strength S(t) mu_static. Slip begins when it is as
+large. The strength is taken from the law and from the normal load of the problem.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.friction.contract import one_argument
+from stickslip.observables.given_on_discs import NormalLoads
+from stickslip.observables.proof import POINTS_OF_STEP, Places
+from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import PERFECT_DELAY
+from stickslip.trajectory.history import History, Positions
+from stickslip.trajectory.series import values_at
+
+RECORDED = 1024
+"""Largest number of recorded rests whose load is looked at."""
+RESTS = 64
+"""Largest number of rests that were not recorded, but leaped over, whose load is looked at."""
+SAMPLES = 32
+"""Places at which it is looked at in such a rest, and as many again in its last round trip."""
+
+
+def exceeded_at_rest(history: History) -> float:
+    """Return the most (Pa, N or N m) by which a load exceeds the static strength at rest, or falls short of it where slip begins.
+
+    Where a rule other than perfect delay lets slip begin below the strength, the latter is not looked at.
+    """
+    if not history.problem.friction.sticks:
+        return 0.0
+    return max(_in_recorded(history, _recorded(history)), _in_leaped(history), _where_slip_begins(history), 0.0)
+
+
+def _recorded(history: History) -> Places:
+    """Return the recorded rests, without leaps over creep, or an even share of them."""
+    store = history.store
+    n = np.flatnonzero((store.mode == 0) & ~np.isin(store.trip, history.creep[:, 0]))
+    return n[np.unique(np.linspace(0, len(n) - 1, RECORDED).astype(int))] if len(n) > RECORDED else n
+
+
+def _strength(history: History, at: Positions, grown: Floats) -> Floats:
+    """Return the static strength at positions (Pa, N or N m), under a normal load that has grown by a share (1)."""
+    law, own = history.problem.friction, len(history.problem.friction.states)
+    coefficient = law.coefficient(history.law_slip(at), 0.0, one_argument(history.states(at)[:own]))
+    return np.asarray(history.problem.normal * (1.0 + grown) * (coefficient + law.static_excess))
+
+
+def _over(problem: Problem, excess: Floats, strength: Floats) -> float:
+    """Return the most by which loads, minus the reference, exceed strengths, backwards too if slip may go there."""
+    forward = excess - (strength - problem.strength)
+    backward = -excess - (strength + problem.strength)
+    return float(np.max(forward if problem.one_way else np.maximum(forward, backward), initial=0.0))
+
+
+def _in_recorded(history: History, n: Places) -> float:
+    """Return the most by which the load exceeds the strength in recorded rests."""
+    if not len(n):
+        return 0.0
+    at = Positions.inside(np.repeat(n, len(POINTS_OF_STEP)), np.tile(POINTS_OF_STEP, len(n)))
+    varies = history.problem.normal_load is not None
+    grown = NormalLoads.of(history, n).at(POINTS_OF_STEP)[0].centre.ravel() if varies else np.zeros(len(at.piece))
+    return _over(history.problem, history.excess(at), _strength(history, at, grown))
+
+
+def _in_leaped(history: History) -> float:
+    """Return the same in rests that were leaped over, at places in all of them and in the last round trip of each."""
+    n = np.flatnonzero(history.rests & ~np.isin(history.store.trip, history.creep[:, 0]))
+    if not len(n):
+        return 0.0
+    n = n[np.unique(np.linspace(0, len(n) - 1, RESTS).astype(int))]
+    begins, ends = history.end[n], np.append(history.start[1:], history.span[1])[n]
+    shares = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    late = np.maximum(begins, ends - history.round_trip_time)
+    times = np.concatenate([low[:, None] + (ends - low)[:, None] * shares for low in (begins, late)], axis=1).ravel()
+    at = history.find(np.clip(times, *history.span), "right")
+    normal = history.problem.normal_load
+    since = times + history.epoch.trip * history.round_trip_time + history.epoch.offset
+    grown = np.zeros(len(times)) if normal is None else normal.at(since) / history.problem.normal - 1.0
+    stands = Positions.inside(at.last, 1.0)
+    resting = history.mode(at) == 0
+    return _over(history.problem, history.excess(at)[resting], _strength(history, stands, grown)[resting])
+
+
+def _where_slip_begins(history: History) -> float:
+    """Return the most by which a load falls short of the strength where slip begins from rest, whatever the rest was."""
+    store, problem = history.store, history.problem
+    if problem.rule != PERFECT_DELAY:
+        return 0.0
+    rests = (store.mode[:-1] == 0) | history.rests[:-1]
+    leaps = np.isin(store.trip, history.creep[:, 0])
+    n = np.flatnonzero(rests & (store.mode[1:] != 0) & ~(leaps[:-1] | leaps[1:])) + 1
+    if not len(n):
+        return 0.0
+    varies = problem.normal_load is not None
+    grown = NormalLoads.of(history, n).at(np.zeros(1))[0].centre[:, 0] if varies else np.zeros(len(n))
+    strength = _strength(history, Positions.inside(n - 1, 1.0), grown)
+    load = problem.strength + values_at(store.load, n, np.zeros(len(n)))
+    return float(np.max(strength - store.mode[n] * load, initial=0.0))
