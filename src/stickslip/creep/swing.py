@@ -94,6 +94,7 @@ class SwingingBlock:
         if not k > 0.0:
             return Place(slip, k, math.nan, 0.0, False, math.inf, bend, math.nan)
         half, free, rate = 0.5 * self.damping / self.mass, k / self.mass, self.spring * self.speed / k
+        rate += self.damping * bend * rate * rate / (k * k)  # less c U'' / k
         swings = half * half < SWINGS * free
         w = math.sqrt(free - half * half if swings else free)
         fades = half if half * half <= free else free / (half + math.sqrt(half * half - free))
@@ -101,7 +102,7 @@ class SwingingBlock:
 
     def quickness(self, place: Place) -> float:
         """Return how much the slow motion changes while a swing turns by a radian, or fades: 0 where it is slow."""
-        return abs(place.drift) * (1.0 + self.damping * place.frequency / place.stiffness)
+        return abs(place.drift) * (1.0 + self.damping * place.frequency / place.stiffness) ** 1.5
 
     def action(self, place: Place, amplitude: float) -> float:
         """Return the action J (J s) of a swing."""

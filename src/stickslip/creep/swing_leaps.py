@@ -29,6 +29,12 @@ CLOSE = 1e-13
 """Share of a stride within which the place of the landing is found."""
 ROUNDING = 4e-16
 """Rounding of a number, as a share of it."""
+LAG = (10.0 * math.pi) ** 1.5 / (6.0 * math.pi)
+"""By this times (w'/w^2)^(3/2) the angle of a swing that touches rest lags, as a share of itself: the rest that it includes."""
+MOST_ROUNDS = 30
+"""Largest number of rounds of Newton's method to that place."""
+HALVINGS = 30
+"""Number of bisections that look for the largest k in a stride."""
 MOST_STRIDES = 4000
 """Largest number of strides in a leap."""
 
@@ -59,20 +65,20 @@ class SwingLeap:
         index = int(np.searchsorted([mark.time for mark in self.marks], time))
         before = self.marks[min(max(index - 1, 0), len(self.marks) - 2)]
         low, high = before.swing.place.slip, self.marks[min(max(index, 1), len(self.marks) - 1)].swing.place.slip
-        slip, within = low, CLOSE * (high - low)
-        for _ in range(100):
-            mark = reached(self.block, before, slip)
-            off = (time - mark.time) * mark.swing.place.rate
+        size, slip, off = before.swing.amplitude, low, math.inf
+        for _ in range(MOST_ROUNDS):
+            place = self.block.at(slip)
+            last, off = abs(off), (time - self.block.time(place, size)) * place.rate
             slip = min(max(slip + off, low), high)
-            if abs(off) <= within:
+            if abs(off) <= CLOSE * (high - low) or abs(off) >= last:
                 break
         return reached(self.block, before, slip)
 
     def error(self, mark: Mark) -> float:
         """Return the error of slip (m): at most the whole swing, and no more than the angle may be wrong by."""
-        place = mark.swing.place
+        place, slip = mark.swing.place, abs(self.slip) + mark.swing.place.slip
         angle = mark.missed + abs(place.drift) + ROUNDING * (mark.swing.angle + place.frequency * mark.time)
-        return mark.swing.amplitude * min(2.0, SAFETY * angle) + SAFETY * place.most * self.block.quickness(place) ** 2
+        return mark.swing.amplitude * min(2.0, SAFETY * angle) + SAFETY * place.most * self.block.quickness(place) ** 2 + ROUNDING * slip
 
 
 def reached(block: SwingingBlock, before: Mark, slip: float) -> Mark:
@@ -83,21 +89,36 @@ def reached(block: SwingingBlock, before: Mark, slip: float) -> Mark:
     turned = block.turns(before.swing.place.slip, slip)
     guess = block.time(place, before.swing.amplitude)
     faded = before.action * math.exp(-2.0 * min(place.fades, before.swing.place.fades) * max(guess - before.time, 0.0))
-    action = min(faded, block.action(place, place.most))
+    action = min(faded, block.action(place, place.most), _least_action(block, before.swing.place, place))
     amplitude = block.amplitude(place, action)
-    missed = before.missed + _missed(block, before.swing, place, turned, touches=action < faded)
-    return Mark(Swing(place, amplitude, before.swing.angle + turned), action, block.time(place, amplitude), missed)
+    touches = place.most < (1.0 + TOUCHES) * amplitude and place.drift > 0.0
+    lags = [max(one.drift, 0.0) ** 1.5 * LAG * turned if touches else 0.0 for one in (before.swing.place, place)]
+    missed = before.missed + _missed(before.swing, place, turned) + abs(lags[1] - lags[0])
+    if touches:
+        missed += 4.0 * place.drift**2 * turned + place.fades / place.frequency * turned
+    angle = before.swing.angle + turned - 0.5 * (lags[0] + lags[1])
+    return Mark(Swing(place, amplitude, angle), action, block.time(place, amplitude), missed)
 
 
-def _missed(block: SwingingBlock, begin: Swing, end: Place, turned: float, *, touches: bool) -> float:
+def _least_action(block: SwingingBlock, begin: Place, end: Place) -> float:
+    """Return the action (J s) of a swing that just touches rest where k is largest between two places, if that is between them."""
+    if not begin.bend > 0.0 > end.bend:
+        return math.inf
+    low, high = begin.slip, end.slip
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if block.strength.curvature(middle) > 0.0 else (low, middle)
+    top = block.at(0.5 * (low + high))
+    return block.action(top, top.most)
+
+
+def _missed(begin: Swing, end: Place, turned: float) -> float:
     """Return an estimate of the error of the angle (rad) in a stride: what the terms of second order may add to it."""
     place, stride = begin.place, abs(end.slip - begin.place.slip)
     drift, size = max(abs(place.drift), abs(end.drift)), begin.amplitude
     bent = max(abs(place.bend), abs(end.bend)) / min(place.stiffness, end.stiffness)
     bends = abs(end.bend - place.bend) / (stride * min(place.stiffness, end.stiffness)) if stride else 0.0
     shift = drift * drift + (bent * size) ** 2 + bends * size * size
-    if touches:
-        shift += (2.0 * drift) ** 1.5 + place.fades / place.frequency
     return turned * shift if place.swings and end.swings else math.inf
 
 
@@ -178,8 +199,8 @@ class SwingLeaps:
         if not strength.in_sight(first, last) or strength.falls_below_zero(first, last):
             return None
         middle, end = reached(block, begin, 0.5 * (first + last)), reached(block, begin, last)
-        halves = block.turns(first, 0.5 * (first + last)) + block.turns(0.5 * (first + last), last)
-        if not abs(halves - (end.swing.angle - begin.swing.angle)) <= AGREE * max(halves, 1.0) ** 0.5:
+        whole, *halves = (block.turns(*ends) for ends in ((first, last), (first, 0.5 * (first + last)), (0.5 * (first + last), last)))
+        if not abs(sum(halves) - whole) <= AGREE * math.sqrt(max(whole, 1.0)):
             return None
         if not begin.time < middle.time < end.time:
             return None
