@@ -133,6 +133,12 @@ class Strength:
         slip = complex(self.problem.law_slip + self.law_slip + self.sign * x, self.sign * COMPLEX_STEP)
         return self.problem.normal * float(np.imag(self.problem.friction.piece_coefficient(self.piece, slip, 0.0))) / COMPLEX_STEP
 
+    def slopes(self, x: Floats) -> Floats:
+        """Return the derivatives at several x, Pa/m."""
+        slips = self.problem.law_slip + self.law_slip + self.sign * x + self.sign * COMPLEX_STEP * 1j
+        mu = self.problem.friction.piece_coefficient(self.piece, slips, 0.0)
+        return np.asarray(self.problem.normal * np.imag(mu) / COMPLEX_STEP)
+
     def curvature(self, x: float) -> float:
         """Return the second derivative with respect to x, Pa/m^2, from the slopes at two nearby slips."""
         return (self.slope(x + self.step) - self.slope(x - self.step)) / (2.0 * self.step)

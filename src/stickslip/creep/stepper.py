@@ -16,6 +16,8 @@ from stickslip.creep.slow_landing import SlowLanding
 from stickslip.creep.slow_leaps import SlowLeaps
 from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps
 from stickslip.creep.steady_landing import SteadyLanding
+from stickslip.creep.swing_landing import SwingLanding
+from stickslip.creep.swing_leaps import SwingLeaps
 from stickslip.engine.state.layout import NEVER, TERMS, Counts, Floats, HistoryPiece, Incoming, State, Stop, Store
 from stickslip.engine_input.limits import PATIENCE, leaps_over
 from stickslip.problem.problem import Problem
@@ -96,6 +98,8 @@ class HistoryWriter:
         store.rate[n] = self.direction * piece.rate
 
 
+Landing = SteadyLanding | SlowLanding | SwingLanding
+"""A leap over sliding, ready to be written."""
 LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
 """Largest number of round trips between two attempts that found no leap: an attempt takes some milliseconds, as much as thousands
 of pieces.
@@ -186,8 +190,12 @@ class CreepLeaps:
         The engine does not pause meanwhile, so that it may pass over echoes under which nothing slips.
         """
         count, room = run.count, int(run.last[0] - CHECKED - 2 - run.count.trip)
-        found: SteadyLanding | SlowLanding | None = self._steady_landing(run, room)
+        found: Landing | None = self._steady_landing(run, room)
         at_end, cost = found is not None and found.trips == room, 0
+        if self.over == "swinging creep":
+            swings = SwingLeaps(self.problem, self.tolerance)
+            swing = swings.leap(run, room)
+            found, at_end = None if swing is None else SwingLanding(swing), swings.at_end
         if found is None and self.over == "slow sliding":
             leaps = SlowLeaps(self.problem, self.tolerance, self.steady.stable_states)
             leap = leaps.leap(run, room)
@@ -197,16 +205,17 @@ class CreepLeaps:
         lands = found is not None and self._lands(run, found)
         count.pause_at, count.creep_in = NEVER, count.pause_for
         spent = min(cost, LONGEST_SPENT) - (found.trips if found is not None and lands else 0)
-        count.pause_for = max(1 if lands else min(2 * count.pause_for, LONGEST_FIRST_WAIT), spent)
+        again = LONGEST_WAIT if self.over == "swinging creep" and count.creep_leaps else LONGEST_FIRST_WAIT
+        count.pause_for = max(1 if lands else min(2 * count.pause_for, again), spent)
 
     def _steady_landing(self, run: LeapingRun, most: int) -> SteadyLanding | None:
         """Return a leap of at most so many round trips over steady sliding, or None."""
-        if most < SHORTEST_LEAP or (self.over == "slow sliding" and self.steady.stable_states is None):
+        if most < SHORTEST_LEAP or self.over == "swinging creep" or (self.over == "slow sliding" and self.steady.stable_states is None):
             return None
         found = self.steady.leap(run, most)
         return None if found is None else SteadyLanding(*found)
 
-    def _lands(self, run: LeapingRun, found: SteadyLanding | SlowLanding) -> bool:
+    def _lands(self, run: LeapingRun, found: Landing) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         count = run.count
         before, begun = run.snapshot(), int(count.trip)

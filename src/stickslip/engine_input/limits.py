@@ -39,8 +39,9 @@ PER_ROOT_RTOL = 0.1
 TIGHTEST, LOOSEST = 1e-6, 1e-3
 """Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
 
-Over = Literal["creep", "slow sliding", "steady sliding", ""]
-"""What a run may leap over: creep under a law of slip, slow or only steady sliding, or nothing."""
+Over = Literal["creep", "swinging creep", "slow sliding", "steady sliding", ""]
+"""What a run may leap over: creep under a law of slip (of a slab, or of a block, which swings), slow or only steady sliding, or
+nothing."""
 
 
 def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> float:
@@ -62,6 +63,8 @@ def _but_pull(problem: Problem) -> Over:
     """Return the same, whatever the pull rate is, which may differ between the members of a batch."""
     if not missing_for_creep(problem):
         return "creep"
+    if swings_as_it_creeps(problem):
+        return "swinging creep"
     law = problem.friction
     if not _slides_alike(law) or _what_changes(problem):
         return ""
@@ -69,6 +72,15 @@ def _but_pull(problem: Problem) -> Over:
     never_rests = law.creeps and bool(law.states) and len(law.pieces) == 1
     is_averaged = body.has_waves and body.is_driven_rigidly and not has_dashpot(body)
     return "slow sliding" if never_rests and is_averaged else "steady sliding"
+
+
+def swings_as_it_creeps(problem: Problem) -> bool:
+    """Return True if a problem is a block under a law of slip alone, with all that leaps over its creep need but a pull rate."""
+    body, law = problem.body, problem.friction
+    if body.has_waves or not body.is_uniform or not law.depends_on_slip or law.depends_on_rate or law.states:
+        return False
+    changes = problem.varies or problem.driver_changes or problem.ground is not None or problem.one_way
+    return not changes and law.memory == "all" and law.sticks and law.static_excess == 0.0
 
 
 def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:

@@ -36,6 +36,7 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import EVENT_SHARE
 from stickslip.problem.selection_rule import SelectionRule
 
 
@@ -134,6 +135,7 @@ def parameters_of(problem: Problem) -> Params:
         params.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:
         params.stiffness = body.stiffness
+        params.slow = EVENT_SHARE * problem.normal * law.variation / body.impedance
     if problem.varies:
         params.tone_frequency = tone_of(problem).frequency
         params.inflow_from = 0.0 if problem.ground is not None and body.is_uniform else body.inflow_delay

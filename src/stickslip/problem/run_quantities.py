@@ -13,6 +13,8 @@ CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law o
 SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
 CHECKPOINT_INTERVAL = Quantity("s", "wall-clock time between two checkpoints", at_least=0, infinite=True)
 EVENT_RATE = Quantity("m/s", "slip rate above which the contact is in a slip event", at_least=0)
+EVENT_SHARE = 1e-6
+"""Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z."""
 LARGEST_RTOL = 1e-2
 """Largest relative tolerance of a run."""
 

@@ -14,6 +14,7 @@ from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import EVENT_SHARE
 from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
 
@@ -156,7 +157,7 @@ def default_event_rate(problem: Problem) -> float:
     """
     fast = problem.normal * problem.friction.variation / problem.body.impedance
     thrown = problem.friction.sticks and problem.has_initial_rate and not problem.starts_steadily
-    return 1e-6 * (min(fast, abs(problem.rate)) if thrown else fast)
+    return EVENT_SHARE * (min(fast, abs(problem.rate)) if thrown else fast)
 
 
 class SlipEvents(NamedTuple):

@@ -68,6 +68,7 @@ class Params(MemoryRecord):
     driver_gain: float  # Pa/m: its integral gain
     driver_spring: float  # Pa/m: stiffness of all layers before it, of a body of layers
     pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
+    slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative
 

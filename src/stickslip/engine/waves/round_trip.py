@@ -51,8 +51,23 @@ def swings_for_ever(run: Run) -> bool:
 
 @kernel
 def creeps(run: Run) -> bool:
-    """Return True if slip is creep, under a law of slip alone; any other contact must slide for a whole round trip to leap."""
+    """Return True if slip is creep, for a slab under a law of slip alone, and for a block without states while it is slow.
+
+    Any other contact must slide for a whole round trip to leap.
+    """
+    if run.counts.is_block == 1:
+        return run.counts.states == 0 and is_slow(run)
     return run.counts.is_algebraic == 0 and run.counts.has_inertia == 0 and run.counts.states == 0
+
+
+@kernel
+def is_slow(run: Run) -> bool:
+    """Return True if no piece of this round trip begins or ends with a slip rate above that of creep."""
+    for n in range(run.counts.trip_from, run.counts.length):
+        rate = run.history[n].rate
+        if max(abs(rate[0]), abs(total(rate))) > run.params.slow:
+            return False
+    return True
 
 
 @kernel

@@ -1,0 +1,106 @@
+"""Landing of a leap over swinging creep: the way and the last period as pieces of the history, and the engine at its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from stickslip.creep.leaping_run import LeapingRun
+from stickslip.creep.planner import hermite
+from stickslip.creep.slow import PLACES, to_powers
+from stickslip.creep.slow_landing import ROUNDINGS
+from stickslip.creep.steady import integrals
+from stickslip.creep.steady_landing import continue_after, write_piece
+from stickslip.creep.swing_leaps import LastPeriods, SwingLeap, nodes_of, stretches
+from stickslip.engine.state.layout import TERMS, Floats
+
+CONTINUES = 1e-6
+"""Share of the slip of a period by which the period after the landing may differ from what the leap predicts."""
+
+
+@dataclass(frozen=True)
+class SwingLanding:
+    """A leap over swinging creep, ready to be written."""
+
+    leap: SwingLeap
+
+    @property
+    def trips(self) -> int:
+        """The number of periods that are leaped over."""
+        return self.leap.trips
+
+    @property
+    def errors(self) -> tuple[float, float]:
+        """The estimate of the error of the slip (m), and that as a time (s)."""
+        landing = self.leap.at((self.trips + 1) * self.leap.period)
+        error = self.leap.error(landing)
+        return error, error / landing.swing.place.rate
+
+    def write(self, run: LeapingRun) -> None:
+        """Write the leap into the history of a run, and set the engine to its end."""
+        nodes, parts = nodes_of(self.leap), stretches(self.leap)
+        first, length = run.length + len(nodes) - 1, run.length + len(nodes) + len(parts) - 2
+        run.reserve(length)
+        begun = int(run.count.trip)
+        for k, (begin, end) in enumerate(pairwise(nodes)):
+            self._write_way(run, run.length + k, begun, begin, end, last=k == len(nodes) - 2)
+        for k, part in enumerate(pairwise(parts.tolist())):
+            self._write_swing(run, first + k, begun + self.trips, part)
+        run.count.mode = self.leap.direction
+        continue_after(run, begun + self.trips, first, length, np.zeros(0))
+
+    def expected(self, run: LeapingRun, trips: int, tolerance: float) -> tuple[float, float]:
+        """Return the slip (m) that is expected some exact periods after the landing, and by how much it may differ."""
+        leap, slip = self.leap, float(run.state.slip_now)
+        (landed, end), _ = self._last.at(np.array([1.0, 1.0 + trips]))
+        share = max(CONTINUES, tolerance) + leap.block.quickness(leap.marks[-1].swing.place)
+        return slip + leap.direction * (end - landed), share * (end - landed) + ROUNDINGS * float(np.spacing(abs(slip) + end))
+
+    @cached_property
+    def _last(self) -> LastPeriods:
+        return LastPeriods(self.leap)
+
+    def _write_way(
+        self, run: LeapingRun, n: int, trip: int, begin: tuple[float, float, float], end: tuple[float, float, float], *, last: bool
+    ) -> None:
+        """Write the averaged slip from one node (s, m, m/s) to the next as a cubic, and move the contact to its end."""
+        (t0, x0, v0), (t1, x1, v1) = begin, end
+        grown = hermite(t1 - t0, x1 - x0, v0, v1)
+        rate = np.zeros(TERMS)
+        rate[:3] = grown[1:] * np.arange(1, 4) / (t1 - t0)
+        gap = float(np.spacing((trip + self.trips) * self.leap.period)) if last else 0.0  # none before the next period
+        self._write(run, n, (trip, t0, t1 + gap), t0, rate)
+
+    def _write_swing(self, run: LeapingRun, n: int, trip: int, part: tuple[float, float]) -> None:
+        """Write a part of the period (as shares of it) on which the leap lands, and move the contact to its end."""
+        begin, end = part
+        rate, period = np.zeros(TERMS), self.leap.period
+        _, rates = self._last.at(begin + (end - begin) * PLACES)
+        rate[: len(PLACES)] = to_powers(rates)
+        self._write(run, n, (trip, begin * period, end * period), (self.trips + begin) * period, rate)
+
+    def _write(self, run: LeapingRun, n: int, when: tuple[int, float, float], since: float, rate: Floats) -> None:
+        """Write piece n: its round trip and phases (s), the time since the leap began (s), and the slip rate, seen forwards."""
+        block, way = self.leap.block, self.leap.direction
+        write_piece(run, n, int(run.count.previous_to) - 1, when)
+        store = run.store
+        store.mode[n], store.law_piece[n] = way, run.count.piece
+        length = float(store.speed[n])
+        load = np.zeros(TERMS)
+        load[1:] = -block.spring * length * rate[:-1] / np.arange(1, TERMS)
+        load[0] = self._load(run, since)
+        load[1] += block.spring * block.speed * length
+        store.rate[n], store.load[n] = way * rate, way * load
+        store.load[n, 0] -= run.problem.strength * (1 - way)
+        moved = float(integrals(store.rate[n : n + 1], store.speed[n : n + 1], store.bend[n : n + 1])[0])
+        run.state.slip_now += moved
+        run.state.law_slip += (way if run.problem.friction.counts == "net" else 1) * abs(moved)
+
+    def _load(self, run: LeapingRun, since: float) -> float:
+        """Return the load (N) at a time (s) since the leap began, for the present slip, seen in the direction of slip."""
+        block, way = self.leap.block, self.leap.direction
+        slipped = way * float(run.state.slip_now) - self.leap.slip
+        return block.load + block.spring * (block.speed * since - slipped)
