@@ -184,7 +184,8 @@ class Counts(MemoryRecord):
     wave_shift: int  # row of waves of piece n: n + wave_shift, modulo their number
     folds_follow_slip: int  # 1 if the branches change with slip
     merging: int  # 1 if pieces of the waves in layers are merged in this round trip (`waves.merged_pieces`)
-    merged: int  # number of pieces that were merged with the one whose echo the present piece of load is
+    merged: int  # number of pieces whose waves are the present piece of load, if they were merged; else 0
+    to_fold: int  # 1 if these waves are written in the root of the time left until they end
     merge_above: int  # they are merged when a round trip has more pieces than this
     merge_at: int  # and in this round trip, if not before
 

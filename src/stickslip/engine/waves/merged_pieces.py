@@ -5,9 +5,12 @@ its phase. Where nothing jumps there, the waves go on smoothly. So once a round 
 time, the waves of the next one are expanded anew as they come to the contact: as many neighbours as one series in xi can describe
 in every cell are brought as one piece of load. Jumps of the load, and folds, stay where they are.
 
+Up to a fold the slip rate goes as the root of the time left. Steps that come to it in another variable get shorter and shorter; from
+the second time on the waves are written in that root, up to the jump in which such steps end.
+
 The new series of a wave is the polynomial through its values at Chebyshev's points, cut where its terms fall below rounding or
-below the differences at the ends of the old pieces. It keeps the values at its own two ends. Its error is measured: the sum of the
-terms of Chebyshev's series of its difference from each old piece bounds that difference on the piece.
+below the differences at the ends of the old pieces. It keeps the values at its start, and at its end unless that is a fold. Its error is measured at as many points of each old piece, and bounded by the
+sum of the terms of Chebyshev's series through these.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ import numpy as np
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.memory.addresses import room_for
-from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
+from stickslip.engine.series.polynomial import copy, evaluate, fill, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.ladder_rows import AIR, row_of, wave_in
@@ -27,7 +30,7 @@ FEW = 32
 """Nothing is merged in a round trip with no more pieces than this (1)."""
 PAUSE = 128
 """Pieces are merged again after this many round trips (1) at the latest: merging one takes the time of some ten others."""
-MOST_TOGETHER = 64
+MOST_TOGETHER = 128
 """Largest number of pieces (1) that are tried as one."""
 ENDS = MOST_TOGETHER + 1
 """Largest number of their ends (1)."""
@@ -38,8 +41,11 @@ ROUNDING = 4e-15
 KEPT_ABOVE = 0.1
 """Terms of a new series are kept above this share (1) of the change allowed: below are the errors of the steps that made the waves,
 which a series of high degree would follow with coefficients that are large beside the wave."""
-SAME_VARIABLE = 1e-11
-"""Two pieces next to a fold are written in the root of the same time if it goes on to this share (1) of them."""
+SHORTER = 0.125
+"""Steps that come to a fold are at least this much (1) shorter at its end than at first."""
+BRIEF, LEAST_WEIGHT = 1e-8, 1e-3
+"""On pieces shorter than this share (1) of a round trip, which steps up to a fold are in the end, a change of the waves weighs less,
+in proportion to its time, but at least by the other share (1): by rounding these steps do not know their waves any better."""
 LARGEST_TURN = 1.0
 """A tone in the loading is a polynomial to rounding up to this phase (rad)."""
 POINTS = 24
@@ -109,35 +115,43 @@ def gather(run: Run, source: int) -> None:
     """
     counts, state = run.counts, run.state
     if state.taken == 0.0:
-        counts.merged = 0
+        counts.merged = counts.to_fold = 0
         if counts.merging == 1:
             merge_ahead(run, source)
     elif counts.merged > 0:
-        merge(run, source, counts.merged + 1)
+        merge(run, source, counts.merged, counts.to_fold)
     if counts.merged == 0:
         copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), counts.slots * TERMS)
     else:
-        lay_out(run, source, counts.merged + 1)
+        lay_out(run, source, counts.merged)
 
 
 @kernel
 def merge_ahead(run: Run, source: int) -> None:
-    """Merge as many pieces from `source` on as one series describes, if more than one."""
+    """Merge as many pieces from `source` on as one series describes. One next to a fold is at least written in time."""
     many = smooth_ahead(run, source)
+    if many > 1 and grows_shorter(run, source, source + many - 1) and keep_merged(run, source, many, 1):
+        return
     for _ in range(HALVINGS):
-        if many == 1:
-            return
-        error = merge(run, source, many)
-        if error < math.inf:
-            run.counts.merged = many - 1
-            run.state.merged_now = max(run.state.merged_now, error)
+        if (many == 1 and run.history[source].bend == 0.0) or keep_merged(run, source, many, 0) or many == 1:
             return
         many = (many + 1) // 2
 
 
 @kernel
+def keep_merged(run: Run, source: int, many: int, to_fold: int) -> bool:
+    """Merge pieces from `source` on, and note it; return False if one series does not describe them."""
+    error = merge(run, source, many, to_fold)
+    if not error < math.inf:
+        return False
+    run.counts.merged, run.counts.to_fold = many, to_fold
+    run.state.merged_now = max(run.state.merged_now, error)
+    return True
+
+
+@kernel
 def smooth_ahead(run: Run, source: int) -> int:
-    """Return the number of pieces from `source` on that follow each other without a jump and in the same variable."""
+    """Return the number of pieces from `source` on that follow each other without a jump."""
     counts, history, many = run.counts, run.history, 1
     longest = LARGEST_TURN / run.params.tone_frequency if run.params.tone_frequency > 0.0 else math.inf
     for n in range(source + 1, min(counts.previous_to, source + MOST_TOGETHER)):
@@ -148,20 +162,20 @@ def smooth_ahead(run: Run, source: int) -> int:
 
 
 @kernel
+def grows_shorter(run: Run, first: int, last: int) -> bool:
+    """Return True if the last of some pieces is much shorter than the first, as steps up to a fold are."""
+    return width_of(run, last) < SHORTER * width_of(run, first)
+
+
+@kernel
 def follows(run: Run, n: int) -> bool:
-    """Return True if the waves of piece n of the history go on from those of the piece before, in the same variable."""
+    """Return True if the waves of piece n of the history go on from those of the piece before."""
     now, before = run.history[n], run.history[n - 1]
-    if now.trip != before.trip or now.phase_from != before.phase_to or (now.bend > 0.0) != (before.bend > 0.0):
+    if now.trip != before.trip or now.phase_from != before.phase_to:
         return False
-    if (now.bend < 0.0) != (before.bend < 0.0):
-        return False
-    if now.bend != 0.0:
-        reached = root_at_start(before.speed, before.bend) + math.copysign(length_of(before.speed, before.bend), before.bend)
-        shorter = min(length_of(before.speed, before.bend), length_of(now.speed, now.bend))
-        if abs(root_at_start(now.speed, now.bend) - reached) > SAME_VARIABLE * shorter:
-            return False
+    weight = min(weight_of(run, n), weight_of(run, n - 1))
     for cell in range(run.counts.cells):
-        if abs(step_between(run, n, cell)) > run.state.merge_within + rounding_at(run, n, cell):
+        if weight * abs(step_between(run, n, cell)) > run.state.merge_within + rounding_at(run, n, cell):
             return False
     return True
 
@@ -179,56 +193,56 @@ def rounding_at(run: Run, n: int, cell: int) -> float:
 
 
 @kernel
-def length_of(speed: float, bend: float) -> float:
-    """Return the length of a piece in the variable of its series: a time (s), or next to a fold a root of time (s^0.5)."""
-    return speed if bend == 0.0 else math.sqrt(abs(bend))
+def width_of(run: Run, n: int) -> float:
+    """Return how long (s) piece n of the history is, also where its phases have too few digits."""
+    return run.history[n].speed + run.history[n].bend
 
 
 @kernel
-def root_at_start(speed: float, bend: float) -> float:
-    """Return the root (s^0.5) of the time between the start of a piece next to a fold and that fold."""
-    return speed / (2.0 * math.sqrt(abs(bend)))
+def weight_of(run: Run, n: int) -> float:
+    """Return the weight (1) of a change of the waves on piece n of the history."""
+    return max(min(width_of(run, n) / (BRIEF * run.params.round_trip_time), 1.0), LEAST_WEIGHT)
 
 
 @kernel
 def lay_out(run: Run, source: int, many: int) -> None:
     """Set the phases of the piece of load to those of `many` pieces of the history, from `source` on."""
-    first, length = run.history[source], 0.0
+    width = 0.0
     for n in range(source, source + many):
-        length += length_of(run.history[n].speed, run.history[n].bend)
-    run.state.phase_from, run.state.phase_to = first.phase_from, run.history[source + many - 1].phase_to
-    run.state.speed, run.state.bend = length, 0.0
-    if first.bend != 0.0:
-        run.state.speed = 2.0 * length * root_at_start(first.speed, first.bend)
-        run.state.bend = math.copysign(length * length, first.bend)
+        width += width_of(run, n)
+    run.state.phase_from, run.state.phase_to = run.history[source].phase_from, run.history[source + many - 1].phase_to
+    run.state.speed, run.state.bend = (2.0 * width, -width) if run.counts.to_fold == 1 else (width, 0.0)
 
 
 # ---- how --------------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def merge(run: Run, source: int, many: int) -> float:
+def merge(run: Run, source: int, many: int, to_fold: int) -> float:
     """Write the waves of `many` pieces of the history as one series each into the air; return the largest error (Pa).
 
-    It is inf if one series does not describe one of them.
+    They are series in time or, if `to_fold` is 1, in the root of the time left. The error is inf if one series does not describe one
+    of them.
     """
     ends, of_point, places = room_for(ENDS), room_for(POINTS), room_for(POINTS)
-    ends[0] = 0.0
-    for i in range(many):
-        ends[i + 1] = ends[i] + length_of(run.history[source + i].speed, run.history[source + i].bend)
+    ends[many] = 0.0
+    for i in range(many - 1, -1, -1):  # counted from the end, where pieces may be as short as the rounding of a phase
+        ends[i] = ends[i + 1] + width_of(run, source + i)
     i = 0
     for k in range(POINTS):
-        place = PLACES[k] * ends[many]
+        left = ends[0] * (1.0 - PLACES[k]) * (1.0 - PLACES[k] if to_fold == 1 else 1.0)
         for _ in range(many):
-            if i + 1 == many or place <= ends[i + 1]:
+            if i + 1 == many or left >= ends[i + 1]:
                 break
             i += 1
-        of_point[k], places[k] = float(i), (place - ends[i]) / (ends[i + 1] - ends[i])
+        of_point[k], places[k] = float(i), place_in(run, source + i, left - ends[i + 1])
     error = 0.0
     for cell in range(run.counts.cells):
         if not describe(run, source, many, cell, of_point, places):
             return math.inf
-        error = max(error, distance(run, source, many, cell, ends))
+        if to_fold == 0:
+            keep_end(run, source + many - 1, cell)
+        error = max(error, distance(run, source, many, cell, ends, to_fold))
         if not error <= run.state.merge_within + rounding_at(run, source, cell):
             return math.inf
     if run.counts.slots > run.counts.cells:
@@ -237,15 +251,30 @@ def merge(run: Run, source: int, many: int) -> float:
 
 
 @kernel
+def place_in(run: Run, n: int, left: float) -> float:
+    """Return the place xi in piece n of the history from which a time `left` (s) is left of it."""
+    piece = run.history[n]
+    at_end = max(piece.speed + 2.0 * piece.bend, 0.0)
+    root = at_end + math.sqrt(max(at_end * at_end - 4.0 * piece.bend * left, 0.0))
+    return 1.0 - (min(2.0 * left / root, 1.0) if root > 0.0 else 0.0)
+
+
+@kernel
+def place_of(run: Run, n: int, xi: float, past: float, whole: float, to_fold: int) -> float:
+    """Return the place in a new piece, of `whole` seconds, of the place xi in piece n of the history, `past` seconds before its end."""
+    piece = run.history[n]
+    left = (past + (1.0 - xi) * (piece.speed + piece.bend * (1.0 + xi))) / whole
+    return 1.0 - (math.sqrt(max(left, 0.0)) if to_fold == 1 else left)
+
+
+@kernel
 def describe(run: Run, source: int, many: int, cell: int, of_point: Floats, places: Floats) -> bool:
     """Write the new series of the wave in a cell into the air; return False if it has too many terms."""
     values, terms, wave = room_for(POINTS), room_for(POINTS), wave_in(run, AIR, cell)
-    begin, last = wave_in(run, row_of(run, source), cell)[0], source + many - 1
+    begin = wave_in(run, row_of(run, source), cell)[0]
     for k in range(POINTS):
         values[k] = evaluate(wave_in(run, row_of(run, source + int(of_point[k])), cell), places[k]) - begin
     noise = KEPT_ABOVE * run.state.merge_within + 0.25 * rounding_at(run, source, cell)
-    for n in range(source + 1, source + many):
-        noise = max(noise, abs(step_between(run, n, cell)))
     highest = 0
     for j in range(POINTS):
         terms[j] = term_of(values, j)
@@ -258,24 +287,28 @@ def describe(run: Run, source: int, many: int, cell: int, of_point: Floats, plac
         for k in range(j + 1):
             wave[k] += POWERS[j, k] * terms[j]
     wave[0] = begin
-    wave[1] += total(wave_in(run, row_of(run, last), cell)) - total(wave)
     return True
 
 
 @kernel
-def distance(run: Run, source: int, many: int, cell: int, ends: Floats) -> float:
+def keep_end(run: Run, last: int, cell: int) -> None:
+    """Let the new series of the wave in a cell end where piece `last` of the history ends."""
+    wave = wave_in(run, AIR, cell)
+    wave[1] += total(wave_in(run, row_of(run, last), cell)) - total(wave)
+
+
+@kernel
+def distance(run: Run, source: int, many: int, cell: int, ends: Floats, to_fold: int) -> float:
     """Return a bound (Pa) on the difference between the new series of the wave in a cell and the old ones."""
-    wave, part, values, largest = wave_in(run, AIR, cell), room_for(TERMS), room_for(POINTS), 0.0
+    wave, values, largest = wave_in(run, AIR, cell), room_for(POINTS), 0.0
     for i in range(many):
-        restrict(wave, ends[i] / ends[many], (ends[i + 1] - ends[i]) / ends[many], part)
         old, apart = wave_in(run, row_of(run, source + i), cell), 0.0
-        for k in range(TERMS):
-            part[k] -= old[k]
         for k in range(POINTS):
-            values[k] = evaluate(part, PLACES[k])
-        for j in range(TERMS):
+            place = place_of(run, source + i, PLACES[k], ends[i + 1], ends[0], to_fold)
+            values[k] = evaluate(wave, place) - evaluate(old, PLACES[k])
+        for j in range(POINTS):
             apart += abs(term_of(values, j))
-        largest = max(largest, apart)
+        largest = max(largest, weight_of(run, source + i) * apart)
     return largest
 
 
