@@ -38,7 +38,7 @@ SAME = (
     *("driven", "one_way", "cells", "first_side", "joined", "folds_follow_slip"),
 )
 """Counts that follow from the problem alone, so that those in a file must be the same."""
-FLAGS = ("moved", "jump", "stiff", "folds_move", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
+FLAGS = ("moved", "jump", "stiff", "folds_move", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps", "merging", "to_fold")
 """Counts that are 0 or 1."""
 SIGNS = ("mode", "leaving_rest")
 """Counts that are a direction: -1, 0 or 1."""
@@ -53,6 +53,8 @@ NOT_NEGATIVE = (
     "stalled",
     "lumped_since",
     "rough",
+    "merge_above",
+    "merge_at",
 )
 """Counts of round trips or steps, from 0 to NEVER."""
 FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
@@ -203,6 +205,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
         echoes = setup.params.reflection == RIGID and count.is_block == count.states == count.varies == 0
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
+    yield "engine_count merged", not 0 <= count.merged <= count.previous_to - count.previous_from
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)
     yield "engine_count segment", not 0 <= count.trip_segment <= count.segment < len(setup.loading)
     yield "engine_count wave_shift", not 0 <= count.wave_shift <= at.NEVER

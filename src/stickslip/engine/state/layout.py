@@ -106,6 +106,9 @@ class State(MemoryRecord):
     driver_rate: float  # m/s: rate of a driver that is a machine, h/c before its wave reaches the end of the present piece of load
     driver_push: float  # Pa: force of its integral gain then
     driver_swing: float  # m/s: bound on how far its rate has been from that of a long rest, in this round trip
+    merge_within: float  # Pa: change of a wave that merging pieces is allowed in this round trip (`waves.merged_pieces`)
+    merged_now: float  # Pa: largest such change in this round trip
+    merged_in_all: float  # Pa: sum of those of all round trips before
     table_pressing: float  # 1: growth of the normal load (`contact.pressing`) of the present table of branches
 
 
@@ -181,6 +184,11 @@ class Counts(MemoryRecord):
     joined: int  # 1 if both sides move with the contact, as the two parts of a bowed string; 0 if slip is between them
     wave_shift: int  # row of waves of piece n: n + wave_shift, modulo their number
     folds_follow_slip: int  # 1 if the branches change with slip
+    merging: int  # 1 if pieces of the waves in layers are merged in this round trip (`waves.merged_pieces`)
+    merged: int  # number of pieces whose waves are the present piece of load, if they were merged; else 0
+    to_fold: int  # 1 if these waves are written in the root of the time left until they end
+    merge_above: int  # they are merged when a round trip has more pieces than this
+    merge_at: int  # and in this round trip, if not before
 
 
 class SeriesInput(MemoryRecord):
@@ -331,6 +339,8 @@ class Task(IntEnum):
     """Lead slip to a fold or away from it (`folds.fold`)."""
     LOOK_BELOW_ZERO = 25
     """Find whether friction falls below zero in an explicit step."""
+    PLAN_MERGING = 26
+    """Decide whether pieces of the waves in layers are merged in the round trip that begins."""
 
 
 class Stop(IntEnum):

@@ -130,7 +130,7 @@ def next_piece(run: Run) -> bool:
         run.counts.arriving = Cause.LOADING if jumps else Cause.NO_CAUSE if begin > 0.0 else run.counts.arriving
         call_part(run.loading_history, run, Task.TAKE_LOADING, 0.0)
     else:
-        run.counts.source += 1
+        run.counts.source += max(run.counts.merged, 1)
     run.state.xi, run.state.exit = 0.0, math.nan
     note_degree(run)
     run.counts.jump = 1 if run.counts.arriving != Cause.NO_CAUSE else run.counts.jump

@@ -37,6 +37,7 @@ from stickslip.engine.waves.ladder_rows import (
     write_from_fold,
     write_to_fold,
 )
+from stickslip.engine.waves.merged_pieces import gather, plan_merging
 from stickslip.engine.waves.shaken_ladder import follow_ground, shake, shakes
 from stickslip.foundation.constants import RIGID
 
@@ -65,6 +66,8 @@ def serve(run: Run, task: int, number: float) -> float:
         write_from_fold(run, number)
     elif task == Task.WAVES_GO_ON:
         copy(wave_in(run, ASIDE, 0), wave_in(run, AIR, 0), run.counts.slots * TERMS)
+    elif task == Task.PLAN_MERGING:
+        plan_merging(run)
     else:
         return 1.0 if is_settled(run) else 0.0
     return 0.0
@@ -88,7 +91,7 @@ def cross_cells(run: Run) -> bool:
             wave[1] = one.growth * run.state.speed
     else:
         source = run.counts.echo_of
-        copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), run.counts.slots * TERMS)
+        gather(run, source)
         leaped = run.counts.trip - run.history[source].trip - 1
         if leaped > 0:
             ramp = ramp_at_rest(run, run.counts.trip_segment)

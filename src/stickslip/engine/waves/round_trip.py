@@ -113,4 +113,6 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     run.counts.trip_from = run.counts.length
     run.counts.source = run.counts.moved = 0
     run.counts.trip_segment = run.counts.segment
+    if run.counts.cells > 0:
+        call_part(run.ladder, run, Task.PLAN_MERGING, 0.0)
     return Stop.NONE

@@ -56,7 +56,7 @@ def take_loading(run: Run) -> None:
     if run.counts.given > 0:
         press(run, run.state.phase_from)
     run.state.taken, run.state.taken_to_phase = (end, phase_to) if end < 1.0 else (0.0, 0.0)
-    run.counts.source += 1 if end == 1.0 else 0
+    run.counts.source += max(run.counts.merged, 1) if end == 1.0 else 0
 
 
 @kernel
