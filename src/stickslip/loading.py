@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -90,6 +90,23 @@ class LoadingHistory(Declared, ABC):
 
     def __repr__(self) -> str:
         return brief_repr(self, {VARYING: self.unit})
+
+    def scaled(self, factor: float) -> Self:
+        """Return the history with all its values times a factor; they are plain numbers then, without a unit."""
+        fields: dict[str, Any] = {}
+        for name, (declared, _) in fields_of(type(self)).items():
+            one = getattr(self, name)
+            if isinstance(declared, NumberSeries) and declared.item.unit == VARYING:
+                fields[name] = tuple(factor * x for x in one)
+            elif isinstance(declared, Quantity) and declared.unit == VARYING:
+                fields[name] = factor * one
+        return replace(self, **fields)  # type: ignore[type-var] # every history is a dataclass
+
+    def in_unit(self, unit: str) -> Self:
+        """Return the history with its values, which are plain numbers, taken to be in a unit."""
+        found = replace(self)  # type: ignore[type-var] # every history is a dataclass
+        object.__setattr__(found, "unit", unit)
+        return found
 
     @property
     @abstractmethod

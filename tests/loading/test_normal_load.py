@@ -208,6 +208,70 @@ def test_a_measured_normal_load_is_read_from_a_file_in_its_unit(tmp_path: Path, 
         written('file = "pressed.csv"', folder=tmp_path)
 
 
+STRING = ss.load_scenario("drill-string").problem
+"""Its bit is pressed by a weight of 97.347 kN, which is a normal torque of 15144.759525 N m."""
+
+
+@pytest.mark.parametrize(
+    "history",
+    [
+        Steps([0.0, 5.0], ["97.347 kN", "107.0817 kN"]),
+        Steps([0.0, 5.0], ["15.1447595 kN m", "16.65923545 kN m"]),
+        Steps([0.0, 5.0], [15144.8, 16659.28]),
+    ],
+    ids=["weight", "torque in kN m", "six digits"],
+)
+def test_a_weight_on_the_bit_that_varies_is_its_torque_and_need_not_be_given_to_all_digits(history: Steps) -> None:
+    exact = Steps([0.0, 5.0], [STRING.normal, 1.1 * STRING.normal])
+    expected, run = (ss.simulate(replace(STRING, normal_load=one), 12.0) for one in (exact, history))
+    assert run.problem.normal_load is not None
+    assert run.problem.normal_load.first == pytest.approx(STRING.normal, rel=1e-15, abs=0.0)
+    assert abs(expected.slip(12.0) - ss.simulate(STRING, 12.0).slip(12.0)) > 0.1
+    np.testing.assert_allclose(run.slip([4.0, 8.0, 12.0]), expected.slip([4.0, 8.0, 12.0]), rtol=1e-9, atol=0.0)
+
+
+def test_a_scenario_gives_the_weight_on_the_bit_in_its_unit(tmp_path: Path) -> None:
+    text = (Path(ss.__file__).parent / "scenarios/bundled/drill-string.toml").read_text(encoding="utf-8")
+    table = '[loading.normal_load]\nkind = "sinusoidal"\nmean = "97.347 kN"\namplitude = "{}"\nperiod = "2 s"\n[initial]'
+    path = tmp_path / "weight.toml"
+    path.write_text(text.replace("[initial]", table.format("10 kN")), encoding="utf-8")
+    pressed = ss.load_scenario(path).problem.normal_load
+    assert isinstance(pressed, Sinusoidal)
+    assert (pressed.mean, pressed.amplitude) == pytest.approx((STRING.normal, STRING.normal * 10 / 97.347), rel=1e-14, abs=0.0)
+    (tmp_path / "weight.csv").write_text("time (s),WOB (kN)\n0,97.347\n5,107.0817\n", encoding="utf-8")
+    measured = '[loading.normal_load]\nkind = "steps"\nfile = "weight.csv"\n[initial]'
+    path.write_text(text.replace("[initial]", measured), encoding="utf-8")
+    found = ss.load_scenario(path).problem.normal_load
+    assert isinstance(found, Steps)
+    assert found.values == pytest.approx((STRING.normal, 1.1 * STRING.normal), rel=1e-14, abs=0.0)
+    (tmp_path / "weight.csv").write_text("time (s),WOB (kN)\n0,97.347\n0,107.0817\n", encoding="utf-8")
+    with pytest.raises(ss.InputError, match=r"weight\.csv', line 3: time must ascend"):
+        ss.load_scenario(path)
+    (tmp_path / "weight.csv").write_text("time (s),height (m)\n0,97.347\n5,107.0817\n", encoding="utf-8")
+    with pytest.raises(ss.InputError, match=r"weight\.csv', line 1: no column 'normal_torque' in the header"):
+        ss.load_scenario(path)
+    path.write_text(text.replace("[initial]", table.format("10 kPa")), encoding="utf-8")
+    with pytest.raises(ss.InputError, match=r"\[loading\.normal_load\] must be in N m, as the loads of this body are"):
+        ss.load_scenario(path)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (["90 kN", "100 kN"], "begins with 90000 N, but the body's weight_on_bit is 97347 N: make them equal$"),
+        ([97347, 1e5], "is 15144.759525 N m: make them equal, or give the weight on bit in N, with its unit$"),
+        (["15.14 kN m", "16 kN m"], "begins with 15140 N m, but the body's normal load by its weight_on_bit is 15144.759525 N m"),
+        (["97 kPa", "98 kPa"], "normal_load must be in N m, got a history of values in Pa$"),
+    ],
+)
+def test_another_weight_than_that_of_the_body_is_refused(values: list[str], message: str) -> None:
+    with pytest.raises(ss.InputError, match=message):
+        replace(STRING, normal_load=Steps([0.0, 5.0], values))
+    torque = replace(STRING.body, weight_on_bit=None, bit_radius=None, normal_torque=15e3)
+    with pytest.raises(ss.InputError, match=r"normal_load must be in N m, got a history of values in N$"):
+        replace(STRING, body=torque, normal_load=Steps([0.0, 5.0], ["15 kN", "16 kN"]))
+
+
 @pytest.mark.parametrize("pull", [PULL, Steps([0.0, 1.0], [PULL, 0.1])])
 def test_check_tells_under_which_load_and_at_which_rate_steady_sliding_is_examined(pull: object) -> None:
     law = ss.friction.RateAndState(0.6, 0.01, 0.015, "1 mm")

@@ -75,6 +75,7 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     ),
     "torque": HeadingColumn("N m", ("friction torque", "torque on bit", "traction", "tau", "τ", "far stress"), signed=True),
     "normal_torque": HeadingColumn("N m"),
+    "weight_on_bit": HeadingColumn("N", ("wob",)),
     "torque_deviation": HeadingColumn("N m", ("torque error", "sd torque")),
     "radius": HeadingColumn("m", ("mean radius", "equivalent radius")),
     "shear_force": HeadingColumn("N", ("force", "shear load", "friction force"), signed=True),

@@ -159,30 +159,41 @@ def step(ladder: LadderCells, place: FollowedWaves, sent: Floats, turned: Floats
     for level in range(place.wave.shape[0]):
         wave = place.wave[level]
         for side in range(len(ladder.starts) - 1):
-            first, past = ladder.starts[side], ladder.starts[side + 1]
+            first, last = ladder.starts[side], ladder.starts[side + 1] - 1
             for parity in range(2):
-                for cell in range(first + parity, past, 2):
-                    if cell == past - 1:
-                        more = met_before(place, level, cell, turned if side == 0 else turned[:0])
-                        meet_driver(ladder, place, level, side, sent[side])
-                        wave[cell] += more
-                    else:
-                        meet(ladder, wave[cell], wave[cell + 1], cell, place.growth[DRAGGED] if level == VALUE else wave[cell, :0])
+                if level == VALUE:
+                    take_drag(ladder, wave, place.growth[DRAGGED], first + parity, last)
+                meet(ladder.reflection, ladder.beyond, wave, first + parity, last)
+                if (last - first) % 2 == parity:
+                    more = met_before(place, level, last, turned if side == 0 else turned[:0])
+                    meet_driver(ladder, place, level, side, sent[side])
+                    wave[last] += more
         answer_of_contact(ladder, place, level)
 
 
 @kernel
-def meet(ladder: LadderCells, away: Floats, back: Floats, cell: int, dragged: Floats) -> None:
-    """Let waves meet at the far end of a cell, and add the power of drag; not if there is no room for it."""
-    share, beyond = ladder.reflection[cell], ladder.beyond[cell]
-    if ladder.drag[cell] > 0.0 and len(dragged) > 0:
-        weight = ladder.drag[cell] * (0.5 * (1.0 + share) / ladder.impedance[cell]) ** 2
-        for u in range(len(away)):
-            dragged[u] += weight * (away[u] + back[u]) ** 2
-    for u in range(len(away)):
-        outward, inward = away[u], back[u]
-        away[u] = share * outward + (1.0 + share) * inward
-        back[u] = (1.0 + beyond) * outward + beyond * inward
+def meet(reflection: Floats, beyond: Floats, wave: Floats, first: int, last: int) -> None:
+    """Let waves meet at the far end of every other cell from the first one on, before the last one of a side.
+
+    The arrays are given one by one: a record of them for each cell would cost ten times as much as the work on it.
+    """
+    for cell in range(first, last, 2):
+        share, back = reflection[cell], beyond[cell]
+        for u in range(wave.shape[1]):
+            outward, inward = wave[cell, u], wave[cell + 1, u]
+            wave[cell, u] = share * outward + (1.0 + share) * inward
+            wave[cell + 1, u] = (1.0 + back) * outward + back * inward
+
+
+@kernel
+def take_drag(ladder: LadderCells, wave: Floats, dragged: Floats, first: int, last: int) -> None:
+    """Add the power of drag where the waves of these cells are about to meet."""
+    drag, reflection, impedance = ladder.drag, ladder.reflection, ladder.impedance
+    for cell in range(first, last, 2):
+        if drag[cell] > 0.0:
+            weight = drag[cell] * (0.5 * (1.0 + reflection[cell]) / impedance[cell]) ** 2
+            for u in range(wave.shape[1]):
+                dragged[u] += weight * (wave[cell, u] + wave[cell + 1, u]) ** 2
 
 
 @kernel

@@ -23,6 +23,7 @@ from stickslip.friction.custom.from_function import as_law
 from stickslip.friction.pressed import Pressed
 from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.ground import Ground
+from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
 
 HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driver_reflection")
@@ -38,8 +39,6 @@ CONSTANT = {
     "driver_reflection": "a constant one follows from driver_impedance of the body",
 }
 """Hints for a number in place of what is nothing but a history."""
-SAME = 1e-12
-"""Relative difference (1) between two normal loads that is rounding."""
 SAME_DRIVER = 1e-6
 """Difference (1) between two reflection coefficients that is rounding by people."""
 STEADY = "steady"
@@ -97,6 +96,8 @@ class ProblemFields(CheckedArguments):
             raise InputError(f"Problem: body comes first, then friction: got {names}")
         check_type("Problem: body", self.body, bodies, " or ".join(body.__name__ for body in bodies))
         object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
+        if isinstance(self.normal_load, LoadingHistory):
+            object.__setattr__(self, "normal_load", begun_with_body(self.normal_load, self.body))
         self._check_varying()
         steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
         check_fields(self, but=(*self._varying, *steady), units=own_units(self.body.load_unit))
@@ -138,7 +139,7 @@ class ProblemFields(CheckedArguments):
             getattr(self, name).check()
         self._check_two_drivers()
         if self.normal_load is not None:
-            self._check_normal_load(self.normal_load)
+            check_normal_load(self.normal_load, self.body)
         if self.ground is not None:
             self._check_ground(self.ground)
         if self.driver_reflection is not None:
@@ -168,19 +169,6 @@ class ProblemFields(CheckedArguments):
         pulls = [getattr(self, name) for name in self._varying if name not in HISTORIES_ONLY]
         if ground.tone.amplitude != 0.0 and any(one.tone.amplitude != 0.0 for one in pulls):
             raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
-
-    def _check_normal_load(self, history: LoadingHistory) -> None:
-        unit, field_name = self.body.load_unit, self.body.normal_field
-        if not history.lowest > 0.0:
-            raise InputError(
-                f"Problem: normal_load must stay above 0 {unit}, but may fall to {history.lowest:g}: the contact would open"
-            )
-        if abs(history.first - self.normal) > SAME * self.normal:
-            own = field_name if getattr(self.body, field_name) == self.normal else f"normal load by its {field_name}"
-            given = f"normal_load begins with {history.first:.12g} {unit}, but the body's {own} is {self.normal:.12g} {unit}"
-            raise InputError(f"Problem: {given}: make them equal")
-        if history.tone.amplitude != 0.0 and any(one.slope for one in history.segments):
-            raise InputError("Problem: normal_load: a sinusoid beside slopes is not followed: its straight parts must be constant")
 
     def _check_driver(self, history: LoadingHistory) -> None:
         body, name = self.body, "Problem: driver_reflection"

@@ -189,7 +189,7 @@ def pressed(problem: P, value: float) -> P:
     """
     factor, body = value / problem.normal, pressed_body(problem, value)
     changes = {name: getattr(problem, name) for name in ("initial_load", "initial_excess", *STRESSES, "normal_load")}
-    scaled = {name: _scaled(one, factor) for name, one in changes.items() if one is not None}
+    scaled = {name: _times(factor, one) for name, one in changes.items() if one is not None}
     return replace(problem, body=body, **scaled)
 
 
@@ -200,18 +200,9 @@ def pressed_body(problem: ProblemFields, value: float) -> BodyOnCharacteristics:
     return replace(body, **{name: value if given == problem.normal else value / problem.normal * given})
 
 
-def _scaled(value: Any, factor: float) -> Any:
+def _times(factor: float, value: Any) -> Any:
     """Return a number, or a loading history, times a factor."""
-    if not isinstance(value, LoadingHistory):
-        return factor * value
-    fields = {}
-    for name, (declared, _) in fields_of(type(value)).items():
-        one = getattr(value, name)
-        if isinstance(declared, NumberSeries) and declared.item.unit == VARYING:
-            fields[name] = tuple(factor * x for x in one)
-        elif isinstance(declared, Quantity) and declared.unit == VARYING:
-            fields[name] = factor * one
-    return replace(value, **fields)  # type: ignore[type-var] # every history is a dataclass
+    return value.scaled(factor) if isinstance(value, LoadingHistory) else factor * value
 
 
 def _entries_in(owner: Any, place: str, units: Mapping[str, str] | None = None) -> Iterator[ProblemEntry]:

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from stickslip.bodies import BODIES
+from stickslip.bodies.turning import WEIGHT_ON_BIT
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, nearest
@@ -22,7 +23,7 @@ from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.loading import HISTORIES, VARYING
+from stickslip.loading import HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
@@ -146,11 +147,7 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
     varies = place.table == "loading" and place.key in MAY_VARY
     if varies and isinstance(value, dict):
         unit = declared.unit if isinstance(declared, Quantity) else ""
-        texts = [one for entry in value.values() for one in (entry if isinstance(entry, list) else (entry,))]
-        if place.key == "normal_load" and not {unit_among(one, VARYING) for one in texts} <= {"", unit}:
-            raise InputError(f"{place.source.file}: [{place.inner}] must be in {unit}, as the loads of this body are")
-        heading = KINDS_OF_BODIES[unit].normal if place.key == "normal_load" and unit in KINDS_OF_BODIES else ""
-        return read_part(place.inner, value, place.source, heading)
+        return read_part(place.inner, value, place.source) if place.key != "normal_load" else _read_normal_load(value, place, unit)
     if place.table == "body" and isinstance(value, dict) and any(place.key == kind.normal for kind in KINDS_OF_BODIES.values()):
         raise InputError(f"{place.source.file}: {place} is one number, that at the start: a history is [loading.normal_load]")
     if place.source.load_unit:
@@ -164,6 +161,34 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
         if varies:
             hint = f"what varies in time is a table [{place.inner}] of a kind: {', '.join(HISTORIES)}"
         raise InputError(f"{error}; {hint}") from None
+
+
+def _read_normal_load(table: dict[str, Any], place: DocumentPlace, unit: str) -> LoadingHistory:
+    """Return a normal load that varies: in the unit of the body's loads, or the weight on the bit of a body that turns."""
+    texts = [one for entry in table.values() for one in (entry if isinstance(entry, list) else (entry,))]
+    units = {unit_among(one, VARYING) for one in texts} - {""}
+    if unit == TURNS and units == {WEIGHT_ON_BIT.unit}:
+        return _read_weight(table, place)
+    if not units <= {unit}:
+        raise InputError(f"{place.source.file}: [{place.inner}] must be in {unit}, as the loads of this body are")
+    heading = KINDS_OF_BODIES[unit].normal if unit in KINDS_OF_BODIES else ""
+    try:
+        found: LoadingHistory = read_part(place.inner, table, place.source, heading)
+    except InputError as error:
+        if unit != TURNS or "file" not in table or "no column" not in str(error):
+            raise
+        try:
+            return _read_weight(table, place)
+        except InputError as other:
+            raise error if "no column" in str(other) else other from None
+    return found
+
+
+def _read_weight(table: dict[str, Any], place: DocumentPlace) -> LoadingHistory:
+    """Return a weight on the bit that varies."""
+    source = place.source._replace(load_unit=WEIGHT_ON_BIT.unit)
+    weight: LoadingHistory = read_part(place.inner, table, source, "weight_on_bit")
+    return weight.in_unit(WEIGHT_ON_BIT.unit)
 
 
 def _law_in(raw: dict[str, Any], source: Source, table: str) -> Any:
