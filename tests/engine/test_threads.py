@@ -8,10 +8,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 from uuid import uuid4
 
 import pytest
+
+from stickslip.engine.compile.lock import LOCK, made_once
 
 SETTING = """
 import hashlib, sys, threading
@@ -115,3 +119,115 @@ def test_eight_threads_begin_with_an_empty_cache(case: str, tmp_path: Path) -> N
 @pytest.mark.slow
 def test_eight_threads_begin_with_an_empty_cache_and_the_public_compiler(tmp_path: Path) -> None:
     python(SETTING + CASES["one problem"], uuid4().hex, STICKSLIP_CACHE_DIR=str(tmp_path), STICKSLIP_PLAIN_NUMBA="1")
+
+
+FORKED = """
+import os, signal, time
+from numba.core.compiler_lock import global_compiler_lock
+slip(problem(0))
+held = threading.Event()
+
+def compile_for_long():
+    with global_compiler_lock:
+        held.set()
+        time.sleep(0.5)
+
+threading.Thread(target=compile_for_long).start()
+held.wait()
+child = os.fork()
+if child == 0:
+    signal.alarm(60)
+    slid = slip(problem(1)) > 0.0 and len(ss.simulate("rate-and-state-block", max_events=1).history) > 1
+    os._exit(0 if slid else 1)
+assert os.waitpid(child, 0)[1] == 0
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes do not fork here")
+def test_a_process_that_is_forked_while_another_thread_compiles_can_compile() -> None:
+    python(SETTING + FORKED, uuid4().hex, PYTHONWARNINGS="ignore")
+
+
+WARNED = """
+import warnings
+from stickslip.friction.formula.text import parse
+sys.setswitchinterval(1e-6)
+for m in range(12):
+    warnings.simplefilter("error")
+    at_once(lambda n: [parse(f"{m} + {n} + {k}*v", ()) for k in range(1, 60)], 8)
+    try:
+        warnings.warn("this is said")
+    except UserWarning:
+        pass
+    else:
+        raise AssertionError("a warning is lost")
+"""
+
+
+def test_formulas_that_are_read_at_once_do_not_silence_warnings() -> None:
+    python(SETTING + WARNED, uuid4().hex)
+
+
+def test_what_eight_threads_want_at_once_is_made_once() -> None:
+    made, gate, found = [], threading.Barrier(8), []
+
+    @made_once()
+    def slowly(n: int) -> object:
+        made.append(n)
+        time.sleep(0.05)
+        return object()
+
+    def ask() -> None:
+        gate.wait()
+        found.append(slowly(3))
+
+    threads = [threading.Thread(target=ask) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert made == [3]
+    assert len(found) == 8
+    assert len(set(map(id, found))) == 1
+
+
+def test_what_was_asked_for_last_is_kept() -> None:
+    made = []
+
+    @made_once(2)
+    def double(n: int) -> int:
+        made.append(n)
+        return 2 * n
+
+    for n in (1, 2, 1, 3, 1, 2):
+        assert double(n) == 2 * n
+    assert made == [1, 2, 3, 2]
+    double.cache_clear()
+    assert double(1) == 2
+    assert made == [1, 2, 3, 2, 1]
+
+
+def test_what_is_known_waits_for_no_thread_that_compiles() -> None:
+    @made_once()
+    def same(n: int) -> int:
+        return n
+
+    same(5)
+    held, done = threading.Event(), threading.Event()
+
+    def compile_until_done() -> None:
+        with LOCK:
+            held.set()
+            done.wait(60)
+
+    other = threading.Thread(target=compile_until_done)
+    other.start()
+    held.wait()
+    try:
+        asked = threading.Thread(target=same, args=(5,), daemon=True)
+        asked.start()
+        asked.join(30)
+        assert not asked.is_alive()
+    finally:
+        done.set()
+        other.join()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import re
 import warnings
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
@@ -72,6 +73,16 @@ def warn(message: str) -> None:
     while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == package:
         frame, level = frame.f_back, level + 1
     warnings.warn(InputWarning(message), stacklevel=level)
+
+
+def never_show(message: str = "", module: str = "", category: type[Warning] = Warning) -> None:
+    """Have Python ignore warnings from now on whose message, and whose module, begin as given (not as regular expressions).
+
+    Between two threads `warnings.catch_warnings` is not safe: one puts back what it found, whatever another has set meanwhile.
+    """
+    texts = [re.compile(re.escape(text), flags) if text else None for text, flags in ((message, re.IGNORECASE), (module, 0))]
+    if ("ignore", texts[0], category, texts[1], 0) not in warnings.filters:
+        warnings.filterwarnings("ignore", re.escape(message), category, re.escape(module))
 
 
 def nearest(word: str, allowed: Iterable[str], before: str = "allowed: ") -> str:

@@ -10,7 +10,6 @@ import asyncio
 import errno
 import math
 import os
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,11 +22,15 @@ from zarr.core.buffer import default_buffer_prototype
 from zarr.storage import LocalStore
 
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, never_show
 from stickslip.foundation.show import clean
 
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
+NOT_OF_ZARR = "Object at "
+"""How zarr begins to warn of files in a folder that are not its own."""
+NO_PART_OF_ZARR = "Consolidated metadata is currently not part"
+"""How it begins to warn that this is not part of its format; xarray reads it."""
 LARGEST_CHUNK = 2**28
 """Bytes of the largest chunk that is unpacked, and of the largest file that is read: 33 million numbers."""
 LARGEST_METADATA = 4_000_000
@@ -80,9 +83,8 @@ def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | 
     """
     check_folder(path)
     group = zarr.open_group(Folder(path), mode=mode, use_consolidated=use_consolidated)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", category=UserWarning)  # of files in the folder that are not zarr's own
-        arrays = list(group.arrays())
+    never_show(NOT_OF_ZARR, "zarr.", UserWarning)
+    arrays = list(group.arrays())
     for name, array in arrays:
         codecs = [one["name"] for one in array.metadata.to_dict().get("codecs", ())]  # type: ignore[union-attr, index, call-overload]
         if codecs[1:] != ["zstd", "crc32c"] or codecs[0] not in ("bytes", "vlen-utf8"):
@@ -118,10 +120,9 @@ def _links_in(folder: str | Path) -> Iterator[str]:
 
 def consolidate(place: Any) -> None:
     """Write what is known of all arrays into one file, which readers open first and which changes at once."""
-    with warnings.catch_warnings():
-        # zarr warns that this is not part of its format, but xarray reads it, and of files in the folder that are not its own
-        warnings.simplefilter("ignore", category=UserWarning)
-        zarr.consolidate_metadata(place)
+    for warning in (NOT_OF_ZARR, NO_PART_OF_ZARR):
+        never_show(warning, "zarr.", UserWarning)
+    zarr.consolidate_metadata(place)
 
 
 @contextmanager

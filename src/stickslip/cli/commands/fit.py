@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,7 +11,7 @@ import typer
 from stickslip.cli.options import Changes, FigureFile, complete_fitted, complete_table, complete_template, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
-from stickslip.foundation.errors import InputError, InputWarning
+from stickslip.foundation.errors import InputError, gathered
 from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
@@ -209,7 +208,7 @@ def _folds_of_points(points: Points, problem: Problem) -> int | None:
     if len(points) > MOST_JOINED or len(points.has) != 1:
         return None
     try:
-        with warnings.catch_warnings(action="ignore", category=InputWarning):
+        with gathered():
             return len(uniqueness_of(replace(problem, friction=FromTable(points))).folds)
     except InputError:
         return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -11,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import NamesAttributes, for_users, is_number, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError, InputWarning, nearest
+from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.foundation.show import html_table, text_table
 from stickslip.friction.custom.penalised_spline import PenalisedSpline
 from stickslip.friction.custom.points import FromTable, Points
@@ -215,7 +214,7 @@ def _law(points: Points, places: Floats, curve: Floats, residual: float) -> From
 def _table(points: Points, places: Floats, friction: Floats) -> FromTable:
     """Return a table law without a warning of noise: its points are smooth, or as rough as a given strength lets them be."""
     along = "slip" if points.has == ("slip",) else "rate"
-    with warnings.catch_warnings(action="ignore", category=InputWarning):
+    with gathered():
         law = FromTable(friction=friction.tolist(), counts="net" if places[0] < 0.0 else "path", **{along: places.tolist()})
     points.of_contact(law)
     return law

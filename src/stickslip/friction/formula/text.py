@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import ast
 import math
-import warnings
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 from functools import lru_cache
 
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest, never_show
 from stickslip.friction.formula.expression import (
     RATE,
     SLIP,
@@ -50,6 +49,9 @@ KINKS = "for a kink or a jump use a law such as piecewise-linear-rate, piecewise
 UNDECLARED = "is neither u, v, pi nor a declared parameter"
 """Part of the message about a name that an expression must not use."""
 
+FORMULA = "<formula of stickslip>"
+"""What Python takes for the file and the module of a formula."""
+
 _BINARY: dict[type[ast.operator], str] = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div", ast.Pow: "pow"}
 """Operations of nodes for the operators of Python's syntax tree."""
 
@@ -72,10 +74,9 @@ def parse(text: str, names: tuple[str, ...], states: tuple[str, ...] = ()) -> Ex
 
 
 def _syntax(text: str) -> ast.expr:
+    never_show(module=FORMULA)  # Python may warn about code such as 1or 2, which `_Reader` refuses
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Python may warn about code such as 1(2), which `_Reader` refuses
-            return ast.parse(text.strip(), mode="eval").body
+        return ast.parse(text.strip(), FORMULA, mode="eval").body
     except (RecursionError, MemoryError):
         raise InputError("nested too deeply") from None
     except (SyntaxError, ValueError) as error:

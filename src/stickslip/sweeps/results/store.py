@@ -11,7 +11,6 @@ when, in which order or by which process chunks were done.
 
 from __future__ import annotations
 
-import warnings
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -24,7 +23,7 @@ from zarr.storage import MemoryStore
 
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.atomic_write import held
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, never_show
 from stickslip.io.zarr_store import check_metadata, create, first_file_of, is_sound
 from stickslip.sweeps.execution.chunk import NOT_RUN, TIME, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
@@ -169,8 +168,8 @@ def open_store(path: str | Path) -> xr.Dataset:
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such store")
-    with FORMAT.reading(path), warnings.catch_warnings():
-        warnings.simplefilter("ignore", category=UserWarning)  # of a dimension that is there twice, which is refused
+    never_show("Duplicate dimension names present", category=UserWarning)  # they are refused
+    with FORMAT.reading(path):
         check_store(path)
         found: xr.Dataset = xr.open_zarr(zarr_folder.Folder(path), chunks=None)
         check_contents(found)
