@@ -67,6 +67,10 @@ class FromMachine:
         """Return its integral between times (s)."""
         return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
 
+    def many_edges(self, low: float, high: float) -> float:
+        """Return the number of times that `edges` returns, at most."""
+        return float(len(self.motion.start))
+
     def edges(self, low: float, high: float) -> Floats:
         """Return the times (s) between two others when parts of its motion arrive."""
         start = self.motion.start + self.delay
