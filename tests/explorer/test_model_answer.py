@@ -11,8 +11,8 @@ import pytest
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.findings import CAUSES, MOST_EVENTS, _jump
-from stickslip.explorer.model.pictures import _path, energy_picture, law_picture
-from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
+from stickslip.explorer.model.pictures import COLUMNS, ROWS, _path, energy_picture, law_picture, slab_picture
+from stickslip.explorer.model.sampled_waves import EVEN, PHASES, TRIPS, SampledWaves, ShownInterval
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import EVEN_TIMES, MOST_PIECES, Stopped, companion_of, solve
 from stickslip.foundation.arrays import Floats
@@ -21,6 +21,7 @@ from stickslip.observables.energy.balance import energies
 from stickslip.observables.field import Field
 from stickslip.run.session import SPARE
 from stickslip.scenarios import library
+from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.history import History
 from tests.problems import of_each_kind, scaled_rate
 
@@ -415,3 +416,55 @@ def test_inside_of_the_slab_in_a_long_run_is_shown_around_its_event_in_time_of_t
     assert event.start > 1e4
     assert found.slab.time[0] < event.start < event.end < found.slab.time[-1] < event.end + 10.0
     assert found.slab.fronts[0][0, 0] == pytest.approx(event.start, abs=1e-6)
+
+
+YEARS = 1000.0
+LAB = ss.ElasticSlab(2800.0, 3500.0, 1.0, 1e6)
+STEADY = ss.Problem(LAB, ss.friction.FromExpression("0.6 + 0.1*v"), pull_rate=1e-3, initial_excess=10.0)
+RESTING = ss.Problem(LAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=5e-16, initial_excess=-7e5)
+
+
+@pytest.mark.parametrize("problem", [STEADY, RESTING], ids=["slides steadily", "rests"])
+def test_a_run_over_a_million_million_round_trips_is_answered_with_pictures_of_the_usual_size(problem: ss.Problem) -> None:
+    found = solve(Scenario(problem, YEARS * ss.YEAR))
+    assert found.solution.status.name == "finished"
+    assert found.motions[0].slip[-1] == pytest.approx(YEARS * ss.YEAR * (1e-3 if problem is STEADY else 0.0), rel=1e-6)
+    if problem is RESTING:  # steady sliding is leaped over: its waves are averages
+        assert found.slab is not None
+        assert found.slab.velocity.size == COLUMNS * ROWS
+        exact = found.solution.energy(found.energy.time[[0, 80, -1]]).stored.to_numpy()
+        elastic = found.energy.parts["elastic"][[0, 80, -1]]
+        assert elastic - elastic[0] == pytest.approx(exact - exact[0], abs=1e-3 * exact[-1])
+
+
+def test_pictures_over_many_round_trips_show_means_over_one_of_the_exact_energies() -> None:
+    """A rest after a slip event, whose waves go to and fro 20 000 times; it is shown whole, as the explorer would not do."""
+    scenario = ss.load_scenario("fig5-slab-u0-1e-2")
+    trip = scenario.problem.round_trip_time
+    run, end = ss.simulate(scenario.problem, 2e4 * trip), 1.99e4 * trip
+    waves = SampledWaves(ShownInterval(run, 4.0 * trip, end, 0.0))
+    assert len(waves.samples.time) == TRIPS
+    time = np.linspace(5.0 * trip, end - trip, 5)
+    around = [run.history.find(one + trip * (np.arange(64) - 31.5) / 64, "right") for one in time]
+    exact = [{name: values.mean() for name, values in energies(run.history, at).items()} for at in around]
+    kinetic, stored, work = (np.array([one[name] for one in exact]) for name in ("kinetic", "stored", "work"))
+    assert kinetic.min() > 1e7  # J/m^2
+    assert waves.kinetic(time, 240) == pytest.approx(kinetic, rel=3e-2)
+    for found, known in ((waves.stored(time), stored), (waves.work(time), work)):
+        assert found - found[0] == pytest.approx(known - known[0], abs=1e-2 * kinetic.max())
+
+
+@on_slabs
+def test_pictures_of_means_are_those_of_waves_within_a_pixel(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = answer(name)
+    monkeypatch.setattr("stickslip.explorer.model.sampled_waves.MANY", 0)
+    shown = ShownInterval.of(exact.solution)
+    waves = SampledWaves(shown)
+    assert len(waves.samples.wave) == EVEN * PHASES
+    assert exact.slab is not None
+    found = slab_picture(waves)
+    for own, known in ((found.velocity, exact.slab.velocity), (found.stress, exact.slab.stress)):
+        assert np.abs(own - known).mean() < 5e-3 * np.ptp(known)
+    size = max(float(np.ptp(values)) for values in exact.energy.parts.values())
+    for part, values in energy_picture(shown, waves).parts.items():
+        assert values == pytest.approx(exact.energy.parts[part], abs=1e-2 * size)

@@ -93,9 +93,17 @@ class Inflow:
 
     def edges(self, low: float, high: float) -> Floats:
         """Return the times (s) between two others when segments arrive or a tone has turned by about 1 rad."""
-        turns = math.floor((high - low) * self.tone.frequency) if self.tone.amplitude != 0.0 else 0
+        turns = math.floor(self._turns(high - low))
         inside = self.start[(self.start > low) & (self.start < high)]
         return np.unique(np.concatenate([inside, np.linspace(low, high, turns + 2)[1:-1]])) if turns else inside
+
+    def many_edges(self, low: float, high: float) -> float:
+        """Return the number of times that `edges` returns, at most."""
+        return len(self.start) + 1.0 + self._turns(high - low)
+
+    def _turns(self, lasting: float) -> float:
+        """Return the number of times that the tone turns by 1 rad in a time (s)."""
+        return lasting * self.tone.frequency if self.tone.amplitude != 0.0 else 0.0
 
     def segment(self, time: Floats) -> NDArray[np.intp]:
         """Return the segment that has arrived at each time (s)."""

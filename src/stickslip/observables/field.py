@@ -178,6 +178,24 @@ class _InsideOfSlab:
         return self.interval.total(high) - self.interval.total(low)
 
 
+NOT_KNOWN = "the field is not known here: the waves in the slab left the contact in a leap over creep"
+
+
+def check_known(history: History, low: float, high: float) -> None:
+    """Raise InputError if waves that left the contact between two times (s since the epoch) left it in a leap over creep."""
+    trip, trips = history.creep[:, 0], history.creep[:, 1]
+    begin, end = (history.seconds(when, np.zeros(len(trip))) for when in (trip, trip + trips))
+    slack = rounding(np.append(end, high), history.round_trip_time).max()
+    if ((begin < high - slack) & (end > low + slack)).any():
+        raise InputError(NOT_KNOWN)
+
+
+def many_places(history: History, low: float, high: float) -> float:
+    """Return how often, at most, another piece may begin to hold between two times (s): see `WaveInterval`."""
+    pieces = int(np.searchsorted(history.start, high, side="right"))
+    return (1.0 + 2.0 * pieces) * (2.0 + (high - low) / history.round_trip_time)
+
+
 class WaveInterval:
     """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
 
@@ -191,12 +209,13 @@ class WaveInterval:
         self.first, last = self.history.span
         self.high = min(max(high, self.first), last)
         low = min(max(low, self.first), self.high)
+        check_known(self.history, low, self.high)
         breaks = np.append(low, self._candidates(low, self.high))
         middle = 0.5 * (breaks + np.append(breaks[1:], self.high))
         at = self.history.find(middle, "right")
         another = np.append(True, (np.diff(at.piece) != 0) | (np.diff(at.leaped) != 0.0))
         if any(self.history.is_averaged(trip) for trip in np.unique(self.history.store.trip[at.piece])):
-            raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
+            raise InputError(NOT_KNOWN)
         self.start: Floats = breaks[another]
         """Times (s) when another piece of the history begins to hold, or the same one a number of whole round trips later."""
         self._piece, leaped = at.piece[another], at.leaped[another]

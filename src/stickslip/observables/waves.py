@@ -67,6 +67,10 @@ class FromMachine:
         """Return its integral between times (s)."""
         return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
 
+    def many_edges(self, low: float, high: float) -> float:
+        """Return the number of times that `edges` returns, at most."""
+        return float(len(self.motion.start))
+
     def edges(self, low: float, high: float) -> Floats:
         """Return the times (s) between two others when parts of its motion arrive."""
         start = self.motion.start + self.delay
@@ -176,11 +180,11 @@ class Waves:
             return self._before(-self.half, end.offset - self.round).integral(self.power)
         total = self._before(-self.half, 0.0).integral(self.power)
         if self.history.problem.varies:
-            return total + self._trip_by_trip(end.trip) + self._in_trip(end.trip, 0.0, end.offset).integral(self.power)
+            return total + self._trip_by_trip(end.trip) + self.in_trip(end.trip, 0.0, end.offset).integral(self.power)
         total += float(self._passed[int(np.searchsorted(self.history.store.trip, end.trip, side="right"))])
         piece, low, high = self.standing(end.trip)
         total += float(self._work_of(piece, low, high, end.trip - self.history.store.trip[piece]).sum())
-        return total + self._in_trip(end.trip, 0.0, end.offset).integral(self.power)
+        return total + self.in_trip(end.trip, 0.0, end.offset).integral(self.power)
 
     def _trip_by_trip(self, past: int) -> float:
         """Return the work of all waves that left the contact before a round trip, for a loading that varies.
@@ -196,7 +200,7 @@ class Waves:
     def _of_trips(self) -> Floats:
         """The work of all waves that left before the end of each stored round trip, after a 0 for the start."""
         trips = np.unique(self.history.store.trip)
-        own = [self._in_trip(int(trip), 0.0, self.round).integral(self.power) for trip in trips]
+        own = [self.in_trip(int(trip), 0.0, self.round).integral(self.power) for trip in trips]
         rest = [self._at_rest(int(trip) + 1, int(following)) for trip, following in pairwise(trips)]
         return np.cumsum([0.0, *(sum(both) for both in zip(own, [0.0, *rest], strict=True))])
 
@@ -208,10 +212,10 @@ class Waves:
         if past <= first:
             return 0.0
         if self.by_storing:
-            last = self._in_trip(past - 1, self.half, self.round).integral(self.power)
+            last = self.in_trip(past - 1, self.half, self.round).integral(self.power)
             return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + last
         # all these round trips are alike, except that the waves of the last one may meet another loading at the driver
-        one, last = (self._in_trip(trip, 0.0, self.round).integral(self.power) for trip in (first, past - 1))
+        one, last = (self.in_trip(trip, 0.0, self.round).integral(self.power) for trip in (first, past - 1))
         return (past - first - 1) * one + last
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
@@ -316,9 +320,9 @@ class Waves:
             start = (trip - now.trip) * self.round - now.offset
             begin, end = max(low - start, 0.0), min(high - start, self.round)
             if end > begin:
-                yield self._in_trip(trip, begin, end, now)
+                yield self.in_trip(trip, begin, end, now)
 
-    def _in_trip(self, trip: int, low: float, high: float, since: Epoch = START) -> Sampled:
+    def in_trip(self, trip: int, low: float, high: float, since: Epoch = START) -> Sampled:
         """Return the waves that left between the offsets low and high (s) of a round trip. Their times count from an epoch."""
         piece, begin, end = self.standing(trip)
         inside = (end > low) & (begin < high)

@@ -17,16 +17,20 @@ FAINT = 0.1
 """A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""
 MOST_FRONTS = 60
 """If more fronts than this leave the contact none is returned: they could not be told apart."""
+MOST_TRIPS = 1000
+"""Over more round trips than this no front is returned: the ways of one and the same front could not be told apart."""
 
 
 def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
     """Return for each front between two times (s) the times when it is at the contact, at the driver, and so on in turn.
 
-    It is empty for layers, where fronts split. Raises InputError for a block.
+    It is empty for layers, where fronts split, and for more than `MOST_TRIPS` round trips. Raises InputError for a block.
     """
     if isinstance(readings.problem.body, OfLayers):
         return []
     body = slab_of(readings.problem)
+    if end - start > MOST_TRIPS * body.two_way_time:
+        return []
     most = max((share for _, share in readings.problem.driver_steps[1:]), key=abs, default=0.0)
     share = max(most, body.front_reflection, key=abs)
     return [bounces_of(time, end, body.two_way_time, share) for time in origins_of(readings, start, end)]
