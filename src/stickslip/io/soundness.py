@@ -55,7 +55,7 @@ NOT_NEGATIVE = (
     "rough",
 )
 """Counts of round trips or steps, from 0 to NEVER."""
-FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
+FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "missed", "exit")
 """Numbers of the state that may be infinite or NaN."""
 Fault = tuple[str, Any]
 """The name of a check, and whether it fails."""

@@ -103,7 +103,7 @@ def step_proof(run: Run) -> StepProof:
 def begin_proof(run: Run, h: float, force: float) -> None:
     """Begin the proof of a step of h seconds that ignores a force (Pa or N); the caller says what is allowed."""
     proof = step_proof(run)
-    proof.duration, proof.force, proof.bound, proof.proven_to, proof.reaches_zero = h, force, 0.0, 0.0, 0
+    proof.duration, proof.force, proof.bound, proof.proven_to, proof.lacks_bound = h, force, 0.0, 0.0, 0
 
 
 @kernel
@@ -126,6 +126,15 @@ def share_of_part(run: Run, start: float, width: float) -> float:
         missed = (LEBESGUE * proof.state_measured[n] + proof.state_hidden[n]) * proof.state_yields[n]
         share = larger(share, PROVEN * max(missed - LEBESGUE * proof.state_rounding[n], 0.0) / proof.state_allowed[n])
     return larger(0.0, share)
+
+
+@kernel
+def measured_anywhere(run: Run) -> float:
+    """Return the largest residual (Pa or N) at PLACES of the whole step."""
+    put_part(run, 0.0, 1.0)
+    contact_in_middle(run)
+    measure(run)
+    return step_proof(run).measured
 
 
 @kernel
