@@ -10,6 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.radau.proof import DISCS, HIDDEN, LEBESGUE, PLACE
+from stickslip.friction import TwoStateRateAndState
 from stickslip.observables.proof import proven
 from tests.engine.certified_runs import coefficient, shortfall
 
@@ -113,7 +114,7 @@ def test_no_piece_of_a_bundled_scenario_is_without_a_bound(name: str) -> None:
 
 
 def massless(evolution: str, rate: float) -> ss.Problem:
-    law = F.RateAndState(0.6, 0.012, 0.010, 0.01, evolution=evolution)  # type: ignore[arg-type]
+    law = F.RateAndState(0.6, 0.012, 0.010, 0.01, evolution=evolution)
     return ss.Problem(SLAB, law, pull_rate=rate, initial_load=6.3e7, initial_state=1.0)
 
 
@@ -142,7 +143,7 @@ def test_the_bound_of_an_implicit_step_is_close_to_what_is_missed() -> None:
 
 def test_a_step_that_is_kept_with_its_lag_at_the_start_says_what_it_misses() -> None:
     """A mass that settles far faster than the step lags behind a load that bends: the miss is largest where the step starts."""
-    law = F.TwoStateRateAndState(0.6, a=0.01, b=0.012, distance=1e-3, second_b=0.002, second_distance=5e-3, rate=1e-6)
+    law = TwoStateRateAndState(0.6, a=0.01, b=0.012, distance=1e-3, second_b=0.002, second_distance=5e-3, rate=1e-6)
     pull = ss.loading.Sinusoidal(mean=7e-4, amplitude=2.3e-3, period=5.0)
     problem = ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 533.0, 6.4e6, contact_mass=20.0), law, pull_rate=pull, initial_rate=1e-2)
     run = ss.simulate(problem, 2.0, 1e-6)
