@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.radau.proof import DISCS, HIDDEN, LEBESGUE, PLACE
-from stickslip.friction import TwoStateRateAndState
+from stickslip.friction.laws.rate_and_state import TwoStateRateAndState
 from stickslip.observables.proof import proven
 from tests.engine.certified_runs import coefficient, shortfall
 

@@ -103,7 +103,7 @@ def step_proof(run: Run) -> StepProof:
 def begin_proof(run: Run, h: float, force: float) -> None:
     """Begin the proof of a step of h seconds that ignores a force (Pa or N); the caller says what is allowed."""
     proof = step_proof(run)
-    proof.duration, proof.force, proof.bound, proof.proven_to, proof.lacks_bound = h, force, 0.0, 0.0, 0
+    proof.duration, proof.force, proof.bound, proof.proven_to, proof.lacks_bound = h, force, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -193,14 +193,17 @@ def hide(run: Run) -> float:
         proof.state_measured[n] = abs(run.value.change[n] - state_from_middle(run, n)[1] / lasts)  # for the time being
         proof.state_hidden[n] = math.inf
     least = hide_by_disc(run, FIRST_DISC, centre)
-    for way in (-1, 1):
-        disc = FIRST_DISC + way
-        while 0 <= disc < len(DISCS) and not least <= ENOUGH and (way == 1 or least < math.inf):
-            share = hide_by_disc(run, disc, centre)
-            if least < math.inf and not share < least:
+    if least < math.inf:
+        for disc in range(FIRST_DISC - 1, -1, -1):
+            share = hide_by_disc(run, disc, centre) if least > ENOUGH else least
+            if not share < least:
                 break
             least = share
-            disc += way
+    for disc in range(FIRST_DISC + 1, len(DISCS)):
+        share = hide_by_disc(run, disc, centre) if least > ENOUGH else least
+        if least < math.inf and not share < least:
+            break
+        least = share
     return least
 
 

@@ -234,7 +234,7 @@ def noted_share(run: Run) -> float:
     proof = step_proof(run)
     share = share_of_step(run)
     run.state.residual = proof.bound + (abs(proof.force) if run.counts.mode != 0 else 0.0)
-    if proof.lacks_bound == 1 or share == math.inf:
+    if proof.lacks_bound != 0.0 or share == math.inf:
         run.state.residual = math.nan
     return share
 

@@ -529,7 +529,7 @@ class StepProof(MemoryRecord):
     hidden: float  # Pa or N: bound on the residual between these places, beyond what is measured
     bound: float  # Pa or N: largest bound on the residual of any part so far
     proven_to: float  # 1: place up to which the step is proven
-    lacks_bound: int  # 1 if a part has no bound, because the law is singular where the slip rate is zero
+    lacks_bound: float  # 1 if a part has no bound, because the law is singular where the slip rate is zero
     rate_yields: float  # m/s over Pa or N, or 1 at rest: error of the slip rate, or of the strength, per residual
     state_allowed: Floats = floats_inside(STATES)  # units of the states: allowed errors
     state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of what is missed
