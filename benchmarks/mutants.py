@@ -84,8 +84,8 @@ NAMED = (
     Named(
         "no-proof-of-implicit-steps",
         "engine/radau/step.py",
-        "    if passes_zero(run):",
-        "    if True:",
+        "    return error if error > 1.0 else proven_error(run, error)",
+        "    return error",
     ),
     Named(
         "left-and-right-exchanged",

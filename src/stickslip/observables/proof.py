@@ -74,11 +74,15 @@ class Proof:
     anew: int
     """Number of them that are proven without the engine's series or stages."""
     unproven: int
-    """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
+    """Number of pieces of the history without a bound: they are measured at places only."""
+    unproven_share: float
+    """Share (1) of the sliding time that they last."""
+    missed: float
+    """Largest residual, in `unit`, that was measured at places of these pieces."""
     unit: str
     """Unit of the residual: Pa, N or N m."""
 
-    units: ClassVar = {"relative": "1"}
+    units: ClassVar = {"relative": "1", "unproven_share": "1"}
     __repr__ = brief_repr
 
     @property
@@ -90,7 +94,8 @@ class Proof:
             found += f"; proven from the law's formula alone: {self.anew} of {self.steps} steps"
         if self.unproven:
             pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
-            found += f", except in {pieces} next to a slip rate of zero, checked at places and not proven"
+            found += f", except in {100.0 * self.unproven_share:.2g} % of the sliding time ({pieces}), which has no bound: "
+            found += f"measured at places there it is missed by {brief(self.missed, self.unit)}"
         return found
 
 
@@ -101,17 +106,29 @@ class Proven(NamedTuple):
     steps: int = 0
     anew: int = 0
     unproven: int = 0
+    unproven_share: float = 0.0  # 1: of the sliding time
+    missed: float = 0.0  # Pa or N: measured at places of unproven pieces
 
     def proof(self, problem: Problem) -> Proof:
         """Return it as a `Proof`."""
         relative = self.residual / problem.normal
-        return Proof(self.residual, relative, self.steps, self.anew, self.unproven, problem.load_unit)
+        without = (self.unproven, self.unproven_share, self.missed)
+        return Proof(self.residual, relative, self.steps, self.anew, *without, problem.load_unit)
 
 
 def proven(history: History) -> Proven:
     """Return the proven bounds for a history."""
     bound, steps, anew = bounds_of_pieces(history)
-    return Proven(float(np.nanmax(bound, initial=0.0)), steps, anew, int(np.count_nonzero(np.isnan(bound))))
+    residual = float(np.nanmax(bound, initial=0.0))
+    without = np.flatnonzero(np.isnan(bound))
+    if len(without) == 0:
+        return Proven(residual, steps, anew)
+    store, missed = history.store, 0.0
+    lasting = np.abs(store.speed + store.bend)
+    for some in np.array_split(without, len(without) // AT_ONCE + 1):
+        missed = max(missed, float(_bounds(history, some)[0].max()))
+    share = float(lasting[without].sum() / max(lasting[store.mode != 0].sum(), lasting[without].sum()))
+    return Proven(residual, steps, anew, len(without), share, missed)
 
 
 def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:

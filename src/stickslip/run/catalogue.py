@@ -259,7 +259,8 @@ class EventRows:
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
         residual = max(float(run.state.largest_residual), self.residual or 0.0, proven(run.history()).residual)
-        proof = Proven(residual, unproven=int(run.count.unproven)).proof(run.problem).text
+        share = float(run.state.slid_unproven / run.state.slid) if run.count.unproven else 0.0
+        proof = Proven(residual, 0, 0, int(run.count.unproven), share, float(run.state.missed)).proof(run.problem).text
         self.rows.publish(origin(solution) | {"proven": proof} | attributes_of(prediction), run.problem.load_unit)
         self.save(code)
         self.rows.tidy()

@@ -79,6 +79,10 @@ def record(run: Run, xi_to: float) -> None:
         kept.residual = run.state.residual
         if run.state.residual > run.state.largest_residual:
             run.state.largest_residual = run.state.residual
+        if run.counts.mode != 0:
+            run.state.slid += phase_to - phase_from
+            if math.isnan(run.state.residual):
+                run.state.slid_unproven += phase_to - phase_from
         note_slip(run, n, phase_from)
         if run.counts.cells > 0:
             call_part(run.ladder, run, Task.KEEP_WAVES, xi_to)

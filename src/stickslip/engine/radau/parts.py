@@ -55,7 +55,7 @@ def share_of_parts(run: Run) -> float:
             measure(run)
             proof.bound = larger(proof.bound, proof.measured)
             if not math.isfinite(proof.measured):
-                proof.reaches_zero = 1
+                proof.lacks_bound = 1.0
             if turns(run):
                 return worst
             share = 0.0

@@ -47,8 +47,8 @@ MARGIN = 1.02
 ENOUGH = 1e-4
 """A hidden residual below this share (1) of what is allowed is small enough: no better disc is sought."""
 PROVEN = 0.02
-"""Share (1) of a bound that counts as the error of a step. It exceeds the largest residual at the places by Lebesgue's constant, and
-a residual between the stages changes its sign at each of them, so that its effect on slip and states nearly cancels."""
+"""Share (1) of a bound that counts as the error of a step. The bound exceeds the largest residual at the places by Lebesgue's
+constant, and a residual changes its sign at each stage, so that its effect on slip and states nearly cancels."""
 
 
 def _hidden_shares() -> NDArray[np.float64]:
@@ -103,7 +103,7 @@ def step_proof(run: Run) -> StepProof:
 def begin_proof(run: Run, h: float, force: float) -> None:
     """Begin the proof of a step of h seconds that ignores a force (Pa or N); the caller says what is allowed."""
     proof = step_proof(run)
-    proof.duration, proof.force, proof.bound, proof.proven_to, proof.reaches_zero = h, force, 0.0, 0.0, 0
+    proof.duration, proof.force, proof.bound, proof.proven_to, proof.lacks_bound = h, force, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -129,6 +129,15 @@ def share_of_part(run: Run, start: float, width: float) -> float:
 
 
 @kernel
+def measured_anywhere(run: Run) -> float:
+    """Return the largest residual (Pa or N) at PLACES of the whole step."""
+    put_part(run, 0.0, 1.0)
+    contact_in_middle(run)
+    measure(run)
+    return step_proof(run).measured
+
+
+@kernel
 def put_part(run: Run, start: float, width: float) -> None:
     """Write the polynomials of a part of the step in y: the slip rate into run.trial, the load into run.spare, and the states."""
     proof, middle = step_proof(run), start + 0.5 * width
@@ -146,25 +155,26 @@ def contact_in_middle(run: Run) -> None:
     """Evaluate the contact in the middle of the part, put this centre of its discs into run.ball, and note how errors yield."""
     ball, proof, slips = run.ball, step_proof(run), run.counts.mode != 0
     for n in range(run.counts.states):
-        ball.at_state[n] = state_from_middle(run, n)[0]
+        ball.at_state[n] = run.some_state[n] = state_from_middle(run, n)[0]
     ball.at_rate = run.trial[0] if slips else 0.0
     law_slip = run.state.law_slip + run.k.chi * proof.walked
     ball.at_slip = law_slip + run.law[run.counts.piece].slip_shift
-    contact_at(run, law_slip, ball.at_rate, ball.at_state)
+    contact_at(run, law_slip, ball.at_rate, run.some_state)
     proof.rate_yields = yielding(run, proof.duration) if slips else 1.0
     for n in range(own_states(run)):
         proof.state_yields[n] = yielding_of_state(run, proof.duration, n)
 
 
 @kernel
-def missing_at(run: Run, rate: float, slope: float, walked: float, load: float, states: Floats) -> float:
-    """Return what the contact equation lacks (Pa or N) where run.value belongs to; `slope` is that of the slip rate in y (m/s).
+def missing_at(run: Run, rate: float, slope: float, walked: float, load: float) -> float:
+    """Return what the contact equation lacks (Pa or N) where run.value and run.some_state belong to.
 
+    `slope` (m/s) is that of the slip rate in y, and `walked` (m) the slip since the start of the step.
     At rest `rate` is the strength, and what the strength lacks is returned.
     """
     params, proof = run.params, step_proof(run)
     if run.counts.mode == 0:
-        return rate - params.normal * (run.value.mu + static_step(run, states))
+        return rate - params.normal * (run.value.mu + static_step(run, run.some_state))
     missing = load - proof.force - params.damping * rate - params.normal * run.value.mu - params.stiffness * walked
     return missing - params.inertia / (proof.duration * proof.width) * slope
 
@@ -177,20 +187,23 @@ def hide(run: Run) -> float:
     """
     proof, own = step_proof(run), own_states(run)
     lasts = proof.duration * proof.width
-    centre = abs(missing_at(run, run.trial[0], run.trial[1], proof.walked, run.spare[0], run.ball.at_state))
+    centre = abs(missing_at(run, run.trial[0], run.trial[1], proof.walked, run.spare[0]))
     proof.hidden, least = math.inf, math.inf
     for n in range(own):
         proof.state_measured[n] = abs(run.value.change[n] - state_from_middle(run, n)[1] / lasts)  # for the time being
         proof.state_hidden[n] = math.inf
     least = hide_by_disc(run, FIRST_DISC, centre)
-    for way in (-1, 1):
-        disc = FIRST_DISC + way
-        while 0 <= disc < len(DISCS) and not least <= ENOUGH and (way == 1 or least < math.inf):
-            share = hide_by_disc(run, disc, centre)
-            if least < math.inf and not share < least:
+    if least < math.inf:
+        for disc in range(FIRST_DISC - 1, -1, -1):
+            share = hide_by_disc(run, disc, centre) if least > ENOUGH else least
+            if not share < least:
                 break
             least = share
-            disc += way
+    for disc in range(FIRST_DISC + 1, len(DISCS)):
+        share = hide_by_disc(run, disc, centre) if least > ENOUGH else least
+        if least < math.inf and not share < least:
+            break
+        least = share
     return least
 
 
@@ -248,7 +261,7 @@ def measure(run: Run) -> None:
             run.some_state[n], run.state_error[n] = value_and_slope(state_from_middle(run, n), STAGES, y)
         contact_at(run, run.state.law_slip + run.k.chi * walked, rate if slips else 0.0, run.some_state)
         load, _ = value_and_slope(run.spare, run.counts.degree, y)
-        proof.measured = larger(proof.measured, abs(missing_at(run, rate, slope, walked, load, run.some_state)))
+        proof.measured = larger(proof.measured, abs(missing_at(run, rate, slope, walked, load)))
         for n in range(own):
             missing = abs(run.value.change[n] - run.state_error[n] / lasts)
             proof.state_measured[n] = larger(proof.state_measured[n], missing)

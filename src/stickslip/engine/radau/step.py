@@ -13,7 +13,7 @@ from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.radau.parts import share_of_step
-from stickslip.engine.radau.proof import begin_proof, step_proof
+from stickslip.engine.radau.proof import begin_proof, measured_anywhere, step_proof
 from stickslip.engine.radau.stages import (
     defects,
     larger,
@@ -234,7 +234,7 @@ def noted_share(run: Run) -> float:
     proof = step_proof(run)
     share = share_of_step(run)
     run.state.residual = proof.bound + (abs(proof.force) if run.counts.mode != 0 else 0.0)
-    if proof.reaches_zero == 1 or share == math.inf:
+    if proof.lacks_bound != 0.0 or share == math.inf:
         run.state.residual = math.nan
     return share
 
@@ -248,6 +248,13 @@ def prove_anyway(run: Run, error: float) -> None:
     for n in range(run.counts.states):
         proof.state_allowed[n] *= error
     noted_share(run)
+
+
+@kernel
+def note_unproven(run: Run) -> None:
+    """Count a step that is kept without a bound, and measure what it misses at places."""
+    run.counts.unproven += 1
+    run.state.missed = larger(run.state.missed, measured_anywhere(run))
 
 
 @kernel
@@ -397,7 +404,8 @@ def collocate(run: Run, left: float) -> float:
                     prove_anyway(run, error)
                 # Where this step had to shrink, the next one probably has to shrink as well.
                 change = max(trial / longest, LEAST_TREND) if before < math.inf else 5.0
-                run.counts.unproven += 1 if math.isnan(run.state.residual) else 0
+                if math.isnan(run.state.residual):
+                    note_unproven(run)
                 run.state.last_step = speed * (trial * min(factor, change) if error <= 1.0 else longest)
                 return trial
             before = error

@@ -100,6 +100,9 @@ class State(MemoryRecord):
     unbalanced: float  # Pa or N: force that the step at hand ignores by definition, because it leaves rest
     residual: float  # Pa or N: bound on the residual of the contact equation in the step at hand (`contact_step.certificate`)
     largest_residual: float  # Pa or N: largest such bound of any step so far
+    slid: float  # s: time of slip so far, without what is left to the caller
+    slid_unproven: float  # s: time of slip so far in steps without a bound
+    missed: float  # Pa or N: largest residual that was measured at places of these steps
     roughest: float  # 1: largest error of the slip rate by rounding in the law, relative, in any rough step (`Counts.rough`)
     exit: float  # 1: xi where an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
     hanging: float  # m/s: slip rate below which a contact with bristles hangs in them; 0 under any other law
@@ -170,7 +173,7 @@ class Counts(MemoryRecord):
     lumps: int  # 1 if short pieces of load are lumped
     lump_above: int  # lumping begins when a round trip has more pieces than this
     lumped_since: int  # short pieces are lumped from this round trip on
-    unproven: int  # number of implicit steps without a bound, because the law is not analytic where the slip rate passes zero
+    unproven: int  # number of implicit steps without a bound
     disc: int  # disc of the last explicit step's proof, as an index of `contact_step.certificate.RATIOS`
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
@@ -537,7 +540,7 @@ class StepProof(MemoryRecord):
     hidden: float  # Pa or N: bound on the residual between these places, beyond what is measured
     bound: float  # Pa or N: largest bound on the residual of any part so far
     proven_to: float  # 1: place up to which the step is proven
-    reaches_zero: int  # 1 if a part has no bound, because the law is singular where the slip rate is zero
+    lacks_bound: float  # 1 if a part has no bound, because the law is singular where the slip rate is zero
     rate_yields: float  # m/s over Pa or N, or 1 at rest: error of the slip rate, or of the strength, per residual
     state_allowed: Floats = floats_inside(STATES)  # units of the states: allowed errors
     state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of what is missed
