@@ -37,11 +37,10 @@ def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
     waves = LayerWaves(history, body)
     rows = waves.waves(trip, phase)
     time, at = trip * history.round_trip_time + phase, Positions.inside(piece, xi)
-    middle = trip * history.round_trip_time + store.phase_from[piece] + 0.5 * store.speed[piece] + 0.25 * store.bend[piece]
-    found = _load(history, body, (waves.starts, rows), at, (time, middle))
+    found = _load(history, body, (waves.starts, rows), at, (time, time))
     differs = np.abs(found - history.excess(at))
     if waves.machine is not None:
-        differs = np.maximum(differs, np.abs(_missed_by_machine(history, waves, rows[:, waves.last[0]], (trip, phase, middle))))
+        differs = np.maximum(differs, np.abs(_missed_by_machine(history, waves, rows[:, waves.last[0]], (trip, phase))))
     return float(differs.max(initial=0.0)), len(np.unique(piece))
 
 
@@ -77,16 +76,16 @@ def _load(
     return np.asarray(load - damping * velocity - body.inertia * acceleration)
 
 
-def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: tuple[NDArray[np.int64], Floats, Floats]) -> Floats:
+def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: tuple[NDArray[np.int64], Floats]) -> Floats:
     """Return by how much (Pa) a machine behind layers misses its equation of motion, `last` being the wave that it sends.
 
     M dVd/dt = kp (V0 - Vd) + q + s - Z Vd + w, with q the force of the integral gain, and w = 2 Z Vd - `last` what it meets.
     """
-    problem, machine, (trip, phase, middle) = history.problem, waves.machine, when
+    problem, machine, (trip, phase) = history.problem, waves.machine, when
     assert machine is not None
     body, time = problem.body, trip * history.round_trip_time + phase
     rate, faster = machine.motion(trip, phase)[0], machine.acceleration(trip, phase)
-    force = body.driver_impedance * value_at(problem.pull_rate, time, middle) + far_excess_at(problem, time, middle)
+    force = body.driver_impedance * value_at(problem.pull_rate, time, time) + far_excess_at(problem, time, time)
     push = machine_at_first(problem)[1] + body.driver_integral_gain * (pulled(problem, time) - machine.moved(trip, phase))
     met = 2.0 * body.last_impedance * rate - last
     return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)

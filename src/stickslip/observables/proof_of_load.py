@@ -17,6 +17,7 @@ from stickslip.bodies import OfLayers, as_waves
 from stickslip.engine_input.forcing import wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.observables.given_load import of_ground, pulled, sent_at, share_at
+from stickslip.observables.given_on_discs import near_break
 from stickslip.observables.layers_found_again import loads_of_layers
 from stickslip.observables.proof import Places, chosen_steps
 from stickslip.observables.waves import FromMachine
@@ -67,11 +68,16 @@ def comparable(history: History) -> Places:
 
 
 def _times(history: History, piece: Places, xi: Floats) -> tuple[NDArray[np.int64], Floats, Floats, Floats]:
-    """Return the round trips and phases (s) of places in pieces, their times (s since the start), and that of each middle (s)."""
+    """Return the round trips and phases (s) of places in pieces, their times (s since the start), and these away from breaks.
+
+    A time at a break of the loading, to rounding, counts as on that side of it where the middle of its piece is.
+    """
     store, trip = history.store, history.store.trip[piece]
     phase = store.phase_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
     middle = store.phase_from[piece] + 0.5 * store.speed[piece] + 0.25 * store.bend[piece]
-    return trip, phase, trip * history.round_trip_time + phase, trip * history.round_trip_time + middle
+    time = trip * history.round_trip_time + phase
+    near = near_break(history, time)
+    return trip, phase, time, time + np.clip(middle - phase, -near, near)
 
 
 def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
