@@ -13,30 +13,23 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 from typing import Any
 
-import mpmath
 import numpy as np
 
 import stickslip as ss
+from benchmarks.missed import missed, of_duration, worst_of
 from stickslip.engine import compiled_formula
 from stickslip.engine.formula_code.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
-from stickslip.friction.formula import expression as e
-from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from stickslip.observables.proof import MotionOnDiscs, _unsure_duration, proven
-from stickslip.trajectory.history import History, Positions
+from stickslip.observables.proof import proven
+from stickslip.trajectory.history import History
 
-DIGITS, PLACES = 40, 200
 SIZES = (1e-6, 1e-3, 0.1)
 """Errors of a coefficient, relative."""
 SLAB, BLOCK = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), ss.SpringBlock(1.0, 20.0, 10.0)
 LAW = "0.5 + 0.02*sin(4*u)*exp(-u*u/2) + 0.01*tanh(2*u-1) + 0.01*log(1+u*u) + 0.01/(1+u**4) + 0.01*(1+u*u)**0.3 + 0.01*arcsinh(u)"
 RATE = "0.6 - 0.05*v/(v+2) + 0.01*exp(-v/3)*sin(v) + 0.01*log(1+v)"
-MPMATH = SimpleNamespace(
-    **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "expm1", "log1p")}, arcsinh=mpmath.asinh
-)
 LINE = re.compile(r"^([anqsvwxe]\w*?)(?:_(\d+))? = (.*)$")
 
 
@@ -128,102 +121,6 @@ def names_of(problem: ss.Problem) -> list[tuple[str, str]]:
     writer = WrongWriter(law.trees()[0], law.parameters(), state_rates=law.state_trees())
     unused = "rate_jet" if body.has_inertia else "motion_jet"
     return [name for name in writer.slots if name[0] != unused]
-
-
-# ---- what is really missed -----------------------------------------------------------------------------------------------
-
-
-def exact(tree: e.Expression, numbers: dict[str, float], variables: dict[e.Expression, Any]) -> Any:
-    """A formula in the digits of mpmath."""
-    found = dict(variables)
-    for node in e.nodes_of(tree):
-        arguments = [found[argument] for argument in node.arguments]
-        if node.operation in FUNCTIONS:
-            found[node] = getattr(MPMATH, node.operation)(*arguments)
-        elif arguments:
-            found[node] = OPERATIONS[node.operation](*arguments)
-        elif node not in found:
-            found[node] = mpmath.mpf(numbers[node.name] if node.operation == "parameter" else node.value)
-    return found[tree]
-
-
-def value_of(coefficients: list[Any], x: Any) -> Any:
-    """A polynomial, ascending coefficients, at x."""
-    total = mpmath.mpf(0)
-    for c in reversed(coefficients):
-        total = total * x + c
-    return total
-
-
-def missed(history: History, n: int, places: int = PLACES) -> float:
-    """The most (Pa or N) that piece n of a history misses of the contact equation at places on it, in DIGITS digits."""
-    problem, row = history.problem, history.store
-    law, way = problem.friction, int(row.mode[n])
-    with mpmath.workdps(DIGITS):
-        rate, load = ([way * mpmath.mpf(float(x)) for x in table[n]] for table in (row.rate, row.load))
-        speed, bend = mpmath.mpf(float(row.speed[n])), mpmath.mpf(float(row.bend[n]))
-        start = mpmath.mpf(problem.law_slip) + mpmath.mpf(float(row.law_slip[n]))
-        signs = [way if i in law.reverses else 1 for i in range(len(law.states))]
-        states = [[sign * mpmath.mpf(float(x)) for x in row.state[n, i]] for i, sign in enumerate(signs)]
-        worst = mpmath.mpf(0)
-        for x in (mpmath.mpf(k) / (places - 1) for k in range(places)):
-            v, at = value_of(rate, x), {}
-            grown = sum(c * x ** (k + 1) * (speed / (k + 1) + 2 * bend * x / (k + 2)) for k, c in enumerate(rate))
-            at[e.SLIP], at[e.RATE] = start + (way if law.counts == "net" else 1) * grown, v
-            at |= {name: value_of(c, x) for name, c in zip(e.STATES, states, strict=False)}
-            mu = exact(law.trees()[int(row.law_piece[n])], law.numbers(int(row.law_piece[n])), at)
-            g = problem.body.damping * v + problem.normal * mu - value_of(load, x) - way * mpmath.mpf(problem.strength)
-            if problem.body.has_inertia:
-                slope = sum(k * c * x ** (k - 1) for k, c in enumerate(rate) if k)
-                g += problem.body.inertia * slope / (speed + 2 * bend * x)
-            worst = max(worst, abs(g))
-        return float(worst)
-
-
-def missed_in_doubles(history: History) -> Any:
-    """The same for all pieces of slip, in double precision and by the law's function of arrays; zero for all other pieces."""
-    problem, store = history.problem, history.store
-    moving = np.flatnonzero(store.mode != 0)
-    x = np.tile(np.linspace(0.0, 1.0, PLACES), len(moving))
-    at = Positions.inside(np.repeat(moving, PLACES), x)
-    way, rate = store.mode[at.piece], history.rate(at)
-    g = problem.body.damping * way * rate + history.resistance(at) - way * (history.excess(at) + problem.strength)
-    if problem.body.has_inertia:
-        order = np.arange(1, store.rate.shape[1])
-        slope = (order * store.rate[at.piece, 1:] * x[:, None] ** (order - 1)).sum(axis=1)
-        g += problem.body.inertia * way * slope / store.speed[at.piece]
-    found = np.zeros(len(history))
-    found[moving] = np.abs(g).reshape(-1, PLACES).max(axis=1)
-    return found
-
-
-_exactly: dict[bytes, float] = {}
-
-
-def worst_of(run: ss.Solution) -> float:
-    """The largest miss of a run (Pa or N): in DIGITS digits where double precision does not decide whether it exceeds the bound.
-
-    Pieces that the run says are not proven, those next to a slip rate of zero, are left out.
-    """
-    history = run.history
-    found = np.where(np.isnan(history.store.residual), 0.0, missed_in_doubles(history))
-    n = int(np.argmax(found))
-    if found[n] < 0.9 * run.proven.residual:
-        return float(found[n])
-    key = history.store.pieces[n].tobytes() + history.store.state[n : n + 1].tobytes()
-    if key not in _exactly:
-        _exactly[key] = missed(history, n)
-    return _exactly[key]
-
-
-def of_duration(history: History) -> float:
-    """What inertia may miss (Pa or N) because the duration of a step is the difference of two times, which are rounded.
-
-    The bound holds for a duration within this rounding, `missed` for the one that the history has.
-    """
-    moving = np.flatnonzero(history.store.mode != 0)
-    thrust = np.abs(MotionOnDiscs.of(history, moving).thrust).sum(axis=1)
-    return float(np.max(_unsure_duration(history, moving)[:, 0] * thrust, initial=0.0))
 
 
 @dataclass
