@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from stickslip.bodies import OfLayers
 from stickslip.engine_input.forcing import machine_at_first
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.given_load import far_excess_at, of_ground, pulled, value_at
+from stickslip.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at
 from stickslip.observables.layers import LayerWaves
 from stickslip.trajectory.history import History, Positions
 
@@ -20,8 +20,10 @@ LEAST_PHASES = 4
 """With fewer phases than this, the last round trips of a run are left out instead."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Multiples of this share of a round trip fill it evenly."""
-EDGE = 1e-3
-"""Places nearer to an end of a step than this (1) are not compared: loads may jump there."""
+EDGE = 1e-11
+"""Places nearer to an end of a step than this share (1) of a round trip are not compared: loads may jump there."""
+BREAKS = 16
+"""Largest number of breaks of the loading beside which loads are compared."""
 
 
 def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
@@ -31,7 +33,8 @@ def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
         return 0.0, 0
     store = history.store
     xi = history.xi(piece, phase - store.phase_from[piece])
-    inside = (xi > EDGE) & (xi < 1.0 - EDGE)
+    near = EDGE * history.round_trip_time
+    inside = (phase - store.phase_from[piece] > near) & (store.phase_to[piece] - phase > near)
     piece, phase, xi = piece[inside], phase[inside], xi[inside]
     trip = store.trip[piece].astype(np.int64)
     waves = LayerWaves(history, body)
@@ -55,7 +58,12 @@ def _places(history: History, body: OfLayers) -> tuple[NDArray[np.intp], Floats]
     drawn = slips[np.linspace(0, len(slips) - 1, many // 2).astype(int)] if len(slips) else slips
     middles = store.phase_from[drawn] + 0.5 * store.speed[drawn] + 0.25 * store.bend[drawn]
     even = history.round_trip_time * np.modf(GOLDEN * np.arange(1, many - len(drawn) + 1))[0]
-    found = [(own[(store.phase_from[own] < phase) & (phase < store.phase_to[own])], phase) for phase in np.append(middles, even)]
+    breaks = breaks_at_contact(history.problem)
+    cuts = np.mod(beside(history.problem, breaks[breaks < (last + 1) * history.round_trip_time][:BREAKS]), history.round_trip_time)
+    found = [
+        (own[(store.phase_from[own] < phase) & (phase < store.phase_to[own])], phase)
+        for phase in np.concatenate([middles, even, cuts])
+    ]
     return np.concatenate([n for n, _ in found]), np.repeat([phase for _, phase in found], [len(n) for n, _ in found])
 
 
