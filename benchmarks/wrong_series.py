@@ -9,50 +9,77 @@ from __future__ import annotations
 
 import re
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 from typing import Any
 
-import mpmath
 import numpy as np
 
 import stickslip as ss
+from benchmarks.missed import missed, missed_by_states, of_duration, worst_of, worst_of_states
 from stickslip.engine import compiled_formula
 from stickslip.engine.formula_code.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
-from stickslip.friction.formula import expression as e
-from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from stickslip.observables.proof import MotionOnDiscs, _unsure_duration, proven
-from stickslip.trajectory.history import History, Positions
+from stickslip.loading import PiecewiseLinear, Sinusoidal, Steps
+from stickslip.observables.proof import proven
+from stickslip.observables.proof_of_states import sizes, states_proven
+from stickslip.trajectory.history import History
 
-DIGITS, PLACES = 40, 200
 SIZES = (1e-6, 1e-3, 0.1)
 """Errors of a coefficient, relative."""
 SLAB, BLOCK = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), ss.SpringBlock(1.0, 20.0, 10.0)
 LAW = "0.5 + 0.02*sin(4*u)*exp(-u*u/2) + 0.01*tanh(2*u-1) + 0.01*log(1+u*u) + 0.01/(1+u**4) + 0.01*(1+u*u)**0.3 + 0.01*arcsinh(u)"
 RATE = "0.6 - 0.05*v/(v+2) + 0.01*exp(-v/3)*sin(v) + 0.01*log(1+v)"
-MPMATH = SimpleNamespace(
-    **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "expm1", "log1p")}, arcsinh=mpmath.asinh
-)
 LINE = re.compile(r"^([anqsvwxe]\w*?)(?:_(\d+))? = (.*)$")
 
 
 def cases() -> dict[str, tuple[ss.Problem, float]]:
-    """Problems by name, with durations: slab and block, explicit and implicit steps."""
-    law, rate = ss.friction.FromExpression(LAW), ss.friction.FromExpression(RATE)
-    ageing = ss.friction.RateAndState(0.6, 0.012, 0.014, 0.01)
+    """Problems by name, with durations (s): explicit and implicit steps, under all kinds of laws and loads."""
+    friction, slips = ss.friction, {"pull_rate": 0.3, "initial_excess": 1.5e7}
+    law, rate = friction.FromExpression(LAW), friction.FromExpression(RATE)
+    ageing, coupled = (friction.RateAndState(0.6, 0.012, 0.014, 0.01, normal_stress_coupling=alpha) for alpha in (0.0, 0.005))
+    slow = {"pull_rate": 1.0, "initial_load": 6.3e7, "initial_state": 1e-2}
+    light = {"pull_rate": 0.1, "initial_load": 6.2, "initial_state": 1.0}
+    machine = replace(SLAB, driver_impedance=3e6, driver_inertia=2e6, driver_integral_gain=4e5)
+    layers = ss.LayeredSlab([4e3, 6e3], [2600.0, 2800.0], [3000.0, 3500.0], 1e8)
+    swings, climbs = Sinusoidal(1e8, 1e6, 3.0), PiecewiseLinear([0.0, 1.0, 2.5], [1e8, 1.02e8, 0.99e8])
+    shakes = PiecewiseLinear([0.0, 1.0, 2.0, 3.0], [0.0, 0.2, -0.1, 0.0])
+    freed = Steps([0.0, 1.0], [SLAB.reflection, 0.5])
+    disc = ss.RotatingBlock(1.0, 20.0, 10.0, damping=0.1)
     return {
-        "slab": (ss.Problem(SLAB, law, pull_rate=0.3, initial_excess=1.5e7), 4.0),
+        "slab": (ss.Problem(SLAB, law, **slips), 4.0),
         "slab of rate": (ss.Problem(SLAB, rate, pull_rate=3.0, initial_excess=1e7), 4.0),
-        "slab with mass": (ss.Problem(replace(SLAB, contact_mass=1e7), law, pull_rate=0.3, initial_excess=1.5e7), 4.0),
+        "slab with mass": (ss.Problem(replace(SLAB, contact_mass=1e7), law, **slips), 4.0),
         "block": (ss.Problem(BLOCK, law, pull_rate=0.1, initial_excess=4.0), 1.5),
         "block of rate": (ss.Problem(BLOCK, rate, pull_rate=0.1, initial_excess=4.0), 1.0),
-        "slab, implicit": (ss.Problem(SLAB, ageing, pull_rate=1.0, initial_load=6.3e7, initial_state=1e-2), 4.0),
-        "block, implicit": (ss.Problem(BLOCK, ageing, pull_rate=0.1, initial_load=6.2, initial_state=1.0), 0.1),
-        "stiff, implicit": (ss.Problem(replace(SLAB, contact_mass=1e3), law, pull_rate=0.3, initial_excess=1.5e7), 4.0),
+        "slab, implicit": (ss.Problem(SLAB, ageing, **slow), 4.0),
+        "block, implicit": (ss.Problem(BLOCK, ageing, **light), 0.1),
+        "stiff, implicit": (ss.Problem(replace(SLAB, contact_mass=1e3), law, **slips), 4.0),
+        "slab, normal load swings": (ss.Problem(SLAB, law, **slips, normal_load=swings), 4.0),
+        "slab of rate, normal load climbs": (ss.Problem(SLAB, rate, pull_rate=3.0, initial_excess=1e7, normal_load=climbs), 4.0),
+        "block, normal load swings": (
+            ss.Problem(BLOCK, law, pull_rate=0.1, initial_excess=4.0, normal_load=Sinusoidal(10.0, 0.5, 0.7)),
+            1.5,
+        ),
+        "ageing, normal load steps": (ss.Problem(SLAB, coupled, **slow, normal_load=Steps([0.0, 1.0], [1e8, 1.02e8])), 2.0),
+        "ageing block, normal load swings": (ss.Problem(BLOCK, coupled, **light, normal_load=Sinusoidal(10.0, 0.5, 0.7)), 0.3),
+        "two states": (
+            ss.Problem(
+                SLAB,
+                friction.TwoStateRateAndState(0.6, 0.012, 0.01, 0.01, second_b=0.004, second_distance=0.1),
+                **slow,
+                initial_second_state=1e-1,
+            ),
+            4.0,
+        ),
+        "lagged": (ss.Problem(SLAB, friction.LaggedFriction(friction.HyperbolicRate(0.8, 0.3, 0.1), 0.5), **slips), 4.0),
+        "bristles": (ss.Problem(BLOCK, friction.LuGre(0.7, 0.5, 0.1, 1e3, 5.0, 0.02), pull_rate=0.1, initial_load=0.0), 2.0),
+        "layers": (ss.Problem(layers, law, **slips), 8.0),
+        "machine": (ss.Problem(machine, law, **slips), 8.0),
+        "driver changes": (ss.Problem(SLAB, law, **slips, far_stress=7.5e7, driver_reflection=freed), 8.0),
+        "shaken slab": (ss.Problem(SLAB, law, **slips, ground_velocity=shakes), 8.0),
+        "rotating block": (ss.Problem(disc, law, pull_rate=0.1, initial_excess=4.0), 1.5),
     }
 
 
@@ -73,8 +100,9 @@ class WrongWriter(FormulaWriter):
             self.statements(part)
 
     def parts_with_factors(self) -> tuple[str, ...]:
-        """The functions whose lines have factors."""
-        return ("state_value",) if self.states else ("rate_jet", "motion_jet", "value")
+        """The functions whose lines have factors; a law whose states all follow from time alone takes explicit steps, too."""
+        explicit, own = ("rate_jet", "motion_jet"), [tree for tree in self.state_rates if tree.arguments]
+        return ("state_value",) if own else (*explicit, "state_value") if self.states else (*explicit, "value")
 
     def statements(self, part: str) -> list[str]:
         """Return the lines of a function, with a factor in each line that sets a value or a coefficient."""
@@ -124,142 +152,86 @@ def wrong_engine() -> Iterator[Callable[[tuple[str, str], float], None]]:
 
 def names_of(problem: ss.Problem) -> list[tuple[str, str]]:
     """The functions and lines of the law's first piece that may be made wrong."""
-    law, body = problem.friction, problem.body
+    law, body = problem.contact_law, problem.body
     writer = WrongWriter(law.trees()[0], law.parameters(), state_rates=law.state_trees())
     unused = "rate_jet" if body.has_inertia else "motion_jet"
     return [name for name in writer.slots if name[0] != unused]
-
-
-# ---- what is really missed -----------------------------------------------------------------------------------------------
-
-
-def exact(tree: e.Expression, numbers: dict[str, float], variables: dict[e.Expression, Any]) -> Any:
-    """A formula in the digits of mpmath."""
-    found = dict(variables)
-    for node in e.nodes_of(tree):
-        arguments = [found[argument] for argument in node.arguments]
-        if node.operation in FUNCTIONS:
-            found[node] = getattr(MPMATH, node.operation)(*arguments)
-        elif arguments:
-            found[node] = OPERATIONS[node.operation](*arguments)
-        elif node not in found:
-            found[node] = mpmath.mpf(numbers[node.name] if node.operation == "parameter" else node.value)
-    return found[tree]
-
-
-def value_of(coefficients: list[Any], x: Any) -> Any:
-    """A polynomial, ascending coefficients, at x."""
-    total = mpmath.mpf(0)
-    for c in reversed(coefficients):
-        total = total * x + c
-    return total
-
-
-def missed(history: History, n: int, places: int = PLACES) -> float:
-    """The most (Pa or N) that piece n of a history misses of the contact equation at places on it, in DIGITS digits."""
-    problem, row = history.problem, history.store
-    law, way = problem.friction, int(row.mode[n])
-    with mpmath.workdps(DIGITS):
-        rate, load = ([way * mpmath.mpf(float(x)) for x in table[n]] for table in (row.rate, row.load))
-        speed, bend = mpmath.mpf(float(row.speed[n])), mpmath.mpf(float(row.bend[n]))
-        start = mpmath.mpf(problem.law_slip) + mpmath.mpf(float(row.law_slip[n]))
-        signs = [way if i in law.reverses else 1 for i in range(len(law.states))]
-        states = [[sign * mpmath.mpf(float(x)) for x in row.state[n, i]] for i, sign in enumerate(signs)]
-        worst = mpmath.mpf(0)
-        for x in (mpmath.mpf(k) / (places - 1) for k in range(places)):
-            v, at = value_of(rate, x), {}
-            grown = sum(c * x ** (k + 1) * (speed / (k + 1) + 2 * bend * x / (k + 2)) for k, c in enumerate(rate))
-            at[e.SLIP], at[e.RATE] = start + (way if law.counts == "net" else 1) * grown, v
-            at |= {name: value_of(c, x) for name, c in zip(e.STATES, states, strict=False)}
-            mu = exact(law.trees()[int(row.law_piece[n])], law.numbers(int(row.law_piece[n])), at)
-            g = problem.body.damping * v + problem.normal * mu - value_of(load, x) - way * mpmath.mpf(problem.strength)
-            if problem.body.has_inertia:
-                slope = sum(k * c * x ** (k - 1) for k, c in enumerate(rate) if k)
-                g += problem.body.inertia * slope / (speed + 2 * bend * x)
-            worst = max(worst, abs(g))
-        return float(worst)
-
-
-def missed_in_doubles(history: History) -> Any:
-    """The same for all pieces of slip, in double precision and by the law's function of arrays; zero for all other pieces."""
-    problem, store = history.problem, history.store
-    moving = np.flatnonzero(store.mode != 0)
-    x = np.tile(np.linspace(0.0, 1.0, PLACES), len(moving))
-    at = Positions.inside(np.repeat(moving, PLACES), x)
-    way, rate = store.mode[at.piece], history.rate(at)
-    g = problem.body.damping * way * rate + history.resistance(at) - way * (history.excess(at) + problem.strength)
-    if problem.body.has_inertia:
-        order = np.arange(1, store.rate.shape[1])
-        slope = (order * store.rate[at.piece, 1:] * x[:, None] ** (order - 1)).sum(axis=1)
-        g += problem.body.inertia * way * slope / store.speed[at.piece]
-    found = np.zeros(len(history))
-    found[moving] = np.abs(g).reshape(-1, PLACES).max(axis=1)
-    return found
-
-
-_exactly: dict[bytes, float] = {}
-
-
-def worst_of(run: ss.Solution) -> float:
-    """The largest miss of a run (Pa or N): in DIGITS digits where double precision does not decide whether it exceeds the bound.
-
-    Pieces that the run says are not proven, those next to a slip rate of zero, are left out.
-    """
-    history = run.history
-    found = np.where(np.isnan(history.store.residual), 0.0, missed_in_doubles(history))
-    n = int(np.argmax(found))
-    if found[n] < 0.9 * run.proven.residual:
-        return float(found[n])
-    key = history.store.pieces[n].tobytes() + history.store.state[n : n + 1].tobytes()
-    if key not in _exactly:
-        _exactly[key] = missed(history, n)
-    return _exactly[key]
-
-
-def of_duration(history: History) -> float:
-    """What inertia may miss (Pa or N) because the duration of a step is the difference of two times, which are rounded.
-
-    The bound holds for a duration within this rounding, `missed` for the one that the history has.
-    """
-    moving = np.flatnonzero(history.store.mode != 0)
-    thrust = np.abs(MotionOnDiscs.of(history, moving).thrust).sum(axis=1)
-    return float(np.max(_unsure_duration(history, moving)[:, 0] * thrust, initial=0.0))
 
 
 @dataclass
 class Tally:
     """What became of the wrong runs of one problem."""
 
+    runs: int = 0
     noticed: int = 0
-    """The bound is more than ten times that of the right engine."""
+    """A bound is more than ten times that of the right engine."""
     unharmed: int = 0
     """What is missed is no more than the bound of the right engine: the error has no effect there."""
     ended: int = 0
     hidden: int = 0
-    """More is missed than said: this must not happen."""
+    """More is missed than said, of the contact equation or of that of a state: this must not happen."""
     tightest: float = 0.0
-    """Largest share of the bound that is really missed."""
+    """Largest share of a bound that is really missed."""
 
-    def count(self, run: ss.Solution, right: float) -> None:
-        """Count a run, given the bound of the right engine."""
-        real, said = worst_of(run), run.proven.residual
-        allowed = said + of_duration(run.history)
-        self.tightest = max(self.tightest, real / allowed)
-        self.hidden += real > allowed
-        self.noticed += said > 10.0 * right
-        self.unharmed += real <= right
-        self.ended += not run.status.ok
+    def count(self, real: tuple[float, float], said: tuple[float, float], right: tuple[float, float], ok: bool = True) -> None:
+        """Count a run by what it misses of the contact equation (Pa or N) and of those of states (1), beside what is said."""
+        self.runs += 1
+        self.tightest = max(self.tightest, *(a / b for a, b in zip(real, said, strict=True) if b > 0.0))
+        self.hidden += any(a > b for a, b in zip(real, said, strict=True))
+        self.noticed += any(a > 10.0 * b for a, b in zip(said, right, strict=True))
+        self.unharmed += all(a <= b for a, b in zip(real, right, strict=True))
+        self.ended += not ok
 
 
-def bent(history: History, n: int, k: int, by: float) -> History:
-    """A history whose piece n has a wrong coefficient k of the slip rate: by a share of the largest one."""
-    store = history.store._replace(pieces=history.store.pieces.copy())
-    store.rate[n, k] += by * np.abs(store.rate[n]).max()
+def bent(history: History, n: int, k: int, by: float, table: str = "rate") -> History:
+    """A history whose piece n has a wrong coefficient k of the slip rate, load or first state: by a share of the largest one."""
+    store = history.store._replace(pieces=history.store.pieces.copy(), state=history.store.state.copy())
+    row = store.state[n, 0] if table == "state" else getattr(store, table)[n]
+    row[k] += by * np.abs(row).max()
     return replace(history, store=store)
 
 
+def said_of(run: ss.Solution) -> tuple[float, float]:
+    """The bounds of a run on what is missed of the contact equation (Pa or N) and by states (1)."""
+    return run.proven.residual + of_duration(run.history), run.proven.states
+
+
+def wrong_formulas(problem: ss.Problem, duration: float, right: ss.Solution, few: bool) -> dict[str, Tally]:
+    """Count what becomes of runs with wrong coefficients and values in the compiled law, by function."""
+    tallies: dict[str, Tally] = {}
+    with wrong_engine() as make_wrong:
+        for line in names_of(problem)[:: 7 if few else 1]:
+            for size in SIZES:
+                make_wrong(line, size)
+                try:
+                    run = ss.simulate(problem, duration, max_pieces=20_000)
+                except ss.InputError:
+                    tallies.setdefault(f"{line[0]}: refused", Tally()).runs += 1
+                    continue
+                tally = tallies.setdefault(line[0], Tally())
+                tally.count((worst_of(run), worst_of_states(run)), said_of(run), said_of(right), run.status.ok)
+    return tallies
+
+
+def wrong_steps(right: ss.Solution) -> dict[str, Tally]:
+    """Count what becomes of a run whose middle step gets a wrong coefficient after it was finished, by what is wrong."""
+    tallies: dict[str, Tally] = {}
+    history = right.history
+    steps = np.flatnonzero(history.store.mode != 0)
+    n, own = int(steps[len(steps) // 2]), bool(history.problem.friction.states)
+    for table in ("rate", "load", *["state"] * own):
+        for k in range(history.store.rate.shape[1]):
+            for size in SIZES:
+                wrong = bent(history, n, k, size, table)
+                found = states_proven(wrong)
+                said = proven(wrong).residual + of_duration(wrong), found.missed
+                share = missed_by_states(wrong, n)[0] / float(sizes(wrong, np.array([n]), 0)[0]) if own else 0.0
+                tallies.setdefault(f"{table} of a step", Tally()).count((missed(wrong, n), share), said, said_of(right))
+    return tallies
+
+
 def main() -> int:
-    """Print the table."""
+    """Print the tables."""
     few, only = "--few" in sys.argv, [name for name in sys.argv[1:] if name != "--few"]
     hidden = 0
     print("| problem | wrong | runs | noticed | no effect | ended | more missed than said | tightest |")  # noqa: T201
@@ -268,38 +240,10 @@ def main() -> int:
         if only and name not in only:
             continue
         right = ss.simulate(problem, duration)
-        bound = right.proven.residual
-        with wrong_engine() as make_wrong:
-            tallies: dict[str, Tally] = {}
-            counted: Counter[str] = Counter()
-            for line in names_of(problem)[:: 7 if few else 1]:
-                for size in SIZES:
-                    make_wrong(line, size)
-                    try:
-                        run = ss.simulate(problem, duration, max_pieces=20_000)
-                    except ss.InputError:
-                        counted[f"{line[0]}: refused"] += 1
-                        continue
-                    counted[line[0]] += 1
-                    tallies.setdefault(line[0], Tally()).count(run, bound)
-        steps = np.flatnonzero(right.history.store.mode != 0)
-        for k in range(right.history.store.rate.shape[1]):
-            for size in SIZES:
-                wrong = bent(right.history, int(steps[len(steps) // 2]), k, size)
-                tally = tallies.setdefault("a finished step", Tally())
-                counted["a finished step"] += 1
-                real = missed(wrong, int(steps[len(steps) // 2]))
-                said = proven(wrong).residual
-                allowed = said + of_duration(wrong)
-                tally.hidden, tally.tightest = tally.hidden + (real > allowed), max(tally.tightest, real / allowed)
-                tally.noticed, tally.unharmed = tally.noticed + (said > 10.0 * bound), tally.unharmed + (real <= bound)
-        for what, tally in tallies.items():
-            hidden += tally.hidden
-            print(  # noqa: T201
-                f"| {name} | {what} | {counted[what]} | {tally.noticed} | {tally.unharmed} | {tally.ended} | {tally.hidden} "
-                f"| {tally.tightest:.2f} |",
-                flush=True,
-            )
+        for what, one in (wrong_formulas(problem, duration, right, few) | wrong_steps(right)).items():
+            hidden += one.hidden
+            numbers = f"{one.runs} | {one.noticed} | {one.unharmed} | {one.ended} | {one.hidden} | {one.tightest:.2f}"
+            print(f"| {name} | {what} | {numbers} |", flush=True)  # noqa: T201
     return 1 if hidden else 0
 
 

@@ -8,10 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.bodies import OfLayers
 from stickslip.engine_input.forcing import far_at_first
 from stickslip.foundation.arrays import Floats
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
+
+BESIDE = 1e-10
+"""Loads are compared this far (1) before and after a break of the loading, too, as a share of the round trip or of the time."""
 
 
 def value_at(given: float | LoadingHistory, time: Floats, inside: Floats) -> Floats:
@@ -70,3 +74,25 @@ def of_ground(problem: Problem, time: Floats, inside: Floats) -> tuple[Floats, F
     if problem.ground is None:
         return np.zeros(np.shape(time)), np.zeros(np.shape(time))
     return problem.ground.velocity_at(time, inside), problem.ground.acceleration_at(time, inside)
+
+
+def breaks_at_contact(problem: Problem) -> Floats:
+    """Return the times (s) at which breaks of the loading, changes of the driver and breaks of the ground are felt at the contact."""
+    body = problem.body
+    given = [one for one in (problem.pull_rate, problem.far_stress) if isinstance(one, LoadingHistory)]
+    starts = [one.start for history in given for one in history.segments] + [start for start, _ in problem.driver_steps]
+    if isinstance(body, OfLayers):
+        delays = {sum(stack.counts) * stack.time for stack in body.stacks}
+    else:
+        delays = {0.5 * body.round_trip_time if body.has_waves else 0.0}
+    found = [np.array(starts) + delay for delay in delays]
+    if problem.ground is not None:
+        found += [problem.ground.start + late for late in (0.0, body.round_trip_time)]
+    times = np.unique(np.concatenate(found))
+    return times[times > 0.0]
+
+
+def beside(problem: Problem, times: Floats) -> Floats:
+    """Return the times (s) just before and just after given ones: where a break in the wrong place shows."""
+    away = BESIDE * np.maximum(problem.round_trip_time, times)
+    return np.concatenate([times - away, times + away])

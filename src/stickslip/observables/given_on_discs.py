@@ -37,6 +37,8 @@ class NormalLoads(NamedTuple):
     since: Floats  # s: where the segment begins
     value: Floats  # 1: growth there, but for the tone
     slope: Floats  # 1/s
+    apart: Floats  # 1: how far from these the lines of other segments are at most that hold in a part of the step, too
+    slopes_apart: Floats  # 1/s: and how far their slopes
     tone: tuple[float, float, float]  # amplitude (1), frequency (rad/s), phase (rad)
 
     @classmethod
@@ -48,9 +50,10 @@ class NormalLoads(NamedTuple):
         start, value, slope = np.array(load.segments).T
         of = segment_of(load, history, n)
         amplitude, frequency, phase = load.tone
+        apart, slopes = _others(load, history, n, of)
         columns = (begins, store.speed[n], store.bend[n], start[of], (value[of] - normal) / normal, slope[of] / normal)
-        table = np.array(columns, float)[:, :, None]
-        return cls(table[0], table[1], table[2], table[3], table[4], table[5], (amplitude / normal, frequency, phase))
+        first, *others = np.array((*columns, apart / normal, slopes / normal), float)[:, :, None]
+        return cls(first, *others, tone=(amplitude / normal, frequency, phase))
 
     def at(self, xi: Floats) -> list[Disc]:
         """Return p and its rate of change (1/s) at places xi in each step, with a radius for rounding."""
@@ -80,7 +83,8 @@ class NormalLoads(NamedTuple):
         size = np.abs(self.value) + np.abs(self.slope * passed) + abs(amplitude) * (1.0 + np.abs(angle) * OF_TIME)
         growth, rate = straight + amplitude * sine, self.slope + amplitude * frequency * cosine
         rounding = OF_GROWTH * (np.abs(self.slope) + abs(amplitude) * frequency)
-        return [Disc.of(growth, moved + OF_GROWTH * (1.0 + size)), Disc.of(rate, bent + rounding)]
+        reached = moved + OF_GROWTH * (1.0 + size) + self.apart
+        return [Disc.of(growth, reached), Disc.of(rate, bent + rounding + self.slopes_apart)]
 
 
 SAMPLES = np.linspace(0.0, 1.0, 9)
@@ -98,6 +102,30 @@ def missed_growth(history: History, n: NDArray[np.intp]) -> Floats:
     return np.asarray(np.maximum(np.abs(known - given.centre) - given.radius, 0.0).max(axis=1, initial=0.0))
 
 
+def near_break(history: History, time: Floats) -> Floats:
+    """Return how near (s) to a break of the loading times may be to be at it."""
+    return np.asarray(AT_A_BREAK * np.maximum(history.round_trip_time, np.abs(time)))
+
+
+def _others(load: LoadingHistory, history: History, n: NDArray[np.intp], of: NDArray[np.intp]) -> tuple[Floats, Floats]:
+    """Return how far the lines, and the slopes, of further segments are from those of segments `of` in pieces n of a history.
+
+    The engine cuts pieces where segments begin. A piece in which another one begins all the same is in the wrong place.
+    """
+    store, (start, value, slope) = history.store, np.array(load.segments).T
+    begins = store.trip[n] * history.round_trip_time + store.phase_from[n]
+    ends = begins + store.speed[n] + store.bend[n]
+    near = near_break(history, ends)
+    first, last = (np.maximum(np.searchsorted(start, time, side="right") - 1, 0) for time in (begins + near, ends - near))
+    apart, slopes = np.zeros(len(n)), np.zeros(len(n))
+    for k in np.flatnonzero(last > first).tolist():
+        times, others = np.array([begins[k], ends[k]]), np.arange(first[k], last[k] + 1)[:, None]
+        lines = value[others] + slope[others] * (times - start[others])
+        own = value[of[k]] + slope[of[k]] * (times - start[of[k]])
+        apart[k], slopes[k] = np.abs(lines - own).max(), np.abs(slope[others] - slope[of[k]]).max()
+    return apart, slopes
+
+
 def segment_of(load: LoadingHistory, history: History, n: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return the segment of a loading that holds in each of some pieces of a history.
 
@@ -107,7 +135,7 @@ def segment_of(load: LoadingHistory, history: History, n: NDArray[np.intp]) -> N
     store = history.store
     start, value, slope = np.array(load.segments).T
     middle = store.trip[n] * history.round_trip_time + store.phase_from[n] + 0.5 * store.speed[n] + 0.25 * store.bend[n]
-    near = AT_A_BREAK * np.maximum(history.round_trip_time, np.abs(middle))
+    near = near_break(history, middle)
     early, late = (np.maximum(np.searchsorted(start, middle + by, side="right") - 1, 0) for by in (-near, near))
     found = np.maximum(np.searchsorted(start, middle, side="right") - 1, 0)
     for k in np.flatnonzero(early != late).tolist():

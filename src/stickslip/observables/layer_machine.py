@@ -52,7 +52,7 @@ class LayerMachine:
         piece, xi, known = self._placed(trip, phase)
         slope = poly.polyval(xi, (self.series[piece, 1:] * np.arange(1, self.series.shape[1])).T, tensor=False)
         pace = self.store.speed[piece] + 2.0 * self.store.bend[piece] * xi
-        return np.where(known, slope / np.where(pace > 0.0, pace, 1.0), 0.0)
+        return np.asarray(np.where(known, slope / np.where(pace > 0.0, pace, 1.0), 0.0))
 
     def moved(self, trip: Integers, phase: Floats) -> Floats:
         """Return the way (m) since the start of the run at places in time, one-dimensional."""
@@ -65,7 +65,7 @@ class LayerMachine:
     @cached_property
     def _whole(self) -> Floats:
         """The way (m) in each whole round trip that was kept."""
-        return self.before[self._starts[1:] - 1] + self.way[self._starts[1:] - 1].sum(axis=1)
+        return np.asarray(self.before[self._starts[1:] - 1] + self.way[self._starts[1:] - 1].sum(axis=1))
 
     @cached_property
     def _begun(self) -> Floats:
@@ -75,7 +75,7 @@ class LayerMachine:
 
     def _settled(self, trip: Integers) -> Floats:
         """Return the rate (m/s) of a long rest, under the loading of round trips."""
-        return settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float))
+        return np.asarray(settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float)))
 
     def _placed(self, trips: Integers, phases: Floats) -> tuple[NDArray[np.intp], Floats, NDArray[np.bool_]]:
         """Return the piece at each place in time, the place xi in it, and whether anything was kept of that round trip."""

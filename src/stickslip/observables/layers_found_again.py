@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from stickslip.bodies import OfLayers
 from stickslip.engine_input.forcing import machine_at_first
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.given_load import far_excess_at, of_ground, pulled, value_at
+from stickslip.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at
 from stickslip.observables.layers import LayerWaves
 from stickslip.trajectory.history import History, Positions
 
@@ -20,8 +20,10 @@ LEAST_PHASES = 4
 """With fewer phases than this, the last round trips of a run are left out instead."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """Multiples of this share of a round trip fill it evenly."""
-EDGE = 1e-3
-"""Places nearer to an end of a step than this (1) are not compared: loads may jump there."""
+EDGE = 1e-11
+"""Places nearer to an end of a step than this share (1) of a round trip are not compared: loads may jump there."""
+BREAKS = 16
+"""Largest number of breaks of the loading beside which loads are compared."""
 
 
 def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
@@ -31,17 +33,17 @@ def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
         return 0.0, 0
     store = history.store
     xi = history.xi(piece, phase - store.phase_from[piece])
-    inside = (xi > EDGE) & (xi < 1.0 - EDGE)
+    near = EDGE * history.round_trip_time
+    inside = (phase - store.phase_from[piece] > near) & (store.phase_to[piece] - phase > near)
     piece, phase, xi = piece[inside], phase[inside], xi[inside]
     trip = store.trip[piece].astype(np.int64)
     waves = LayerWaves(history, body)
     rows = waves.waves(trip, phase)
     time, at = trip * history.round_trip_time + phase, Positions.inside(piece, xi)
-    middle = trip * history.round_trip_time + store.phase_from[piece] + 0.5 * store.speed[piece] + 0.25 * store.bend[piece]
-    found = _load(history, body, (waves.starts, rows), at, (time, middle))
+    found = _load(history, body, (waves.starts, rows), at, (time, time))
     differs = np.abs(found - history.excess(at))
     if waves.machine is not None:
-        differs = np.maximum(differs, np.abs(_missed_by_machine(history, waves, rows[:, waves.last[0]], (trip, phase, middle))))
+        differs = np.maximum(differs, np.abs(_missed_by_machine(history, waves, rows[:, waves.last[0]], (trip, phase))))
     return float(differs.max(initial=0.0)), len(np.unique(piece))
 
 
@@ -56,7 +58,12 @@ def _places(history: History, body: OfLayers) -> tuple[NDArray[np.intp], Floats]
     drawn = slips[np.linspace(0, len(slips) - 1, many // 2).astype(int)] if len(slips) else slips
     middles = store.phase_from[drawn] + 0.5 * store.speed[drawn] + 0.25 * store.bend[drawn]
     even = history.round_trip_time * np.modf(GOLDEN * np.arange(1, many - len(drawn) + 1))[0]
-    found = [(own[(store.phase_from[own] < phase) & (phase < store.phase_to[own])], phase) for phase in np.append(middles, even)]
+    breaks = breaks_at_contact(history.problem)
+    cuts = np.mod(beside(history.problem, breaks[breaks < (last + 1) * history.round_trip_time][:BREAKS]), history.round_trip_time)
+    found = [
+        (own[(store.phase_from[own] < phase) & (phase < store.phase_to[own])], phase)
+        for phase in np.concatenate([middles, even, cuts])
+    ]
     return np.concatenate([n for n, _ in found]), np.repeat([phase for _, phase in found], [len(n) for n, _ in found])
 
 
@@ -77,16 +84,16 @@ def _load(
     return np.asarray(load - damping * velocity - body.inertia * acceleration)
 
 
-def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: tuple[NDArray[np.int64], Floats, Floats]) -> Floats:
+def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: tuple[NDArray[np.int64], Floats]) -> Floats:
     """Return by how much (Pa) a machine behind layers misses its equation of motion, `last` being the wave that it sends.
 
     M dVd/dt = kp (V0 - Vd) + q + s - Z Vd + w, with q the force of the integral gain, and w = 2 Z Vd - `last` what it meets.
     """
-    problem, machine, (trip, phase, middle) = history.problem, waves.machine, when
+    problem, machine, (trip, phase) = history.problem, waves.machine, when
     assert machine is not None
     body, time = problem.body, trip * history.round_trip_time + phase
     rate, faster = machine.motion(trip, phase)[0], machine.acceleration(trip, phase)
-    force = body.driver_impedance * value_at(problem.pull_rate, time, middle) + far_excess_at(problem, time, middle)
+    force = body.driver_impedance * value_at(problem.pull_rate, time, time) + far_excess_at(problem, time, time)
     push = machine_at_first(problem)[1] + body.driver_integral_gain * (pulled(problem, time) - machine.moved(trip, phase))
     met = 2.0 * body.last_impedance * rate - last
     return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)

@@ -8,6 +8,7 @@ places inside the steps: a measurement, not a bound.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,16 +17,21 @@ from numpy.typing import NDArray
 from stickslip.bodies import OfLayers, as_waves
 from stickslip.engine_input.forcing import wave_before
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.given_load import of_ground, pulled, sent_at, share_at
+from stickslip.observables.given_load import beside, breaks_at_contact, of_ground, pulled, sent_at, share_at
+from stickslip.observables.given_on_discs import near_break
 from stickslip.observables.layers_found_again import loads_of_layers
 from stickslip.observables.proof import Places, chosen_steps
 from stickslip.observables.waves import FromMachine
 from stickslip.trajectory.history import History, Positions
 
+Expected = Callable[[History, Places, Floats], Floats]
+"""Loads minus the reference strength at places in pieces of a history, as they are found again."""
 INSIDE = 0.5 - 0.5 * np.cos(np.pi * (np.arange(12) + 0.5) / 12)
 """Places (1) in a step where loads are compared; not its ends, where a load may jump."""
 AT_ONCE = 1024
 """Number of steps that are compared together: it keeps the memory bounded."""
+BREAKS = 1000
+"""Largest number of breaks of the loading beside which loads are compared."""
 SHORT = 1e-11
 """Steps shorter than this share (1) of the round trip, or of the time since the start, are not compared: times are rounded."""
 
@@ -53,7 +59,20 @@ def load_compared(history: History) -> LoadCompared:
         differs = np.abs(expected(history, piece, xi) - history.excess(Positions.inside(piece, xi))).reshape(-1, len(INSIDE))
         known = ~np.isnan(differs).any(axis=1)
         worst, compared = max(worst, float(differs[known].max(initial=0.0))), compared + int(np.count_nonzero(known))
-    return LoadCompared(worst, compared)
+    return LoadCompared(max(worst, _beside_breaks(history, expected)), compared)
+
+
+def _beside_breaks(history: History, expected: Expected) -> float:
+    """Return the largest difference just before and just after a break of the loading: the engine may have it in the wrong place."""
+    begin, end = history.span
+    times = beside(history.problem, breaks_at_contact(history.problem)[:BREAKS]) + begin
+    times = times[(times > begin) & (times < end)]
+    if not len(times):
+        return 0.0
+    at = history.find(times, "right")
+    known = ~at.at_rest & np.isin(at.piece, comparable(history))
+    piece, xi = at.piece[known], at.xi[known]
+    return float(np.nanmax(np.abs(expected(history, piece, xi) - history.excess(Positions.inside(piece, xi))), initial=0.0))
 
 
 def comparable(history: History) -> Places:
@@ -67,11 +86,16 @@ def comparable(history: History) -> Places:
 
 
 def _times(history: History, piece: Places, xi: Floats) -> tuple[NDArray[np.int64], Floats, Floats, Floats]:
-    """Return the round trips and phases (s) of places in pieces, their times (s since the start), and that of each middle (s)."""
+    """Return the round trips and phases (s) of places in pieces, their times (s since the start), and these away from breaks.
+
+    A time at a break of the loading, to rounding, counts as on that side of it where the middle of its piece is.
+    """
     store, trip = history.store, history.store.trip[piece]
     phase = store.phase_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
     middle = store.phase_from[piece] + 0.5 * store.speed[piece] + 0.25 * store.bend[piece]
-    return trip, phase, trip * history.round_trip_time + phase, trip * history.round_trip_time + middle
+    time = trip * history.round_trip_time + phase
+    near = near_break(history, time)
+    return trip, phase, time, time + np.clip(middle - phase, -near, near)
 
 
 def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:

@@ -59,7 +59,7 @@ class ProofOfRun(Proof):
         if self.compared:
             found += f"; loads follow from slip and loading to {brief(self.load, self.unit)}, compared in {part} pieces"
         if self.compared < self.pieces:
-            found += f"; only the energy balance covers loads in the other pieces"
+            found += "; only the energy balance covers loads in the other pieces"
         if self.rest:
             found += f"; rest and strength differ by up to {brief(self.rest, self.unit)}"
         return found
