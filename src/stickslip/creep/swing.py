@@ -6,18 +6,19 @@ k = K + F'(u) > 0 the slip is u = U + x, a slow motion U(t) and a swing x about 
     K U + F(U) + c U' + m U'' + F'' a^2 / 4 = load_0 + K V t,      U' = K V / k,    U'' = -F'' U'^2 / k,
     x = -a sin(theta),   theta' = w,   w^2 = k/m - (c/2m)^2.
 
-All of it varies slowly. The *action* J = m w a^2 / 2 of the swing is then an adiabatic invariant (it fades as e^(-c t/m) where the block is
-damped), and time as a function of U is explicit. Where the block is damped so much that it does not swing, w is sqrt(k/m), and
-theta means nothing: only what is left of the deviation counts.
+All of it varies slowly. The *action* J = m w a^2 / 2 of the swing is then an adiabatic invariant (it fades as e^(-c t/m) where the
+block is damped), and time as a function of U is explicit. Where the block is damped so much that it does not swing, w is
+sqrt(k/m), and theta means nothing: only what is left of the deviation counts.
 
 The contact rests as soon as its rate falls to zero. A swing can therefore never be larger than w a = U'. Where k grows along the
 slip, U' falls and a w would grow: each cycle touches rest, and begins again from rest in equilibrium (theta = 0) with w a = U'.
-Such a cycle lasts 2 pi / w, with w in the middle of its slip, up to a share of (F'' U' / (k w))^(3/2). So
+By its expansion in d = F'' U' / (k w) such a cycle lasts 2 pi / w, with w in the middle of its slip, plus (5 pi d)^(3/2) / (3 w):
+less than the order of d would have it, because what it loses by arresting early it gains by resting. So
 
-    J = the smallest K^2 V^2 m / (2 w k^2) so far, or J_0 if that is smaller,
+    J = the smallest m U'^2 / (2 w) so far, or J_0 if that is smaller,
 
-covers both, and theta' = w in both. Whatever theta is, slip is within the swing of U: that bounds the error from above, and
-what is left out of theta is estimated from the terms of second order.
+covers both, with theta' = w, less that lag where the swing touches rest. Whatever theta is, slip is within the swing of U: that
+bounds the error from above, and what is left out of theta is estimated from the terms of second order.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ class SwingingBlock:
 
     def quickness(self, place: Place) -> float:
         """Return how much the slow motion changes while a swing turns by a radian, or fades: 0 where it is slow."""
-        return abs(place.drift) * (1.0 + self.damping * place.frequency / place.stiffness) ** 1.5
+        return abs(place.drift) * math.sqrt(1.0 + self.damping * place.frequency / place.stiffness) ** 3
 
     def action(self, place: Place, amplitude: float) -> float:
         """Return the action J (J s) of a swing."""
@@ -117,7 +118,7 @@ class SwingingBlock:
         inertia = -self.mass * place.bend * place.rate**2 / place.stiffness
         small = self.damping * place.rate + inertia + 0.25 * place.bend * amplitude**2
         excess = self.strength(place.slip) + self.spring * place.slip - self.load
-        return (excess + small) / (self.spring * self.speed)
+        return float((excess + small) / (self.spring * self.speed))
 
     def start(self, rate: float) -> Swing:
         """Return the swing at the moment when the leap begins, with this slip rate (m/s) and no slip yet."""

@@ -78,7 +78,11 @@ class SwingLeap:
         """Return the error of slip (m): at most the whole swing, and no more than the angle may be wrong by."""
         place, slip = mark.swing.place, abs(self.slip) + mark.swing.place.slip
         angle = mark.missed + abs(place.drift) + ROUNDING * (mark.swing.angle + place.frequency * mark.time)
-        return mark.swing.amplitude * min(2.0, SAFETY * angle) + SAFETY * place.most * self.block.quickness(place) ** 2 + ROUNDING * slip
+        return (
+            mark.swing.amplitude * min(2.0, SAFETY * angle)
+            + SAFETY * place.most * self.block.quickness(place) ** 2
+            + ROUNDING * slip
+        )
 
 
 def reached(block: SwingingBlock, before: Mark, slip: float) -> Mark:
@@ -150,7 +154,9 @@ class SwingLeaps:
         period = self.problem.round_trip_time
         action = min(block.action(begin.place, begin.amplitude), block.action(begin.place, begin.place.most))
         start = Mark(begin, action, block.time(begin.place, begin.amplitude), abs(begin.place.drift))
-        leap = SwingLeap(block, self._marks(block, start, (most + 3) * period), 0, direction, period, direction * float(run.state.slip_now))
+        leap = SwingLeap(
+            block, self._marks(block, start, (most + 3) * period), 0, direction, period, direction * float(run.state.slip_now)
+        )
         trips = min(math.floor(leap.marks[-1].time / period) - 3, most)
         self.at_end = trips == most
         while trips >= SHORTEST_LEAP:
@@ -199,8 +205,9 @@ class SwingLeaps:
         if not strength.in_sight(first, last) or strength.falls_below_zero(first, last):
             return None
         middle, end = reached(block, begin, 0.5 * (first + last)), reached(block, begin, last)
-        whole, *halves = (block.turns(*ends) for ends in ((first, last), (first, 0.5 * (first + last)), (0.5 * (first + last), last)))
-        if not abs(sum(halves) - whole) <= AGREE * math.sqrt(max(whole, 1.0)):
+        centre = middle.swing.place.slip
+        halves, whole = block.turns(first, centre) + block.turns(centre, last), block.turns(first, last)
+        if not abs(halves - whole) <= AGREE * math.sqrt(max(whole, 1.0)):
             return None
         if not begin.time < middle.time < end.time:
             return None
@@ -241,7 +248,7 @@ class LastPeriods:
         return np.linalg.solve(np.vander(places, increasing=True), values - values[0]), values[0]
 
     def at(self, share: Floats) -> tuple[Floats, Floats]:
-        """Return the slip (m) and the slip rate (m/s) at times in these periods: 0 where the first begins, 2 where the last ends."""
+        """Return the slip (m) and the slip rate (m/s) at times since the first of these periods began (as shares of a period)."""
         grown, first = self._series
         slip, rate, w, drift, size, angle = (np.vander(0.5 * share, len(grown), increasing=True) @ grown + first).T
         sine, cosine = np.sin(angle), np.cos(angle)
