@@ -32,7 +32,7 @@ LEAST = 1e-12
 """Shortest part of a piece (as a share of a period) that is written."""
 
 
-class Part(NamedTuple):
+class CyclePart(NamedTuple):
     """A part of a cycle: times since its onset of slip (s), and the motion in between as polynomials on [0, 1]."""
 
     begin: float
@@ -47,7 +47,7 @@ class Part(NamedTuple):
         """The slip in it, m."""
         return (self.end - self.begin) * float(self.rate @ RECIPROCALS)
 
-    def between(self, begin: float, end: float) -> Part:
+    def between(self, begin: float, end: float) -> CyclePart:
         """Return what lies between two times (s) in it."""
         low, width = (begin - self.begin) / (self.end - self.begin), (end - begin) / (self.end - self.begin)
         load, rate = np.empty(TERMS), np.empty(TERMS)
@@ -60,7 +60,7 @@ class Part(NamedTuple):
 class Cycle:
     """The last whole cycle of a run, from one onset of slip to the next."""
 
-    parts: list[Part]
+    parts: list[CyclePart]
     length: float  # P, s
     since: float  # s: time from its first onset to the moment at hand
     differs: float  # s: by how much the cycle before it was longer or shorter
@@ -78,10 +78,10 @@ class Cycle:
         if len(onsets) < LEAST_ONSETS or (store.bend[rows][onsets[-3] :] != 0.0).any() or len(set(mode[onsets[-3] :])) > 2:
             return None
         before, a, b = onsets[-3:].tolist()
-        parts: list[Part] = []
+        parts: list[CyclePart] = []
         for k in range(a, b):
             n, (low, high) = first + k, (float(one[k] - begin[a]) for one in (begin, end))
-            parts.append(Part(low, high, int(mode[k]), int(store.law_piece[n]), store.load[n].copy(), store.rate[n].copy()))
+            parts.append(CyclePart(low, high, int(mode[k]), int(store.law_piece[n]), store.load[n].copy(), store.rate[n].copy()))
             if begin[k + 1] - end[k] > LEAST * turn:
                 parts.append(_rest(parts[-1], float(begin[k + 1] - begin[a]), float(store.load[n + 1][0])))
         rates = store.rate[first + a : first + b]
@@ -100,9 +100,9 @@ class Cycle:
         shares = [(part.end - part.begin) * float(part.load @ RECIPROCALS) for part in self.parts]
         return sum(shares) / self.length
 
-    def between(self, begin: float, end: float) -> list[Part]:
+    def between(self, begin: float, end: float) -> list[CyclePart]:
         """Return the motion between two times (s since its first onset, however many cycles later); times begin at 0."""
-        found: list[Part] = []
+        found: list[CyclePart] = []
         first, last = math.floor(begin / self.length), math.floor(end / self.length)
         for cycle in range(first, last + 1):
             start = cycle * self.length
@@ -120,12 +120,12 @@ LEAST_ONSETS = 3
 """Two whole cycles are compared."""
 
 
-def _rest(last: Part, end: float, load: float) -> Part:
+def _rest(last: CyclePart, end: float, load: float) -> CyclePart:
     """Return the rest that was leaped over between the end of a part and an onset (s) at a load (N)."""
     straight = np.zeros(TERMS)
     straight[0] = last.load.sum()
     straight[1] = load - straight[0]
-    return Part(last.end, end, 0, last.law_piece, straight, np.zeros(TERMS))
+    return CyclePart(last.end, end, 0, last.law_piece, straight, np.zeros(TERMS))
 
 
 @dataclass(frozen=True)
@@ -175,10 +175,10 @@ class CycleLeap:
         length = self.trips * self.period
         load, rate = np.zeros(TERMS), np.zeros(TERMS)
         load[0], rate[0] = self.cycle.mean_load, slip / length
-        way = Part(0.0, length, int(math.copysign(1.0, slip)), int(run.count.piece), load, rate)
+        way = CyclePart(0.0, length, int(math.copysign(1.0, slip)), int(run.count.piece), load, rate)
         self._write(run, run.length, (trip, 0.0, length + float(np.spacing((trip + self.trips) * self.period))), way)
 
-    def _write(self, run: LeapingRun, n: int, when: tuple[int, float, float], part: Part) -> None:
+    def _write(self, run: LeapingRun, n: int, when: tuple[int, float, float], part: CyclePart) -> None:
         """Write piece n: its round trip and phases (s), and its motion; move the contact to its end."""
         write_piece(run, n, int(run.count.previous_to) - 1, when)
         store = run.store

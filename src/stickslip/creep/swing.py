@@ -40,7 +40,7 @@ NODES, WEIGHTS = (np.asarray(one) for one in np.polynomial.legendre.leggauss(8))
 """Places and weights of Gauss' rule on [-1, 1]."""
 
 
-class Place(NamedTuple):
+class CreepPlace(NamedTuple):
     """The slow motion at one slip U. Slip counts from the start of the leap, in the direction of slip."""
 
     slip: float  # U, m
@@ -61,7 +61,7 @@ class Place(NamedTuple):
 class Swing(NamedTuple):
     """A swing about the slow motion at one moment."""
 
-    place: Place
+    place: CreepPlace
     amplitude: float  # a, m
     angle: float  # theta, rad
 
@@ -89,31 +89,31 @@ class SwingingBlock:
     speed: float  # of the driver, m/s
     load: float  # N at that moment, minus the reference strength
 
-    def at(self, slip: float) -> Place:
+    def at(self, slip: float) -> CreepPlace:
         """Return the slow motion at a slip (m)."""
         bend, k = self.strength.curvature(slip), self.spring + self.strength.slope(slip)
         if not k > 0.0:
-            return Place(slip, k, math.nan, 0.0, False, math.inf, bend, math.nan)
+            return CreepPlace(slip, k, math.nan, 0.0, False, math.inf, bend, math.nan)
         half, free, rate = 0.5 * self.damping / self.mass, k / self.mass, self.spring * self.speed / k
         rate += self.damping * bend * rate * rate / (k * k)  # less c U'' / k
         swings = half * half < SWINGS * free
         w = math.sqrt(free - half * half if swings else free)
         fades = half if half * half <= free else free / (half + math.sqrt(half * half - free))
-        return Place(slip, k, w, fades, swings, rate, bend, bend * rate / (2.0 * self.mass * w**3))
+        return CreepPlace(slip, k, w, fades, swings, rate, bend, bend * rate / (2.0 * self.mass * w**3))
 
-    def quickness(self, place: Place) -> float:
+    def quickness(self, place: CreepPlace) -> float:
         """Return how much the slow motion changes while a swing turns by a radian, or fades: 0 where it is slow."""
         return abs(place.drift) * math.sqrt(1.0 + self.damping * place.frequency / place.stiffness) ** 3
 
-    def action(self, place: Place, amplitude: float) -> float:
+    def action(self, place: CreepPlace, amplitude: float) -> float:
         """Return the action J (J s) of a swing."""
         return 0.5 * self.mass * place.frequency * amplitude**2
 
-    def amplitude(self, place: Place, action: float) -> float:
+    def amplitude(self, place: CreepPlace, action: float) -> float:
         """Return the amplitude (m) of a swing with an action (J s)."""
         return math.sqrt(2.0 * action / (self.mass * place.frequency))
 
-    def time(self, place: Place, amplitude: float) -> float:
+    def time(self, place: CreepPlace, amplitude: float) -> float:
         """Return the time (s) at which the slow motion reaches a place."""
         inertia = -self.mass * place.bend * place.rate**2 / place.stiffness
         small = self.damping * place.rate + inertia + 0.25 * place.bend * amplitude**2
