@@ -240,8 +240,8 @@ def block_sticks_and_slips(runs: Runs) -> ClaimVerdict:
     again = [reading for reading in slips if len(events[reading]) > 1]
     years = events["K = G × 10³ m"].start.to_numpy() / YEAR
     why = (
-        "The block slips again whenever the plate has loaded it to a slip at which friction weakens faster than its spring unloads; "
-        "the sinusoidal law has such slips in each of its periods. Between two events it rests, and creeps where friction rises "
+        "The block slips again whenever the plate has pulled it to a slip at which friction weakens faster than its spring "
+        "unloads; the sinusoidal law has such slips in each of its periods. Between two events it rests, and creeps where friction rises "
         "with slip. Only with the constants as printed, where friction nowhere weakens so fast, does it creep for ever. "
         "Equation (14) is periodic; under friction that falls once and stays low the block would indeed slip only once."
     )
