@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from stickslip.creep.averaged import AveragedCreep
-from stickslip.creep.landing import Piece
+from stickslip.creep.landing import BESIDE, Piece
 from stickslip.creep.planner import CreepPlan, hermite
 from stickslip.engine.state.layout import TERMS, Counts, Floats, HistoryPiece, State, Store
 from stickslip.problem.problem import Problem
@@ -62,7 +62,7 @@ class HistoryWriter:
         The mean over a round trip is taken as the value in its middle.
         """
         first, second, last = plan.states[0], plan.states[1], plan.states[-1]
-        inside = [c for c in plan.states[:-1] if 0.0 < c.trips < plan.trips - 1.0]
+        inside = [c for c in plan.states[:-1] if 0.5 < c.trips < plan.trips - 1.0]
         return [
             (0.0, 0.0, (first.rate - 0.5 * second.bend) / self.round_trip_time),
             *(((c.trips + 0.5) * self.round_trip_time, c.slip, c.rate / self.round_trip_time) for c in inside),
@@ -70,10 +70,12 @@ class HistoryWriter:
         ]
 
     def write_landing(self, n: int, trip: int, pieces: list[Piece]) -> None:
-        """Write the round trip on which the leap lands, from piece n on."""
+        """Write the round trip on which the leap lands, or what slips of it, from piece n on."""
         for k, piece in enumerate(pieces):
             self._write(n + k, trip, piece)
-            self.store.phase_to[n + k] = pieces[k + 1].phase_from if k + 1 < len(pieces) else self.round_trip_time
+            beside = pieces[k + 1].phase_from if k + 1 < len(pieces) else self.round_trip_time
+            if abs(beside - piece.phase_to) <= BESIDE * self.round_trip_time:
+                self.store.phase_to[n + k] = beside
 
     def _write(self, n: int, trip: int, piece: Piece) -> None:
         store, state = self.store, self.state

@@ -102,6 +102,21 @@ class Pattern:
         """The length of each part, s."""
         return np.asarray(self.parts.speed + self.parts.bend)
 
+    def _row(self, ends: Floats) -> NDArray[np.intp]:
+        """Return the number of the stretch, of those that end at `ends` (s), in which each part lies."""
+        return np.searchsorted(ends, self.parts.phase_from + 0.5 * self.width)
+
+    def rows_above(self, level: float, ends: Floats) -> NDArray[np.bool_]:
+        """Return True for stretches of the round trip, which end at `ends` (s), that reach above a level (Pa) somewhere."""
+        found = np.zeros(len(ends), bool)
+        found[self._row(ends)[self.ends[1] > level]] = True
+        return found
+
+    def of_rows(self, which: NDArray[np.bool_], ends: Floats) -> Pattern:
+        """Return the parts in some of these stretches."""
+        kept, parts = which[self._row(ends)], self.parts
+        return Pattern(Parts(parts.load[kept], parts.phase_from[kept], parts.speed[kept], parts.bend[kept]))
+
     def above(self, lift: float) -> Above:
         """Return the part of the load that lies above zero when the load is lifted by `lift` (Pa)."""
         part, xi, rises = self._crossings(-lift)

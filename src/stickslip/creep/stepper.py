@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -38,6 +38,8 @@ LONGEST_SPENT = 4096
 """Largest number of round trips that are waited for because a search for a leap took as long as they do."""
 FAST = 1000.0
 """A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
+NEAR = 4.0
+"""A part of the round trip may slip where a leap lands if its load is nearer to the strength than friction changes in so many."""
 CHECKED = 1
 """Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
 STEPS = 10_000
@@ -81,7 +83,8 @@ class CreepLeaps:
 
     def are_due(self, count: Counts, last_trip: int) -> bool:
         """Return True if the engine has paused for an attempt to leap."""
-        return bool(count.pause_at <= count.trip <= last_trip and count.source == 0 and count.ready == Incoming.NONE)
+        begins = count.source == 0 or (count.sparse == 1 and count.trip_from == count.length)
+        return bool(count.pause_at <= count.trip <= last_trip and begins and count.ready == Incoming.NONE)
 
     def at_row_end(self, run: LeapingRun) -> None:
         """Leap if there is creep, and set when to try again.
@@ -195,9 +198,9 @@ class CreepLeaps:
 
     def _averaged(self, run: LeapingRun) -> AveragedCreep:
         """Return the averaged creep from the coming round trip on."""
-        rows, store = self._previous(run.count), run.store
+        rows, store = run.standing(), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
-        load[:, 0] += 2.0 * self.impedance * self.speed
+        load[:, 0] += 2.0 * self.impedance * self.speed * (int(run.count.trip) - store.trip[rows])
         pattern = Pattern(monotone_parts(load, store.phase_from[rows], store.speed[rows], store.bend[rows]))
         sign = self.direction if self.problem.friction.counts == "net" else 1.0
         strength = Strength(self.problem, float(run.state.law_slip), sign, self.speed * self.problem.round_trip_time)
@@ -220,10 +223,20 @@ class CreepLeaps:
         return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
 
     def _write(self, run: LeapingRun, averaged: AveragedCreep, plan: CreepPlan) -> None:
-        """Write the leap as pieces of the history, and set the engine to its end."""
-        pieces = landing(averaged, plan.states[-1])
+        """Write the leap as pieces of the history, and set the engine to its end.
+
+        Where the engine meets only echoes that break, only what slips is written: the rest of the pattern goes on as it is.
+        """
+        count, end, kept = run.count, plan.states[-1], np.empty(0, np.int64)
+        if count.sparse == 1:
+            rows = run.standing()
+            reach = averaged.strength.slope(end.slip) * end.rate
+            slips = averaged.pattern.rows_above(-end.lift - NEAR * abs(reach), run.store.phase_to[rows])
+            kept = rows[~slips]
+            averaged = replace(averaged, pattern=averaged.pattern.of_rows(slips, run.store.phase_to[rows]))
+        pieces = landing(averaged, end)
         run.reserve(run.length + len(plan.states) + len(pieces))
-        count, landed_on, sign = run.count, int(run.count.trip) + plan.trips, averaged.strength.sign
+        landed_on, sign = int(count.trip) + plan.trips, averaged.strength.sign
         scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
         landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
         scribe.write_landing(landed_from, landed_on, pieces)
@@ -231,6 +244,10 @@ class CreepLeaps:
         count.length = landed_from + len(pieces)
         count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
         count.trip, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
+        if count.sparse == 1:
+            new = np.arange(landed_from, int(count.length))
+            whole = np.concatenate([kept, new])
+            run.stand(whole[np.argsort(run.store.phase_from[whole], kind="stable")])
 
     def _move(self, run: LeapingRun, end: Piece, sign: float) -> None:
         """Move the contact to the end of the last piece of a landing."""

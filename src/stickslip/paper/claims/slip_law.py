@@ -241,9 +241,9 @@ def block_sticks_and_slips(runs: Runs) -> ClaimVerdict:
     years = events["K = G × 10³ m"].start.to_numpy() / YEAR
     why = (
         "The block slips again whenever the plate has pulled it to a slip at which friction weakens faster than its spring "
-        "unloads; the sinusoidal law has such slips in each of its periods. Between two events it rests, and creeps where friction rises "
-        "with slip. Only with the constants as printed, where friction nowhere weakens so fast, does it creep for ever. "
-        "Equation (14) is periodic; under friction that falls once and stays low the block would indeed slip only once."
+        "unloads; the sinusoidal law has such slips in each of its periods. Between two events it rests, and creeps where "
+        "friction rises with slip. Only with the constants as printed, where friction nowhere weakens so fast, does it creep "
+        "for ever. Under friction that falls once and stays low it would indeed slip only once."
     )
     return verdict(
         judge(not again),
