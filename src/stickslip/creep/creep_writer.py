@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from stickslip.creep.averaged import AveragedCreep
-from stickslip.creep.landing import BESIDE, Piece
+from stickslip.creep.landing import Piece
 from stickslip.creep.planner import CreepPlan, hermite
 from stickslip.engine.state.layout import TERMS, Counts, Floats, HistoryPiece, State, Store
 from stickslip.problem.problem import Problem
@@ -23,6 +23,10 @@ def seen(load: Floats, strength: float, direction: int) -> Floats:
     if direction < 0:
         turned[:, 0] -= 2.0 * strength
     return turned
+
+
+EDGE = 16.0
+"""Number of roundings of an offset within which it is that of an edge."""
 
 
 @dataclass(frozen=True)
@@ -69,13 +73,22 @@ class HistoryWriter:
             (plan.trips * self.round_trip_time, last_slip, (last.rate - 0.5 * last.bend) / self.round_trip_time),
         ]
 
-    def write_landing(self, n: int, trip: int, pieces: list[Piece]) -> None:
-        """Write the round trip on which the leap lands, or what slips of it, from piece n on."""
+    def write_landing(self, n: int, trip: int, pieces: list[Piece], edges: Floats) -> None:
+        """Write the round trip on which the leap lands, or what slips of it, from piece n on.
+
+        `edges` are the offsets (s) at which pieces of the pattern begin or end: where one of them is meant, it is taken to the
+        last digit, so that no piece of the pattern is overlapped and no gap is left.
+        """
+        store, close = self.store, EDGE * float(np.spacing(self.round_trip_time))
         for k, piece in enumerate(pieces):
             self._write(n + k, trip, piece)
-            beside = pieces[k + 1].phase_from if k + 1 < len(pieces) else self.round_trip_time
-            if abs(beside - piece.phase_to) <= BESIDE * self.round_trip_time:
-                self.store.phase_to[n + k] = beside
+            for field in (store.phase_from, store.phase_to):
+                after = min(int(np.searchsorted(edges, field[n + k])), len(edges) - 1)
+                near = edges[[max(after - 1, 0), after]]
+                nearest = near[np.abs(near - field[n + k]).argmin()]
+                field[n + k] = nearest if abs(nearest - field[n + k]) <= close else field[n + k]
+            if k > 0 and abs(store.phase_from[n + k] - store.phase_to[n + k - 1]) <= close:
+                store.phase_to[n + k - 1] = store.phase_from[n + k]
 
     def _write(self, n: int, trip: int, piece: Piece) -> None:
         store, state = self.store, self.state

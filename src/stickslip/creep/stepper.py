@@ -227,9 +227,9 @@ class CreepLeaps:
 
         Where the engine meets only echoes that break, only what slips is written: the rest of the pattern goes on as it is.
         """
-        count, end, kept = run.count, plan.states[-1], np.empty(0, np.int64)
+        count, end, rows, kept = run.count, plan.states[-1], run.standing(), np.empty(0, np.int64)
+        edges = np.union1d(run.store.phase_from[rows], run.store.phase_to[rows])
         if count.sparse == 1:
-            rows = run.standing()
             reach = averaged.strength.slope(end.slip) * end.rate
             slips = averaged.pattern.rows_above(-end.lift - NEAR * abs(reach), run.store.phase_to[rows])
             kept = rows[~slips]
@@ -239,7 +239,7 @@ class CreepLeaps:
         landed_on, sign = int(count.trip) + plan.trips, averaged.strength.sign
         scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
         landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
-        scribe.write_landing(landed_from, landed_on, pieces)
+        scribe.write_landing(landed_from, landed_on, pieces, edges)
         self._move(run, pieces[-1], sign)
         count.length = landed_from + len(pieces)
         count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
