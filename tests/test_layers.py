@@ -134,8 +134,9 @@ ROOMS = {
     "creep": (
         ("leaping_run", "pattern", "slow"),
         ("averaged", "steady"),
-        ("landing", "planner", "slow_leaps", "steady_landing"),
-        ("slow_landing",),
+        ("landing", "planner", "slow_leaps", "steady_landing", "swing"),
+        ("creep_writer", "slow_landing", "swing_leaps"),
+        ("cycles", "swing_landing"),
         ("stepper",),
     ),
     "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("run",)),

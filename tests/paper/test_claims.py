@@ -31,6 +31,7 @@ OUTCOMES = {
     18: PRINTED,
     19: QUALIFIED,
     20: PRINTED,
+    21: NOT,
 }
 
 # (claim, label, expected, relative tolerance): values of the design's table, or closed forms
@@ -73,6 +74,10 @@ NUMBERS = [
     (17, "jump 1, load", 8e7, 1e-12),
     (17, "jump 2, time", 5.213, 3e-4),
     (17, "jump 2, load", 64471887.242, 1e-9),
+    (21, "start of event 1, K = G × 10³ m", 0.0, 0),
+    (21, "start of event 2, K = G × 10³ m", 36.689, 1e-4),
+    (21, "start of event 3, K = G × 10³ m", 68.267, 1e-4),
+    (21, "events in 100 years, as printed", 1, 0),
     (18, "shocks within two round trips", 2, 0),
     (18, "first shock, slip rate after", 2.60306876818e-5, 1e-9),
     (18, "second shock, slip rate before", 1.40832223e-4, 1e-8),
@@ -86,7 +91,7 @@ NUMBERS = [
 
 
 def test_every_claim_has_a_measurement() -> None:
-    assert list(CLAIMS) == list(STATEMENTS) == list(range(1, 21))
+    assert list(CLAIMS) == list(STATEMENTS) == list(range(1, 22))
 
 
 @pytest.mark.parametrize("number", CLAIMS)

@@ -11,6 +11,8 @@ from stickslip.creep.averaged import AveragedCreep, Creep
 from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
 
+BESIDE = 1e-12
+"""Two parts of a pattern are side by side if the gap between them is within this share of the offset."""
 ROUNDS = 4
 """Number of fixed-point iterations that match the strength at a border to the slip there, and the first slip to the mean slip."""
 
@@ -63,6 +65,8 @@ class Walk:
         """Walk through all parts of the pattern."""
         parts, end = self.averaged.pattern.parts, 0.0
         for k in range(len(parts.speed)):
+            if float(parts.phase_from[k]) > (1.0 + BESIDE) * end and self.core_from is not None:
+                self._close_core(end)  # what lies between rests
             self._part(k)
             end = float(parts.phase_from[k] + parts.speed[k] + parts.bend[k])
         self._close_core(end)

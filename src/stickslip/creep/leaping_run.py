@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from stickslip.engine.state.layout import Counts, Setup, State, Store
+from stickslip.engine.state.layout import Counts, Integers, Setup, State, Store
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.status import Checkpoint
 
@@ -31,6 +31,14 @@ class LeapingRun(Protocol):
 
     def step(self, budget: int) -> int:
         """Call the engine once, for so many steps at most, and return a code of `Stop`."""
+        ...
+
+    def standing(self) -> Integers:
+        """Return the pieces whose echoes make up the coming round trip, in order of phase."""
+        ...
+
+    def stand(self, pieces: Integers) -> None:
+        """Let these pieces, in order of phase, be those whose echoes make up the coming round trip, and meet only what breaks."""
         ...
 
     def cut_at_end(self) -> None:

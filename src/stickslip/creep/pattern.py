@@ -17,6 +17,10 @@ SMALLEST = 1e-300
 """Smallest divisor: it keeps a division by zero from occurring."""
 
 
+SLIVER, MOST_SLIVERS = 1e-9, 100
+"""Widest sliver, as a share of the round trip, and how many of them may lie side by side."""
+
+
 @dataclass(frozen=True)
 class Parts:
     """Monotone parts of a load: polynomials in xi on [0, 1]; the phase is phase_from + speed xi + bend xi^2."""
@@ -101,6 +105,30 @@ class Pattern:
     def width(self) -> Floats:
         """The length of each part, s."""
         return np.asarray(self.parts.speed + self.parts.bend)
+
+    def _row(self, ends: Floats) -> NDArray[np.intp]:
+        """Return the number of the stretch, of those that end at `ends` (s), in which each part lies."""
+        return np.searchsorted(ends, self.parts.phase_from + 0.5 * self.width)
+
+    def rows_above(self, level: float, ends: Floats) -> NDArray[np.bool_]:
+        """Return True for stretches of the round trip, which end at `ends` (s), that reach above a level (Pa) somewhere.
+
+        Slivers beside them are taken, too.
+        """
+        found = np.zeros(len(ends), bool)
+        found[self._row(ends)[self.ends[1] > level]] = True
+        narrow = np.diff(ends, prepend=0.0) < SLIVER * ends[-1]
+        for _ in range(int(narrow.any()) * MOST_SLIVERS):
+            beside = narrow & ~found & (np.append(found[1:], False) | np.append(False, found[:-1]))
+            if not beside.any():
+                break
+            found |= beside
+        return found
+
+    def of_rows(self, which: NDArray[np.bool_], ends: Floats) -> Pattern:
+        """Return the parts in some of these stretches."""
+        kept, parts = which[self._row(ends)], self.parts
+        return Pattern(Parts(parts.load[kept], parts.phase_from[kept], parts.speed[kept], parts.bend[kept]))
 
     def above(self, lift: float) -> Above:
         """Return the part of the load that lies above zero when the load is lifted by `lift` (Pa)."""

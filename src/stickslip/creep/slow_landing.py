@@ -48,12 +48,12 @@ class SlowLanding:
         states = end[BOTH, leap.motion.size : -1] + leap.motion.at(end).state_begins[BOTH]
         continue_after(run, begun + leap.trips, first, first + pieces, states)
 
-    def expected(self, run: LeapingRun, trips: int, tolerance: float) -> tuple[float, float]:
-        """Return the slip (m) that is expected some exact round trips after the landing, and by how much it may differ.
+    def expected(self, run: LeapingRun, slip: float, trips: int, tolerance: float) -> tuple[float, float]:
+        """Return the slip (m) that is expected some exact round trips after the landing at a slip (m), and how far it may be off.
 
         What these round trips add may differ by as much as the slip rate may, and by the roundings of all slip so far.
         """
-        motion, slip, sign = self.leap.motion, float(run.state.slip_now), int(run.count.mode)
+        motion, sign = self.leap.motion, int(run.count.mode)
         landed, end = motion.later(self.leap.landing, 1), motion.later(self.leap.landing, 1 + trips)
         grown = self._slip(end) - self._slip(landed)
         rounded = ROUNDINGS * float(np.spacing(max(abs(slip), self._slip(end))))

@@ -33,10 +33,10 @@ class SteadyLanding:
         """Write the leap into the history of a run, and set the engine to its end."""
         write(run, self.leap, self.deviation)
 
-    def expected(self, run: LeapingRun, trips: int, tolerance: float) -> tuple[float, float]:
-        """Return the slip (m) that is expected some exact round trips after the landing, and by how much it may differ."""
+    def expected(self, run: LeapingRun, slip: float, trips: int, tolerance: float) -> tuple[float, float]:
+        """Return the slip (m) that is expected some exact round trips after a landing at `slip`, and how far it may be off."""
         turn = trips * run.problem.round_trip_time
-        slip = float(run.state.slip_now) + turn * self.deviation.rate_there
+        slip += turn * self.deviation.rate_there
         deviates = turn * abs(self.leap.factor) * self.deviation.largest_rate
         return slip, max(self.leap.error + deviates, tolerance * abs(slip))
 

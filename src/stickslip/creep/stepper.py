@@ -2,103 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from itertools import pairwise
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from stickslip.creep.averaged import AveragedCreep, Strength
+from stickslip.creep.creep_writer import HistoryWriter, seen
+from stickslip.creep.cycles import CycleLeap, leap_over_cycles
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.pattern import Pattern, monotone_parts
-from stickslip.creep.planner import CreepPlan, Planner, hermite
+from stickslip.creep.planner import CreepPlan, Planner
 from stickslip.creep.slow_landing import SlowLanding
 from stickslip.creep.slow_leaps import SlowLeaps
 from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps
 from stickslip.creep.steady_landing import SteadyLanding
 from stickslip.creep.swing_landing import SwingLanding
 from stickslip.creep.swing_leaps import SwingLeaps
-from stickslip.engine.state.layout import NEVER, TERMS, Counts, Floats, HistoryPiece, Incoming, State, Stop, Store
+from stickslip.engine.state.layout import NEVER, Counts, Floats, Incoming, Stop
 from stickslip.engine_input.limits import PATIENCE, leaps_over
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import NO_LEAPS
 
-
-def seen(load: Floats, strength: float, direction: int) -> Floats:
-    """Convert loads (n, TERMS) minus the reference strength between signed values and values in the direction of slip.
-
-    The conversion is its own inverse.
-    """
-    turned = direction * load
-    if direction < 0:
-        turned[:, 0] -= 2.0 * strength
-    return turned
-
-
-@dataclass(frozen=True)
-class HistoryWriter:
-    """Write pieces, seen in the direction of slip, into the rows of the history."""
-
-    store: Store
-    problem: Problem
-    round_trip_time: float
-    direction: int
-    sign: float  # change of the law's slip with slip in that direction
-    state: State  # where the leap begins
-    count: Counts
-
-    def write_way(self, n: int, trip: int, averaged: AveragedCreep, plan: CreepPlan, last_slip: float) -> int:
-        """Write the averaged slip from `trip` on, as cubics from state to state, up to `last_slip` (m).
-
-        Load and traction are means over a round trip, so that their work and heat are those of the round trips that the pieces
-        replace. Returns the next free piece.
-        """
-        whole, width = float(averaged.pattern.whole.sum()), float(averaged.pattern.width.sum())
-        unload = 2.0 * averaged.impedance / width
-        for (t0, x0, v0), (t1, x1, v1) in pairwise(self._nodes(plan, last_slip)):
-            grown, rate, load = hermite(t1 - t0, x1 - x0, v0, v1), np.zeros(TERMS), np.zeros(TERMS)
-            rate[:3] = grown[1:] * np.arange(1, 4) / (t1 - t0)
-            load[:4] = -unload * grown
-            load[0] += whole / width + averaged.gain * (t0 / self.round_trip_time - 0.5) - unload * x0
-            load[1] += averaged.gain * (t1 - t0) / self.round_trip_time
-            self._write(n, trip, Piece(True, t0, t1 - t0, 0.0, x0, load + averaged.impedance * rate, rate))
-            n += 1
-        self.store.phase_to[n - 1] += np.spacing((trip + plan.trips) * self.round_trip_time)  # no gap before the next round trip
-        return n
-
-    def _nodes(self, plan: CreepPlan, last_slip: float) -> list[tuple[float, float, float]]:
-        """Return the time since the start of the leap (s), slip (m) and slip rate (m/s) at the ends of the cubics.
-
-        The mean over a round trip is taken as the value in its middle.
-        """
-        first, second, last = plan.states[0], plan.states[1], plan.states[-1]
-        inside = [c for c in plan.states[:-1] if 0.0 < c.trips < plan.trips - 1.0]
-        return [
-            (0.0, 0.0, (first.rate - 0.5 * second.bend) / self.round_trip_time),
-            *(((c.trips + 0.5) * self.round_trip_time, c.slip, c.rate / self.round_trip_time) for c in inside),
-            (plan.trips * self.round_trip_time, last_slip, (last.rate - 0.5 * last.bend) / self.round_trip_time),
-        ]
-
-    def write_landing(self, n: int, trip: int, pieces: list[Piece]) -> None:
-        """Write the round trip on which the leap lands, from piece n on."""
-        for k, piece in enumerate(pieces):
-            self._write(n + k, trip, piece)
-            self.store.phase_to[n + k] = pieces[k + 1].phase_from if k + 1 < len(pieces) else self.round_trip_time
-
-    def _write(self, n: int, trip: int, piece: Piece) -> None:
-        store, state = self.store, self.state
-        slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.sign * piece.slip
-        kept = HistoryPiece(store.pieces[n])
-        kept.trip, kept.mode, kept.law_piece = trip, self.direction * piece.slips, self.count.piece
-        kept.jump, kept.cause, kept.echo_of = 0, 0, -1
-        kept.phase_from, kept.phase_to, kept.speed, kept.bend = piece.phase_from, piece.phase_to, piece.speed, piece.bend
-        kept.slip, kept.law_slip, kept.amplified, kept.gain = slip, law_slip, np.nan, np.nan
-        kept.residual = 0.0  # a leap has an error bound of its own
-        store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
-        store.rate[n] = self.direction * piece.rate
-
-
-Landing = SteadyLanding | SlowLanding | SwingLanding
+Landing = SteadyLanding | SlowLanding | SwingLanding | CycleLeap
 """A leap over sliding, ready to be written."""
 LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
 """Largest number of round trips between two attempts that found no leap: an attempt takes some milliseconds, as much as thousands
@@ -112,6 +38,8 @@ LONGEST_SPENT = 4096
 """Largest number of round trips that are waited for because a search for a leap took as long as they do."""
 FAST = 1000.0
 """A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
+NEAR = 4.0
+"""A part of the round trip may slip where a leap lands if its load is nearer to the strength than friction changes in so many."""
 CHECKED = 1
 """Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
 STEPS = 10_000
@@ -155,7 +83,8 @@ class CreepLeaps:
 
     def are_due(self, count: Counts, last_trip: int) -> bool:
         """Return True if the engine has paused for an attempt to leap."""
-        return bool(count.pause_at <= count.trip <= last_trip and count.source == 0 and count.ready == Incoming.NONE)
+        begins = count.source == 0 or (count.sparse == 1 and count.trip_from == count.length)
+        return bool(count.pause_at <= count.trip <= last_trip and begins and count.ready == Incoming.NONE)
 
     def at_row_end(self, run: LeapingRun) -> None:
         """Leap if there is creep, and set when to try again.
@@ -192,7 +121,10 @@ class CreepLeaps:
         count, room = run.count, int(run.last[0] - CHECKED - 2 - run.count.trip)
         found: Landing | None = self._steady_landing(run, room)
         at_end, cost = found is not None and found.trips == room, 0
-        if self.over == "swinging creep":
+        if found is None and self.over == "steady sliding":
+            found = leap_over_cycles(run, room, self.tolerance)
+            at_end = found is not None
+        elif self.over == "swinging creep":
             swings = SwingLeaps(self.problem, self.tolerance)
             swing = swings.leap(run, room)
             found, at_end = None if swing is None else SwingLanding(swing), swings.at_end
@@ -210,7 +142,11 @@ class CreepLeaps:
 
     def _steady_landing(self, run: LeapingRun, most: int) -> SteadyLanding | None:
         """Return a leap of at most so many round trips over steady sliding, or None."""
-        if most < SHORTEST_LEAP or self.over == "swinging creep" or (self.over == "slow sliding" and self.steady.stable_states is None):
+        if (
+            most < SHORTEST_LEAP
+            or self.over == "swinging creep"
+            or (self.over == "slow sliding" and self.steady.stable_states is None)
+        ):
             return None
         found = self.steady.leap(run, most)
         return None if found is None else SteadyLanding(*found)
@@ -222,10 +158,12 @@ class CreepLeaps:
         found.write(run)
         self.taken[count.creep_leaps :] = [(begun, found.trips, *found.errors)]
         count.creep_leaps += 1
-        count.pause_at = count.trip + CHECKED
-        expected, allowed = found.expected(run, CHECKED, self.tolerance)
-        if self._goes_on(run, int(count.trip) + CHECKED) and abs(float(run.state.slip_now) - expected) <= allowed:
-            return True
+        landed, slip = int(count.trip), float(run.state.slip_now)
+        count.pause_at = landed + CHECKED
+        if self._goes_on(run, landed + CHECKED, may_rest=isinstance(found, CycleLeap)):
+            expected, allowed = found.expected(run, slip, int(count.trip) - landed, self.tolerance)
+            if abs(float(run.state.slip_now) - expected) <= allowed:
+                return True
         run.restore(before)
         return False
 
@@ -260,9 +198,9 @@ class CreepLeaps:
 
     def _averaged(self, run: LeapingRun) -> AveragedCreep:
         """Return the averaged creep from the coming round trip on."""
-        rows, store = self._previous(run.count), run.store
+        rows, store = run.standing(), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
-        load[:, 0] += 2.0 * self.impedance * self.speed
+        load[:, 0] += 2.0 * self.impedance * self.speed * (int(run.count.trip) - store.trip[rows])
         pattern = Pattern(monotone_parts(load, store.phase_from[rows], store.speed[rows], store.bend[rows]))
         sign = self.direction if self.problem.friction.counts == "net" else 1.0
         strength = Strength(self.problem, float(run.state.law_slip), sign, self.speed * self.problem.round_trip_time)
@@ -285,17 +223,31 @@ class CreepLeaps:
         return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
 
     def _write(self, run: LeapingRun, averaged: AveragedCreep, plan: CreepPlan) -> None:
-        """Write the leap as pieces of the history, and set the engine to its end."""
-        pieces = landing(averaged, plan.states[-1])
+        """Write the leap as pieces of the history, and set the engine to its end.
+
+        Where the engine meets only echoes that break, only what slips is written: the rest of the pattern goes on as it is.
+        """
+        count, end, rows, kept = run.count, plan.states[-1], run.standing(), np.empty(0, np.int64)
+        edges = np.union1d(run.store.phase_from[rows], run.store.phase_to[rows])
+        if count.sparse == 1:
+            reach = averaged.strength.slope(end.slip) * end.rate
+            slips = averaged.pattern.rows_above(-end.lift - NEAR * abs(reach), run.store.phase_to[rows])
+            kept = rows[~slips]
+            averaged = replace(averaged, pattern=averaged.pattern.of_rows(slips, run.store.phase_to[rows]))
+        pieces = landing(averaged, end)
         run.reserve(run.length + len(plan.states) + len(pieces))
-        count, landed_on, sign = run.count, int(run.count.trip) + plan.trips, averaged.strength.sign
+        landed_on, sign = int(count.trip) + plan.trips, averaged.strength.sign
         scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
         landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
-        scribe.write_landing(landed_from, landed_on, pieces)
+        scribe.write_landing(landed_from, landed_on, pieces, edges)
         self._move(run, pieces[-1], sign)
         count.length = landed_from + len(pieces)
         count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
         count.trip, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
+        if count.sparse == 1:
+            new = np.arange(landed_from, int(count.length))
+            whole = np.concatenate([kept, new])
+            run.stand(whole[np.argsort(run.store.phase_from[whole], kind="stable")])
 
     def _move(self, run: LeapingRun, end: Piece, sign: float) -> None:
         """Move the contact to the end of the last piece of a landing."""
@@ -306,9 +258,9 @@ class CreepLeaps:
         count.mode = self.direction if end.slips else 0
         count.source = count.moved = count.trips_at_rest = count.leaving_rest = count.jump = count.cause = count.stalled = 0
 
-    def _goes_on(self, run: LeapingRun, row: int) -> bool:
-        """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
+    def _goes_on(self, run: LeapingRun, row: int, *, may_rest: bool = False) -> bool:
+        """Compute exact round trips up to a row; return False if a failure comes first, or a rest that is leaped over."""
         while (code := run.step(STEPS)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
                 run.reserve(2 * len(run.store.pieces))
-        return code == Stop.PAUSED and run.count.trip == row
+        return code == Stop.PAUSED and (run.count.trip == row or may_rest)

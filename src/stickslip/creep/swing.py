@@ -6,18 +6,19 @@ k = K + F'(u) > 0 the slip is u = U + x, a slow motion U(t) and a swing x about 
     K U + F(U) + c U' + m U'' + F'' a^2 / 4 = load_0 + K V t,      U' = K V / k,    U'' = -F'' U'^2 / k,
     x = -a sin(theta),   theta' = w,   w^2 = k/m - (c/2m)^2.
 
-All of it varies slowly. The *action* J = m w a^2 / 2 of the swing is then an adiabatic invariant (it fades as e^(-c t/m) where the block is
-damped), and time as a function of U is explicit. Where the block is damped so much that it does not swing, w is sqrt(k/m), and
-theta means nothing: only what is left of the deviation counts.
+All of it varies slowly. The *action* J = m w a^2 / 2 of the swing is then an adiabatic invariant (it fades as e^(-c t/m) where the
+block is damped), and time as a function of U is explicit. Where the block is damped so much that it does not swing, w is
+sqrt(k/m), and theta means nothing: only what is left of the deviation counts.
 
 The contact rests as soon as its rate falls to zero. A swing can therefore never be larger than w a = U'. Where k grows along the
 slip, U' falls and a w would grow: each cycle touches rest, and begins again from rest in equilibrium (theta = 0) with w a = U'.
-Such a cycle lasts 2 pi / w, with w in the middle of its slip, up to a share of (F'' U' / (k w))^(3/2). So
+By its expansion in d = F'' U' / (k w) such a cycle lasts 2 pi / w, with w in the middle of its slip, plus (5 pi d)^(3/2) / (3 w):
+less than the order of d would have it, because what it loses by arresting early it gains by resting. So
 
-    J = the smallest K^2 V^2 m / (2 w k^2) so far, or J_0 if that is smaller,
+    J = the smallest m U'^2 / (2 w) so far, or J_0 if that is smaller,
 
-covers both, and theta' = w in both. Whatever theta is, slip is within the swing of U: that bounds the error from above, and
-what is left out of theta is estimated from the terms of second order.
+covers both, with theta' = w, less that lag where the swing touches rest. Whatever theta is, slip is within the swing of U: that
+bounds the error from above, and what is left out of theta is estimated from the terms of second order.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ NODES, WEIGHTS = (np.asarray(one) for one in np.polynomial.legendre.leggauss(8))
 """Places and weights of Gauss' rule on [-1, 1]."""
 
 
-class Place(NamedTuple):
+class CreepPlace(NamedTuple):
     """The slow motion at one slip U. Slip counts from the start of the leap, in the direction of slip."""
 
     slip: float  # U, m
@@ -60,7 +61,7 @@ class Place(NamedTuple):
 class Swing(NamedTuple):
     """A swing about the slow motion at one moment."""
 
-    place: Place
+    place: CreepPlace
     amplitude: float  # a, m
     angle: float  # theta, rad
 
@@ -88,36 +89,36 @@ class SwingingBlock:
     speed: float  # of the driver, m/s
     load: float  # N at that moment, minus the reference strength
 
-    def at(self, slip: float) -> Place:
+    def at(self, slip: float) -> CreepPlace:
         """Return the slow motion at a slip (m)."""
         bend, k = self.strength.curvature(slip), self.spring + self.strength.slope(slip)
         if not k > 0.0:
-            return Place(slip, k, math.nan, 0.0, False, math.inf, bend, math.nan)
+            return CreepPlace(slip, k, math.nan, 0.0, False, math.inf, bend, math.nan)
         half, free, rate = 0.5 * self.damping / self.mass, k / self.mass, self.spring * self.speed / k
         rate += self.damping * bend * rate * rate / (k * k)  # less c U'' / k
         swings = half * half < SWINGS * free
         w = math.sqrt(free - half * half if swings else free)
         fades = half if half * half <= free else free / (half + math.sqrt(half * half - free))
-        return Place(slip, k, w, fades, swings, rate, bend, bend * rate / (2.0 * self.mass * w**3))
+        return CreepPlace(slip, k, w, fades, swings, rate, bend, bend * rate / (2.0 * self.mass * w**3))
 
-    def quickness(self, place: Place) -> float:
+    def quickness(self, place: CreepPlace) -> float:
         """Return how much the slow motion changes while a swing turns by a radian, or fades: 0 where it is slow."""
-        return abs(place.drift) * (1.0 + self.damping * place.frequency / place.stiffness) ** 1.5
+        return abs(place.drift) * math.sqrt(1.0 + self.damping * place.frequency / place.stiffness) ** 3
 
-    def action(self, place: Place, amplitude: float) -> float:
+    def action(self, place: CreepPlace, amplitude: float) -> float:
         """Return the action J (J s) of a swing."""
         return 0.5 * self.mass * place.frequency * amplitude**2
 
-    def amplitude(self, place: Place, action: float) -> float:
+    def amplitude(self, place: CreepPlace, action: float) -> float:
         """Return the amplitude (m) of a swing with an action (J s)."""
         return math.sqrt(2.0 * action / (self.mass * place.frequency))
 
-    def time(self, place: Place, amplitude: float) -> float:
+    def time(self, place: CreepPlace, amplitude: float) -> float:
         """Return the time (s) at which the slow motion reaches a place."""
         inertia = -self.mass * place.bend * place.rate**2 / place.stiffness
         small = self.damping * place.rate + inertia + 0.25 * place.bend * amplitude**2
         excess = self.strength(place.slip) + self.spring * place.slip - self.load
-        return (excess + small) / (self.spring * self.speed)
+        return float((excess + small) / (self.spring * self.speed))
 
     def start(self, rate: float) -> Swing:
         """Return the swing at the moment when the leap begins, with this slip rate (m/s) and no slip yet."""

@@ -52,9 +52,9 @@ class SwingLanding:
         run.count.mode = self.leap.direction
         continue_after(run, begun + self.trips, first, length, np.zeros(0))
 
-    def expected(self, run: LeapingRun, trips: int, tolerance: float) -> tuple[float, float]:
-        """Return the slip (m) that is expected some exact periods after the landing, and by how much it may differ."""
-        leap, slip = self.leap, float(run.state.slip_now)
+    def expected(self, run: LeapingRun, slip: float, trips: int, tolerance: float) -> tuple[float, float]:
+        """Return the slip (m) that is expected some exact periods after the landing at a slip (m), and how far it may be off."""
+        leap = self.leap
         (landed, end), _ = self._last.at(np.array([1.0, 1.0 + trips]))
         share = max(CONTINUES, tolerance) + leap.block.quickness(leap.marks[-1].swing.place)
         return slip + leap.direction * (end - landed), share * (end - landed) + ROUNDINGS * float(np.spacing(abs(slip) + end))

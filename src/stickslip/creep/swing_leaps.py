@@ -12,7 +12,7 @@ from stickslip.creep.averaged import Strength
 from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.planner import INTERPOLATION, hermite
 from stickslip.creep.steady import SHORTEST_LEAP
-from stickslip.creep.swing import SAFETY, Place, Swing, SwingingBlock
+from stickslip.creep.swing import SAFETY, CreepPlace, Swing, SwingingBlock
 from stickslip.engine.state.layout import Floats
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.slip_events import default_event_rate
@@ -40,7 +40,7 @@ MOST_STRIDES = 4000
 
 
 @dataclass(frozen=True)
-class Mark:
+class CreepMark:
     """The creep at the end of a stride."""
 
     swing: Swing
@@ -54,13 +54,13 @@ class SwingLeap:
     """A leap over swinging creep: marks along it, the last of them at or beyond its end, and the whole periods in it."""
 
     block: SwingingBlock
-    marks: list[Mark]
+    marks: list[CreepMark]
     trips: int
     direction: int
     period: float  # s
     slip: float  # m, of the contact where the leap begins, in its direction
 
-    def at(self, time: float) -> Mark:
+    def at(self, time: float) -> CreepMark:
         """Return the creep at a time (s since the leap began)."""
         index = int(np.searchsorted([mark.time for mark in self.marks], time))
         before = self.marks[min(max(index - 1, 0), len(self.marks) - 2)]
@@ -74,14 +74,18 @@ class SwingLeap:
                 break
         return reached(self.block, before, slip)
 
-    def error(self, mark: Mark) -> float:
+    def error(self, mark: CreepMark) -> float:
         """Return the error of slip (m): at most the whole swing, and no more than the angle may be wrong by."""
         place, slip = mark.swing.place, abs(self.slip) + mark.swing.place.slip
         angle = mark.missed + abs(place.drift) + ROUNDING * (mark.swing.angle + place.frequency * mark.time)
-        return mark.swing.amplitude * min(2.0, SAFETY * angle) + SAFETY * place.most * self.block.quickness(place) ** 2 + ROUNDING * slip
+        return (
+            mark.swing.amplitude * min(2.0, SAFETY * angle)
+            + SAFETY * place.most * self.block.quickness(place) ** 2
+            + ROUNDING * slip
+        )
 
 
-def reached(block: SwingingBlock, before: Mark, slip: float) -> Mark:
+def reached(block: SwingingBlock, before: CreepMark, slip: float) -> CreepMark:
     """Return the creep at a slip of the slow motion (m), from a mark a stride before it."""
     place = block.at(slip)
     if slip == before.swing.place.slip:
@@ -97,10 +101,10 @@ def reached(block: SwingingBlock, before: Mark, slip: float) -> Mark:
     if touches:
         missed += 4.0 * place.drift**2 * turned + place.fades / place.frequency * turned
     angle = before.swing.angle + turned - 0.5 * (lags[0] + lags[1])
-    return Mark(Swing(place, amplitude, angle), action, block.time(place, amplitude), missed)
+    return CreepMark(Swing(place, amplitude, angle), action, block.time(place, amplitude), missed)
 
 
-def _least_action(block: SwingingBlock, begin: Place, end: Place) -> float:
+def _least_action(block: SwingingBlock, begin: CreepPlace, end: CreepPlace) -> float:
     """Return the action (J s) of a swing that just touches rest where k is largest between two places, if that is between them."""
     if not begin.bend > 0.0 > end.bend:
         return math.inf
@@ -112,7 +116,7 @@ def _least_action(block: SwingingBlock, begin: Place, end: Place) -> float:
     return block.action(top, top.most)
 
 
-def _missed(begin: Swing, end: Place, turned: float) -> float:
+def _missed(begin: Swing, end: CreepPlace, turned: float) -> float:
     """Return an estimate of the error of the angle (rad) in a stride: what the terms of second order may add to it."""
     place, stride = begin.place, abs(end.slip - begin.place.slip)
     drift, size = max(abs(place.drift), abs(end.drift)), begin.amplitude
@@ -149,8 +153,10 @@ class SwingLeaps:
             return None
         period = self.problem.round_trip_time
         action = min(block.action(begin.place, begin.amplitude), block.action(begin.place, begin.place.most))
-        start = Mark(begin, action, block.time(begin.place, begin.amplitude), abs(begin.place.drift))
-        leap = SwingLeap(block, self._marks(block, start, (most + 3) * period), 0, direction, period, direction * float(run.state.slip_now))
+        start = CreepMark(begin, action, block.time(begin.place, begin.amplitude), abs(begin.place.drift))
+        leap = SwingLeap(
+            block, self._marks(block, start, (most + 3) * period), 0, direction, period, direction * float(run.state.slip_now)
+        )
         trips = min(math.floor(leap.marks[-1].time / period) - 3, most)
         self.at_end = trips == most
         while trips >= SHORTEST_LEAP:
@@ -171,13 +177,13 @@ class SwingLeaps:
     def _allowed(self, slip: float) -> float:
         return self.tolerance * (self.slipped + abs(slip))
 
-    def _is_slow(self, block: SwingingBlock, place: Place) -> bool:
+    def _is_slow(self, block: SwingingBlock, place: CreepPlace) -> bool:
         """Return True if the slow motion is slow, and no swing about it is a slip event."""
         if not (place.frequency > 0.0 and place.slip < block.strength.room):
             return False
         return block.quickness(place) <= SLOWLY and 2.0 * place.rate <= self.fastest
 
-    def _marks(self, block: SwingingBlock, start: Mark, end: float) -> list[Mark]:
+    def _marks(self, block: SwingingBlock, start: CreepMark, end: float) -> list[CreepMark]:
         """Return marks from the start on, up to a time (s) or as far as the creep is slow."""
         marks, stride = [start], FIRST_STRIDE * block.scale
         least = stride / FIRST_STRIDE
@@ -190,7 +196,7 @@ class SwingLeaps:
             stride *= 1.5
         return marks
 
-    def _stride(self, block: SwingingBlock, begin: Mark, stride: float) -> Mark | None:
+    def _stride(self, block: SwingingBlock, begin: CreepMark, stride: float) -> CreepMark | None:
         """Return the mark one stride of slip (m) later, or None if it cannot be trusted."""
         first, last = begin.swing.place.slip, begin.swing.place.slip + stride
         strength = block.strength
@@ -199,14 +205,15 @@ class SwingLeaps:
         if not strength.in_sight(first, last) or strength.falls_below_zero(first, last):
             return None
         middle, end = reached(block, begin, 0.5 * (first + last)), reached(block, begin, last)
-        whole, *halves = (block.turns(*ends) for ends in ((first, last), (first, 0.5 * (first + last)), (0.5 * (first + last), last)))
-        if not abs(sum(halves) - whole) <= AGREE * math.sqrt(max(whole, 1.0)):
+        centre = middle.swing.place.slip
+        halves, whole = block.turns(first, centre) + block.turns(centre, last), block.turns(first, last)
+        if not abs(halves - whole) <= AGREE * math.sqrt(max(whole, 1.0)):
             return None
         if not begin.time < middle.time < end.time:
             return None
         return end if self._is_smooth(begin, middle, end) else None
 
-    def _is_smooth(self, begin: Mark, middle: Mark, end: Mark) -> bool:
+    def _is_smooth(self, begin: CreepMark, middle: CreepMark, end: CreepMark) -> bool:
         """Return True if a cubic between two marks shows the slow motion halfway, too."""
         length, first, last = end.time - begin.time, begin.swing.place, end.swing.place
         cubic = hermite(length, last.slip - first.slip, first.rate, last.rate)
@@ -241,7 +248,7 @@ class LastPeriods:
         return np.linalg.solve(np.vander(places, increasing=True), values - values[0]), values[0]
 
     def at(self, share: Floats) -> tuple[Floats, Floats]:
-        """Return the slip (m) and the slip rate (m/s) at times in these periods: 0 where the first begins, 2 where the last ends."""
+        """Return the slip (m) and the slip rate (m/s) at times since the first of these periods began (as shares of a period)."""
         grown, first = self._series
         slip, rate, w, drift, size, angle = (np.vander(0.5 * share, len(grown), increasing=True) @ grown + first).T
         sine, cosine = np.sin(angle), np.cos(angle)

@@ -129,13 +129,16 @@ def parameters_of(problem: Problem) -> Params:
     params.can_be_negative = 1.0 if law.can_be_negative else 0.0
     lowest, _ = law.range()
     params.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
-    params.damping, params.impedance, params.reflection = body.damping, body.impedance, body.reflection
-    params.inertia = body.inertia
+    params.damping, params.impedance, params.reflection, params.inertia = (
+        body.damping,
+        body.impedance,
+        body.reflection,
+        body.inertia,
+    )
     if body.has_waves:
         params.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:
-        params.stiffness = body.stiffness
-        params.slow = EVENT_SHARE * problem.normal * law.variation / body.impedance
+        params.stiffness, params.slow = body.stiffness, EVENT_SHARE * problem.normal * law.variation / body.impedance
     if problem.varies:
         params.tone_frequency = tone_of(problem).frequency
         params.inflow_from = 0.0 if problem.ground is not None and body.is_uniform else body.inflow_delay

@@ -127,8 +127,9 @@ class ExactRun(Session):
         if heals and body.has_waves and body.is_driven_rigidly and counts[-2:].max() > counts[len(counts) // 2]:
             cures.append("a driver that lets waves out and yet holds the slab (driver_impedance and driver_integral_gain)")
         half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
+        turn = "round trip" if body.has_waves else "period"
         taken = self.taken if self.is_short_of_memory else None
-        return Crowd(self.length, history.duration, half, last, options.duration, taken).status(cures)
+        return Crowd(self.length, history.duration, half, last, options.duration, turn, taken).status(cures)
 
     def forget_reported(self) -> int:
         """Discard history that neither events to come nor the engine need. Returns the number of pieces discarded.

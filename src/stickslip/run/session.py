@@ -17,7 +17,7 @@ from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Stop, Store
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
-from stickslip.engine.waves.echo_queue import rebuild_queue
+from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
 from stickslip.engine_input.branch_table import renewed
 from stickslip.engine_input.limits import creep_tolerance, lumping_note, split_time
 from stickslip.engine_input.prepare import prepare
@@ -214,7 +214,7 @@ class Session:
 
         Pieces from the first one on that the engine itself needs are kept, too.
         """
-        piece = min(piece, int(self.count.new_from if self.count.sparse else self.count.previous_from))
+        piece = min(piece, int(self.count.previous_from), int(self.count.new_from if self.count.sparse else piece))
         if piece == 0:
             return 0
         standing, _, _ = standing_behind(at.trimmed(self.store, piece), self.problem.round_trip_time)
@@ -238,6 +238,20 @@ class Session:
         pieces, low, _ = standing_behind(at.trimmed(self.store, first), self.problem.round_trip_time)
         past, ahead = low < self.state.new_since, low >= self.state.taken_to
         rebuild_queue(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
+
+    def standing(self) -> Integers:
+        """Return the pieces whose echoes make up the coming round trip, in order of phase."""
+        if self.count.sparse == 0:
+            return np.arange(int(self.count.previous_from), int(self.count.previous_to))
+        found = np.empty(self.length, np.int64)
+        return found[: write_ahead(self.memory, found)].copy()
+
+    def stand(self, pieces: Integers) -> None:
+        """Let these pieces, in order of phase, be those whose echoes make up the coming round trip, and meet only what breaks."""
+        count = self.count
+        count.sparse, count.behind, count.ahead, count.new_from = 1, NOTHING, NOTHING, count.length
+        self.state.new_since = self.state.taken_to = 0.0
+        rebuild_queue(self.memory, pieces, 0)
 
     def cut_at_end(self) -> None:
         """Store the state where a longer run would continue, and let the end of this run cut pieces and leaps."""

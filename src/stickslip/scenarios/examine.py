@@ -111,9 +111,10 @@ def _automatic(scenario: Scenario) -> list[Fact]:
     problem, facts = scenario.problem, list[Fact]()
     tolerance = creep_tolerance(problem, None, scenario.rtol)
     if scenario.creep_rtol is None and tolerance > 0.0:
-        over, of = leaps_over(problem), "with slip" if leaps_over(problem) == "creep" else "of it"
-        does = f"leaps over {over} after {PATIENCE} round trips {of}, error of slip at most this times the slip so far"
-        facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every round trip"))
+        over = leaps_over(problem)
+        turn, of = "round trip" if problem.body.has_waves else "period", "with slip" if "creep" in over else "of it"
+        does = f"leaps over {over} after {PATIENCE} {turn}s {of}, error of slip at most this times the slip so far"
+        facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every {turn}"))
     if scenario.shortest_event is None and lumps_by_itself(problem):
         does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"
         facts.append(Fact("shortest_event", automatic_length(problem.body), "s", f"automatic: {does}; 0 lumps none"))

@@ -153,6 +153,7 @@ class Crowd:
     at_half: float  # time when it had half of the pieces, s
     before_last: float  # last time with room for more pieces than an event takes, s
     asked: float  # time that was asked for, s
+    turn: str = "round trip"  # what the body calls one: a block has periods
     taken: float | None = None  # memory that it takes, bytes, if that is why it is full
 
     def status(self, cures: Sequence[str]) -> Status:
@@ -163,7 +164,7 @@ class Crowd:
             said = f"{SHORT_OF_MEMORY}: the history takes {self.taken / 1e9:.2g} GB with {self.pieces} pieces at {when}"
         shorter = f"a duration of up to {brief(SHORTER * self.before_last, 's', 3)}"
         if later * GROWING < self.at_half:
-            said += ", and comes to more pieces in each round trip"
+            said += f", and comes to more pieces in each {self.turn}"
             helps = *cures, shorter
         else:
             needed = self.pieces + (self.asked - self.reached) * 0.5 * self.pieces / later

@@ -75,11 +75,19 @@ def creep_note(history: History) -> str:
         return ""
     leaps, (row, trips, error, delay) = len(history.creep), history.creep.T
     passed = leaps_over(history.problem)
-    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips{f' of {passed}' * (passed != 'creep')}"
+    turns = "round trips" if history.problem.body.has_waves else "periods"
+    cycles = passed == "steady sliding" and _touches_rest(history)
+    of = " of cycles that touch rest" if cycles else f" of {passed}" * (passed != "creep")
+    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} {turns}{of}"
     unit = history.problem.unit_of("slip")
     note = f"{over}, error at most {error.max():.1e} {unit} of slip, {delay.max():.3g} s of time"
     ends = (row[-1] + trips[-1] + NEAR_THE_END) * history.round_trip_time >= history.duration
-    return f"{note}; {_lasts(history.problem)}" if ends and _slides_steadily(history) else note
+    return f"{note}; {_lasts(history.problem)}" if ends and not cycles and _slides_steadily(history) else note
+
+
+def _touches_rest(history: History) -> bool:
+    """Return True if a contact has been at rest since its last leap."""
+    return bool((history.store.mode[history.store.trip >= history.creep[-1, 0]] == 0).any())
 
 
 NEAR_THE_END = 8
@@ -94,7 +102,7 @@ def _slides_steadily(history: History) -> bool:
     """Return True if a history that leaps over sliding ends in steady sliding."""
     over, rate = leaps_over(history.problem), float(history.store.rate[-1].sum())
     steady = (one.rate for one in steady_slidings(history.problem).slidings)
-    return over == "steady sliding" or (over != "creep" and any(abs(rate - one) <= STEADY * abs(one) for one in steady))
+    return over == "steady sliding" or (over == "slow sliding" and any(abs(rate - one) <= STEADY * abs(one) for one in steady))
 
 
 def _lasts(problem: Problem) -> str:

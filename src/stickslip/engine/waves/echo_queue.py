@@ -31,6 +31,8 @@ NEARLY = 2e-15
 late."""
 MOMENT_OF_REST = 1e-6
 """A contact counts as sliding in spite of rests up to this share of a round trip (1): a swing of its slip rate may touch rest."""
+MANY_PIECES = 1000
+"""So many pieces (1) of creep in a round trip count as another one before the first look at leaps."""
 LEAST_PIECES = 16
 """The trees pay off if a round trip with slip has at least this many pieces (1); at most one in `LEAST_PIECES // 4` may slip."""
 
@@ -287,10 +289,14 @@ def end_trip(run: Run) -> None:
     """Close a round trip, and go to the next one that may let the contact slip; set `is_locked` if there is none."""
     if run.counts.creep_in > 0:
         first = start_of_slide(run)
-        run.counts.creep_in -= 1 if first != NOTHING else 0
+        beside_rest = is_slip_law(run) and run.counts.moved == 1
+        run.counts.creep_in -= patience_spent(run) if beside_rest else 1 if first != NOTHING else 0
         if run.counts.creep_in == 0:
-            leave_queue(run, first)
-            return
+            if not beside_rest:
+                leave_queue(run, first)
+                return
+            run.counts.pause_at = run.counts.trip + 1
+    run.counts.previous_from, run.counts.previous_to = run.counts.trip_from, run.counts.length
     add_new(run)
     whole = join(run.echoes, run.params.ramp, run.counts.behind, run.counts.ahead)
     trip = run.counts.trip + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
@@ -301,6 +307,18 @@ def end_trip(run: Run) -> None:
     run.state.new_since = run.state.taken_to = 0.0
     run.counts.moved = 0
     run.counts.trip_from = run.counts.length
+
+
+@kernel
+def is_slip_law(run: Run) -> bool:
+    """Return True if friction depends on slip alone, and the contact has no mass: slip beside rest is then creep."""
+    return run.counts.is_algebraic == 0 and run.counts.has_inertia == 0 and run.counts.states == 0
+
+
+@kernel
+def patience_spent(run: Run) -> int:
+    """Return how much of the patience before a look at leaps a round trip of creep takes: more if it has very many pieces."""
+    return min(1 + (run.counts.length - run.counts.trip_from) // MANY_PIECES, run.counts.creep_in)
 
 
 @kernel
@@ -318,11 +336,11 @@ def worth_building(run: Run) -> bool:
     """Return True if only echoes that break should be met from here on.
 
     Conditions: the round trip was at rest, or almost so if it had many pieces; the body is a slab with a rigid driver; the loading
-    is steady; the law knows rest and has no state variable; no pause for leaps over creep is due.
+    is steady; the law knows rest and has no state variable; no pause for leaps is due, but for those over creep beside rest.
     """
     if not is_rigid(run) or run.counts.states > 0:
         return False
-    if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != NEVER:
+    if run.counts.sticks == 0 or run.counts.varies == 1 or (run.counts.pause_at != NEVER and not is_slip_law(run)):
         return False
     slipping, pieces = 0, run.counts.length - run.counts.trip_from
     for n in range(run.counts.trip_from, run.counts.length):
@@ -351,3 +369,20 @@ def rebuild_queue(table: Integers, pieces: Integers, past: int) -> None:
     run.counts.ahead, run.counts.behind = run.counts.behind, NOTHING
     for k in range(past):
         add(run, pieces[k])
+
+
+@kernel
+def in_order(nodes: EchoNode, n: int, out: Integers, count: int) -> int:
+    """Write the pieces of tree n, in order of phase, behind the first `count` entries, and return how many entries there are."""
+    if n == NOTHING:
+        return count
+    count = in_order(nodes, nodes[n].left, out, count)
+    out[count] = n
+    return in_order(nodes, nodes[n].right, out, count + 1)
+
+
+@kernel
+def write_ahead(table: Integers, out: Integers) -> int:
+    """Write the pieces whose echoes are yet to be met, in order of phase, and return their number. `table` is as above."""
+    run = borrow(table)
+    return in_order(run.echoes, run.counts.ahead, out, 0)

@@ -12,7 +12,7 @@ from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
 from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.echo_queue import NOTHING, start_of_slide, worth_building
+from stickslip.engine.waves.echo_queue import NOTHING, is_slip_law, patience_spent, start_of_slide, worth_building
 
 
 @kernel
@@ -57,7 +57,7 @@ def creeps(run: Run) -> bool:
     """
     if run.counts.is_block == 1:
         return run.counts.states == 0 and is_slow(run)
-    return run.counts.is_algebraic == 0 and run.counts.has_inertia == 0 and run.counts.states == 0
+    return is_slip_law(run)
 
 
 @kernel
@@ -106,7 +106,7 @@ def close_round_trip(run: Run, last_trip: int) -> int:
         run.state.load_now = total(run.history[run.counts.length - 1].load)
     run.counts.trip += 1 + leap
     if counts:
-        run.counts.creep_in -= 1
+        run.counts.creep_in -= patience_spent(run) if is_slip_law(run) else 1
         if run.counts.creep_in == 0:
             run.counts.pause_at = run.counts.trip
     run.counts.previous_from, run.counts.previous_to = run.counts.trip_from, run.counts.length
