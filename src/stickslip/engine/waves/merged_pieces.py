@@ -43,7 +43,7 @@ KEPT_ABOVE = 0.1
 which a series of high degree would follow with coefficients that are large beside the wave."""
 SHORTER = 0.125
 """Steps that come to a fold are at least this much (1) shorter at its end than at first."""
-BRIEF, LEAST_WEIGHT = 1e-8, 1e-3
+BRIEF, LEAST_WEIGHT = 1e-8, 1e-4
 """On pieces shorter than this share (1) of a round trip, which steps up to a fold are in the end, a change of the waves weighs less,
 in proportion to its time, but at least by the other share (1): by rounding these steps do not know their waves any better."""
 LARGEST_TURN = 1.0
