@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.memory import chosen_memory
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
@@ -151,6 +152,7 @@ class PausedCatalogue:
 
 def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
     """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit with these options."""
+    chosen_memory()  # refused now, and not when the history has grown further
     options = options.check("resume", stopped.problem)
     checkpoint = stopped.checkpoint
     if checkpoint is None:
