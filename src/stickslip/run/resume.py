@@ -55,7 +55,8 @@ def resume(
         Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
         run has already reached it.
     progress, checkpoint_every, max_pieces
-        See `simulate`, or `catalogue` for a catalogue.
+        See `simulate`, or `catalogue` for a catalogue. A run that ended with "too many pieces" goes on only with a larger
+        max_pieces, or where memory was short, with more memory.
     checkpoint : str or Path, optional
         File for checkpoints and, at the end, the solution; `path` by default. A catalogue, and a folder, keep their own name.
 
