@@ -28,8 +28,12 @@ def test_what_is_no_size_is_refused(text: str, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setenv("STICKSLIP_MEMORY", text)
     with pytest.raises(ss.InputError, match=r"STICKSLIP_MEMORY: .* is not a size of memory; write it like 8 GB"):
         chosen_memory()
-    with pytest.raises(ss.InputError, match="STICKSLIP_MEMORY"):
-        ss.simulate("fig6-slab", 1.0)
+
+
+def test_a_run_that_grows_refuses_what_is_no_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("STICKSLIP_MEMORY", "much")
+    with pytest.raises(ss.InputError, match="STICKSLIP_MEMORY: 'much' is not a size"):
+        ss.simulate("fig5-slab-printed", "4 minutes")
 
 
 def test_what_is_set_counts_in_place_of_what_is_free(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ from stickslip.cli.output.contact import announce_run
 from stickslip.cli.output.files import CATALOGUES, Target, check_targets
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.memory import chosen_memory
 from stickslip.run.progress import progress_line
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
@@ -43,7 +44,11 @@ class Request:
     pictures: Pictures
 
     def check(self) -> None:
-        """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
+        """Refuse files that could not be written, options that exclude each other, and a size of memory that is none.
+
+        Raises InputError.
+        """
+        chosen_memory()
         if self.scenario is None and self.resume is None:
             raise InputError("run: nothing to run: give a SCENARIO, or --resume FILE")
         if self.has_contact and self.out is not None and self.out.exists():

@@ -14,7 +14,6 @@ from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.atomic_write import held
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.memory import chosen_memory
 from stickslip.foundation.quantities import declare
 from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem, check_problem
@@ -95,7 +94,6 @@ class RunOptions:
         checked = self.checked(who)
         check_creep_rtol(problem, checked.creep_rtol, who)
         check_shortest_event(problem, checked.shortest_event, who)
-        chosen_memory()  # refused now, and not when a history has grown
         return checked
 
     def checked(self, who: str) -> Self:

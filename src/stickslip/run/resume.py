@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.memory import chosen_memory
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
@@ -54,7 +55,8 @@ def resume(
         Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
         run has already reached it.
     progress, checkpoint_every, max_pieces
-        See `simulate`, or `catalogue` for a catalogue.
+        See `simulate`, or `catalogue` for a catalogue. A run that ended with "too many pieces" goes on only with a larger
+        max_pieces, or where memory was short, with more memory.
     checkpoint : str or Path, optional
         File for checkpoints and, at the end, the solution; `path` by default. A catalogue, and a folder, keep their own name.
 
@@ -152,6 +154,7 @@ class PausedCatalogue:
 
 def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
     """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit with these options."""
+    chosen_memory()  # refused now, and not when the history has grown further
     options = options.check("resume", stopped.problem)
     checkpoint = stopped.checkpoint
     if checkpoint is None:

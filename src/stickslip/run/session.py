@@ -5,6 +5,7 @@ A piece of history is an interval with load and slip rate as polynomials. A bloc
 
 from __future__ import annotations
 
+import math
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Self
@@ -34,6 +35,9 @@ FIRST_ROWS = 64
 """Initial number of rows of waves of a body of layers; it grows fourfold when they are not enough for two round trips."""
 SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
+FREE = 1024
+"""Number of pieces, 0.5 MB, for which nobody asks whether there is memory: most runs need no more, and take a tenth of a
+millisecond."""
 WORTH = 1.25
 """Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
 
@@ -164,15 +168,20 @@ class Session:
             return self._more_rows()
         if self.length >= max_pieces:
             return False
-        room, waves = len(self.store.pieces), self.waves.nbytes
+        room = len(self.store.pieces)
         wanted = min(4 * room, max_pieces + SPARE)
-        fits = int((granted(wanted * self.size_of_piece + waves, self.taken) - waves) / self.size_of_piece)
+        fits = self._fitting(wanted) if wanted > FREE else wanted
         if fits >= min(wanted, WORTH * room):
             with suppress(MemoryError):
                 self.reserve(min(wanted, fits))
                 return True
         self.is_short_of_memory = True
         return False
+
+    def _fitting(self, pieces: int) -> int:
+        """Return how many of so many pieces fit into the memory that the history may take."""
+        size, waves = self.size_of_piece, self.waves.nbytes
+        return min(pieces, math.floor((granted(pieces * size + waves, self.taken) - waves) / size + 0.5))
 
     @property
     def size_of_piece(self) -> float:
