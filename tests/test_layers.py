@@ -75,7 +75,7 @@ ROOMS = {
         ("solver",),
     ),
     "scenarios": (
-        ("contact", "entries", "facts", "library", "stability"),
+        ("contact", "entries", "facts", "library", "stability", "starts"),
         ("examine_layers", "schema", "text_of_files"),
         ("contact_table",),
         ("scenario",),
