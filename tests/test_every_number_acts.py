@@ -33,7 +33,9 @@ LAYERS = ss.LayeredSlab(*LISTS, STRESS, driver_impedance=0.4 * Z, drag=[1e4, 2e4
 GEARED = replace(LAYERS, driver_inertia=0.2 * Z * R, driver_integral_gain=0.3 * Z / R)
 TWO = ss.TwoSlabs([30.0], [2000.0], [1500.0], *LISTS, STRESS, driver_impedance=2e6, drag=[1e4])
 PIPES = ss.load_scenario("pipe-and-collar").problem
+PIPES = replace(PIPES, body=replace(PIPES.body, length=[203.0, 1811.0]))  # no whole numbers of cells
 STRING = ss.load_scenario("drill-string").problem
+GEAR = {"driver_impedance": "1 kN m s", "driver_inertia": "300 kg m^2", "driver_integral_gain": "500 N m/rad"}
 ROCK = ss.friction.RateAndState(0.6, 0.010, 0.014, "1 mm", normal_stress_coupling=0.2)
 NEVER = Steps([0.0, 0.5 * R], [-1.0, -1.0])
 FREED = Steps([0.0, 0.8 * R], [-1.0, 0.5])
@@ -44,6 +46,12 @@ PRESSED = Steps([0.0, 0.7 * R], [STRESS, 0.8 * STRESS])
 def loaded(body: Any, law: Any = COULOMB, **fields: Any) -> ss.Problem:
     """Return a problem that begins to slip at once."""
     return ss.Problem(body, law, **({"pull_rate": 0.05, "initial_load": 0.61 * body.normal_load} | fields))
+
+
+def geared(problem: ss.Problem) -> ss.Problem:
+    """Return a string that begins to slip at once, under a drive that is a machine."""
+    body: Any = replace(problem.body, **GEAR)  # type: ignore[arg-type] # texts with units are numbers
+    return replace(problem, body=body, initial_load=0.81 * problem.normal, far_stress=0.9 * problem.normal)
 
 
 PROBLEMS: dict[str, ss.Problem] = {
@@ -61,7 +69,9 @@ PROBLEMS: dict[str, ss.Problem] = {
     "apart": loaded(TWO, far_stress=0.7 * STRESS),
     "joined": loaded(replace(TWO, sides="joined", contact_mass=1e4, other_driver_impedance=3e6), far_stress=0.7 * STRESS),
     "string": replace(STRING, initial_load=0.81 * STRING.normal),
-    "sections": replace(PIPES, body=replace(PIPES.body, length=[203.0, 1811.0]), initial_load=0.81 * PIPES.normal),
+    "sections": replace(PIPES, initial_load=0.81 * PIPES.normal),
+    "string, machine": geared(STRING),
+    "sections, machine": geared(PIPES),
     "ground": loaded(SLAB, ground_acceleration=PiecewiseLinear([0.0, 0.5 * R, R], [0.0, -3.0, 0.0])),
     "pressed": loaded(SLAB, normal_load=PRESSED),
     "rate and state, pressed": loaded(SLAB, ROCK, initial_state=1.0, normal_load=PRESSED),
