@@ -66,7 +66,7 @@ ROOMS = {
         ("on_demand",),
         ("loop",),
     ),
-    "problem": (("ground", "run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
+    "problem": (("ground", "normal_load", "run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
     "engine_input": (("branch_table", "forcing", "limits"), ("ladder", "shaking"), ("prepare",)),
     "planar": (
         ("driving", "echo", "layout", "memory", "nodes"),
@@ -75,7 +75,7 @@ ROOMS = {
         ("solver",),
     ),
     "scenarios": (
-        ("contact", "entries", "facts", "library", "stability"),
+        ("contact", "entries", "facts", "library", "stability", "starts"),
         ("examine_layers", "schema", "text_of_files"),
         ("contact_table",),
         ("scenario",),

@@ -178,6 +178,8 @@ def test_wrong_drags_are_refused_in_one_line() -> None:
         ss.LayeredSlab(**SOFT, normal_stress=1e8, drag=[1.0])
     with refused("LayeredSlab: drag[1] must be at least 0 Pa s/m^2, got -1"):
         ss.LayeredSlab(**SOFT, normal_stress=1e8, drag=[1.0, -1.0])
+    with refused("LayeredSlab: drag_step needs drag: nothing is lumped without it"):
+        ss.LayeredSlab([THICKNESS], [DENSITY], [SPEED], NORMAL, drag_step=0.01)
     with refused("LayeredSlab: drag_step must be at most 0.5, got 0.6"):
         slab(DRAG, 0.6)
     with refused("LayeredSlab: drag needs more than 2048 cells of two halves, each of at most 3.33e-05 s: allow more (drag_step)"):

@@ -36,6 +36,8 @@ LISTS = ("thickness", "density", "wave_speed", "drag")
 DRAG_STEP = Quantity("1", "largest share of a wave that drag takes at one place", above=0)
 LARGEST_STEP = 0.5
 """Largest `drag_step` (1) that may be allowed."""
+USUAL_STEP = 0.02
+"""The `drag_step` (1) unless it is given."""
 
 
 def _driver(side: str) -> Quantity:
@@ -251,7 +253,7 @@ class LayeredSlab(Declared, OfOneSide, OfSlabs):
     contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
     travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
     drag: OptionalNumbers = declare(drag_of_layers(), None)
-    drag_step: Number = declare(DRAG_STEP, 0.02)
+    drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
     driver_inertia: Number = declare(DRIVER_INERTIA, 0.0)
     driver_integral_gain: Number = declare(DRIVER_INTEGRAL_GAIN, 0.0)
 
@@ -298,7 +300,7 @@ class TwoSlabs(Declared, OfSlabs):
     sides: str = declare(Choice("whether slip is between the sides, or they slip as one", (APART, JOINED)), APART)
     drag: OptionalNumbers = declare(drag_of_layers(), None)
     other_drag: OptionalNumbers = declare(drag_of_layers("on the other side, "), None)
-    drag_step: Number = declare(DRAG_STEP, 0.02)
+    drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
 
     def __post_init__(self) -> None:
         check_body(self)
@@ -351,3 +353,6 @@ def check_stacks(body: OfLayers, sides: Sequence[Sequence[str]], drag_step: floa
         check_lengths(type(body).__name__, body.part, list(given), list(given.values()))
     if drag_step > LARGEST_STEP:
         raise InputError(f"{type(body).__name__}: drag_step must be at most {LARGEST_STEP:g}, got {drag_step:g}")
+    if drag_step != USUAL_STEP and all(getattr(body, names[-1]) is None for names in sides):
+        drags = " or ".join(names[-1] for names in sides)
+        raise InputError(f"{type(body).__name__}: drag_step needs {drags}: nothing is lumped without it")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from stickslip.bodies.contract import check_body, check_driver
-from stickslip.bodies.layered import DRAG_STEP, OfOneSide, check_stacks
+from stickslip.bodies.layered import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
 from stickslip.bodies.turning import (
     BIT_RADIUS,
     DRIVE,
@@ -76,7 +76,7 @@ class SectionedString(Declared, OnBit, OfOneSide):
     inertia: Number = quantity("kg m^2", "moment of inertia of the bit", at_least=0, default=0.0)
     travel_time_error: Number = quantity("1", "largest relative error of a section's travel time", above=0, default=1e-3)
     drag: OptionalNumbers = declare(_from_zero("N s", "drag on each section: torque over rotation rate for each metre"), None)
-    drag_step: Number = declare(DRAG_STEP, 0.02)
+    drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
     driver_inertia: Number = declare(DRIVE_INERTIA, 0.0)
     driver_integral_gain: Number = declare(DRIVE_INTEGRAL_GAIN, 0.0)
 

@@ -121,9 +121,11 @@ def missing_for_creep(problem: Problem) -> str:
 def _missing_for_leaps(problem: Problem) -> str:
     """Return what a problem lacks for any leaps, besides a pull rate, in words; empty if it lacks nothing.
 
-    Steady sliding may be leapt over on any uniform body, unless something changes.
+    Steady sliding may be leapt over on any uniform body, unless something changes. On moving ground a driver that gives way is
+    named first.
     """
-    if not _slides_alike(problem.friction):
+    shaken = problem.ground is not None and not problem.body.is_driven_rigidly
+    if shaken or not _slides_alike(problem.friction):
         return missing_for_creep(problem)
     return _what_changes(problem) if problem.body.is_uniform else "a body of one layer"
 

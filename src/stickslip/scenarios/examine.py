@@ -43,6 +43,7 @@ from stickslip.scenarios.facts import Fact
 from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
+from stickslip.scenarios.starts import chosen_starts
 
 OF_SLIP = ("counts", "memory")
 """Options of a law that say which slip it sees; they mean nothing to a law without slip."""
@@ -61,6 +62,8 @@ class Examination:
     given: dict[str, list[Fact]]
     derived: list[Fact]
     start: str
+    chosen: list[str]
+    """What is chosen of the start where nothing is given."""
     stability: str
     """Static stability; "" where there is none to speak of."""
     steady: SteadySlidings
@@ -79,6 +82,7 @@ def examine(scenario: Scenario) -> Examination:
         given=_given(scenario),
         derived=_derived(problem),
         start=start_of(problem),
+        chosen=chosen_starts(problem),
         stability=stability_of(problem),
         steady=proven_slidings(problem),
         uniqueness=contact,

@@ -147,6 +147,8 @@ def show_examination(scenario: Scenario, found: Examination) -> None:
 def _findings(found: Examination) -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each finding but the warnings."""
     yield "start", found.start
+    for line in found.chosen:
+        yield "chosen", line
     if found.stability:
         yield "stability", found.stability
     for line in found.steady.lines():
