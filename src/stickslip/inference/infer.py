@@ -207,8 +207,8 @@ def infer(
     rtol : float
         Relative tolerance of the runs. Default 1e-8.
     checkpoint : str or Path, optional
-        File (.nc) in which the samples are kept while they are drawn. If the program is killed, the same call fits again and goes on
-        with them; its result is the same, bit for bit.
+        File (.nc) in which the samples are kept while they are drawn. If the program is killed, the same call fits again and goes
+        on with them; its result is the same, bit for bit.
 
     Returns
     -------

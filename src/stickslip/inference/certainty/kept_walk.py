@@ -52,9 +52,7 @@ class KeptWalk:
             return None
         found = netcdf_file.read(self.path, "the checkpoint of a walk")
         if found.attrs.get("walk") != FORMAT or found.attrs.get("digest") != self.digest:
-            raise InputError(
-                f"infer: checkpoint {self.path}: is of another inference or version: choose another name, or remove it"
-            )
+            raise InputError(f"infer: checkpoint {self.path}: is of another inference: choose another name, or remove it")
         steps = found["steps"].to_numpy()
         wrong = steps.shape[1:] != shape[1:] or not 0 < len(steps) <= shape[0] or not np.isfinite(steps).all()
         if wrong or found["probability"].shape != shape[1:2] or found["key"].shape != (624,):

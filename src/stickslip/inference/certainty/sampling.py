@@ -86,7 +86,9 @@ def sample(
 ) -> PosteriorWalk:
     """Draw `count` samples of the searched numbers, or go on with the walk `before` until there are so many in all.
 
-    A walk that begins is kept in the file of `keep`, or taken up from there. Numbers on a bound may leave it; numbers that the record does not determine are drawn within their limits. Ctrl-C ends the walk
+    A walk that begins is kept in the file of `keep`, or taken up from there.
+
+    Numbers on a bound may leave it; numbers that the record does not determine are drawn within their limits. Ctrl-C ends the walk
     early with the samples so far. Raises InputError if emcee is not installed, and KeyboardInterrupt if Ctrl-C comes before the
     walkers have forgotten where they began.
     """
