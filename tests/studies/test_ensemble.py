@@ -274,7 +274,7 @@ def test_an_interrupted_run_is_no_member(monkeypatch: pytest.MonkeyPatch) -> Non
         done.append(found)
         return found if len(done) < 3 else replace(found, status=replace(found.status, name="interrupted", ok=False))
 
-    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.kept_runs"), "simulate", stops)
     found = ensemble(FAST, 20 * TRIP, members=4)
     assert len(found.runs) == 1
     assert found.stopped == "interrupted: 1 of 4 members"
