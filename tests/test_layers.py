@@ -105,7 +105,7 @@ ROOMS = {
         ("resume", "simulate"),
     ),
     "studies": (
-        ("separation",),
+        ("kept_runs", "separation"),
         ("analogy", "compare", "ensemble", "find", "inference", "regularisations", "verdict"),
         ("one_run", "scheme_shocks"),
         ("scheme_measures",),

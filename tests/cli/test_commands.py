@@ -292,7 +292,7 @@ def test_ensemble_shows_events_around_the_first_that_is_lost(command):
 
 
 def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = import_module("stickslip.studies.ensemble").simulate
+    original = import_module("stickslip.studies.kept_runs").simulate
     done = []
 
     def stops(*arguments, **options):
@@ -301,7 +301,7 @@ def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_p
         done.append(original(*arguments, **options))
         return done[-1]
 
-    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.kept_runs"), "simulate", stops)
     shown = command("ensemble", "cycles-block", "--out", "a.csv")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "Interrupted: 2 of 8 members." in shown.out

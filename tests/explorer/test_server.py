@@ -367,8 +367,9 @@ async def tell(line: WebSocketClientConnection, event: str) -> None:
         await line.write_message(part)
 
 
-def test_whatever_a_browser_sends_gets_one_short_line_in_the_log_and_no_traceback() -> None:
-    """Numbers beyond all floats and NaN, as what is entered, in place of each property, and as the place of a click."""
+def test_whatever_a_browser_sends_gets_one_short_line_in_the_log_and_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numbers beyond all floats and NaN, as what is entered, and in place of each property."""
+    monkeypatch.setattr("bokeh.io.doc._PATCHED_CURDOCS", [])  # where Bokeh forgets a document for each change that it refuses
     log: Queue[logging.LogRecord] = Queue()
     handler = logging.handlers.QueueHandler(log)
     handler.setFormatter(serving._Lines())
@@ -409,6 +410,31 @@ def test_whatever_a_browser_sends_gets_one_short_line_in_the_log_and_no_tracebac
     lines = [log.get().msg for _ in range(log.qsize())]
     assert any("failed to validate" in line for line in lines)
     assert [line for line in lines if not line.isprintable() or len(line) > serving.LONGEST_LINE] == []
+
+
+def test_a_page_that_is_being_built_holds_up_no_other_page() -> None:
+    """A page whose building waits until another one has been answered; the limit of pages counts it from its beginning."""
+    answered, waits = threading.Event(), threading.Event()
+
+    def build(explorer: Explorer) -> Any:
+        waits.set()
+        assert answered.wait(20.0)
+        return pn.pane.HTML("a page")
+
+    async def test(served: Served) -> None:
+        await served.enter()
+        first = await served.get()
+        served.server._build = build
+        second = asyncio.ensure_future(served.get())
+        await until(waits.is_set)
+        line = await served.connect(first)  # the first page goes on
+        assert await line.read_message() is not None
+        assert (await served.get()).code == 503
+        answered.set()
+        assert (await second).code == 200
+        await until(lambda: served.open_pages == 2)
+
+    with_server(test, sessions=2)
 
 
 def test_a_fault_of_our_own_code_keeps_its_traceback_in_the_log() -> None:

@@ -234,6 +234,46 @@ def test_posterior_samples_have_the_intervals_of_the_curvature_and_more_of_them_
         few.more(96)
 
 
+@pytest.mark.slow
+def test_samples_go_on_bit_for_bit_where_a_program_that_was_killed_has_left_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It ends in the middle of the walk; the second program takes no step anew."""
+    pytest.importorskip("emcee")
+    asked: dict[str, Any] = {"free": ("friction.a", "friction.reference"), "samples": 96}
+    rows, path = record().iloc[::3], tmp_path / "walk.nc"
+    whole = inferred(rows, **asked)
+    monkeypatch.setattr("stickslip.inference.certainty.kept_walk.EVERY", 0.0)
+    monkeypatch.setattr("stickslip.inference.certainty.kept_walk.SHARE", math.inf)
+
+    def die(text: str) -> None:
+        if "sampling: step 21 " in text:
+            raise RuntimeError("killed")
+
+    with pytest.raises(RuntimeError, match="killed"):
+        inferred(rows, **asked, checkpoint=path, progress=die)
+    assert read(path)["steps"].shape[0] == 20
+    told: list[str] = []
+    found = inferred(rows, **asked, checkpoint=path, progress=told.append)
+    assert found.samples is not None
+    assert whole.samples is not None
+    assert found.samples.equals(whole.samples)
+    assert "sampling: step 1 of" not in " ".join(told)
+    assert inferred(rows, **asked, checkpoint=path).samples.equals(whole.samples)  # type: ignore[union-attr] # there are some
+    with pytest.raises(ss.InputError, match=r"walk\.nc: is of another inference: choose another name, or remove it"):
+        inferred(rows, **asked | {"samples": 112}, checkpoint=path)
+
+
+def test_a_checkpoint_without_samples_or_with_a_name_of_something_else_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ss.InputError, match="infer: checkpoint is of the samples that are drawn: ask for some with samples="):
+        inferred(checkpoint=tmp_path / "walk.nc")
+    pytest.importorskip("emcee")
+    (tmp_path / "mine.nc").write_text("mine")
+    for name, said in (("walk.csv", "the name must end in .nc"), ("mine.nc", "exists, and stickslip did not write it")):
+        with pytest.raises(ss.InputError, match=said):
+            inferred(samples=100, checkpoint=tmp_path / name)
+
+
 def test_more_samples_than_none_are_refused(found: Inference) -> None:
     with pytest.raises(ss.InputError, match="more: no samples were drawn: ask `infer` for some first, with samples="):
         found.more(100)

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.io.netcdf import save_checkpoint
+from stickslip.run.exact_run import ExactRun
+from stickslip.run.options import RunOptions
+from stickslip.studies import kept_runs
 from stickslip.studies.ensemble import Ensemble, ensemble
 from stickslip.studies.separation import disturbed, shared_events, slope
+from stickslip.trajectory.status import UNDER_WAY
+from tests.long_runs.problems import differences, killed
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 TRIP = SLAB.two_way_time
@@ -265,7 +274,7 @@ def test_an_interrupted_run_is_no_member(monkeypatch: pytest.MonkeyPatch) -> Non
         done.append(found)
         return found if len(done) < 3 else replace(found, status=replace(found.status, name="interrupted", ok=False))
 
-    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.kept_runs"), "simulate", stops)
     found = ensemble(FAST, 20 * TRIP, members=4)
     assert len(found.runs) == 1
     assert found.stopped == "interrupted: 1 of 4 members"
@@ -297,3 +306,57 @@ def test_what_makes_no_sense_is_refused_in_one_line(arguments: dict, message: st
     with pytest.raises(ss.InputError, match=r"^ensemble: [^\n]*$") as refused:
         ensemble(**({"problem": FAST, "duration": 1.0} | arguments))
     assert message in str(refused.value)
+
+
+def _same(found: Ensemble, other: Ensemble) -> None:
+    assert np.array_equal(found.pushes, other.pushes)
+    for one, two in zip((found.reference, *found.runs), (other.reference, *other.runs), strict=True):
+        assert differences(one, two) == []
+
+
+def test_an_ensemble_that_was_stopped_goes_on_with_the_runs_that_it_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stops after the first member, and in the middle of the second, as a checkpoint of a killed run leaves it."""
+    folder, whole = tmp_path / "kept", ensemble(FAST, 300 * TRIP, members=3)
+
+    def stop(text: str) -> None:
+        if text == "member 2 of 3":
+            raise KeyboardInterrupt
+
+    begun = ensemble(FAST, 300 * TRIP, members=3, checkpoint=folder, progress=stop)
+    assert len(begun.runs) == 1
+    assert sorted(path.name for path in folder.iterdir()) == ["member-1.nc", "undisturbed.nc"]
+    half = ExactRun.begin(whole.runs[1].problem, RunOptions(300 * TRIP, creep_rtol=0.0, shortest_event=0.0))
+    half.advance(50)
+    assert 0 < half.length < len(whole.runs[1].history)
+    save_checkpoint(half.solution(UNDER_WAY), folder / "member-2.nc")
+    begun_anew: list[ss.Problem] = []
+    real = kept_runs.simulate
+
+    def noted(problem: ss.Problem, *rest: Any, **more: Any) -> Any:
+        begun_anew.append(problem)
+        return real(problem, *rest, **more)
+
+    monkeypatch.setattr(kept_runs, "simulate", noted)
+    _same(ensemble(FAST, 300 * TRIP, members=3, checkpoint=folder), whole)
+    assert begun_anew == [whole.runs[2].problem]
+    _same(ensemble(FAST, 300 * TRIP, members=3, checkpoint=folder), whole)
+    assert len(begun_anew) == 1
+    for other in ({"seed": 1}, {"rtol": 1e-9}, {"size": 1e-9}, {"max_events": 7}):
+        with pytest.raises(ss.InputError, match="is a run of another ensemble: choose another folder, or remove this one"):
+            ensemble(FAST, 300 * TRIP, members=3, checkpoint=folder, **other)
+    (tmp_path / "link").symlink_to(folder)
+    with pytest.raises(ss.InputError, match="link: is no folder"):
+        ensemble(FAST, 300 * TRIP, members=3, checkpoint=tmp_path / "link")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+def test_an_ensemble_that_was_killed_goes_on(tmp_path: Path) -> None:
+    code = """
+ss.studies.ensemble("cycles-block", "10000 years", members=3, size=1e-6, checkpoint="kept")
+"""
+    ended = killed(code, tmp_path, "kept/member-2.nc", signal.SIGKILL, times=0)
+    assert ended.returncode == -signal.SIGKILL
+    assert not (tmp_path / "kept" / "member-3.nc").exists()
+    asked = ("cycles-block", "10000 years", 3, 1e-6)
+    _same(ensemble(*asked, checkpoint=tmp_path / "kept"), ensemble(*asked))

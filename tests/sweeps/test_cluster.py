@@ -276,3 +276,35 @@ def test_without_cryptography_it_says_what_to_install(monkeypatch: pytest.Monkey
     monkeypatch.setitem(sys.modules, "cryptography", None)
     with pytest.raises(ss.InputError, match=r"and cryptography: pip install 'stickslip\[cluster\]'"):
         ss.sweep("fig6-slab", VARY, workers=2)
+
+
+STOPPED = """
+import os, signal, sys, threading, time
+import distributed
+from stickslip.cli.main import main
+
+def begin(cluster, *given, begin=distributed.LocalCluster.__init__, **named):
+    def stop():
+        time.sleep(float(sys.argv[1]))
+        os.killpg(0, signal.SIGINT)
+    threading.Thread(target=stop, daemon=True).start()
+    begin(cluster, *given, **named)
+
+if __name__ == "__main__":  # and not in the workers
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    distributed.LocalCluster.__init__ = begin
+    main(["sweep", "fig6-slab", "--vary", "alpha=0.1..1:20000", "--workers", "2"])
+"""
+"""A sweep whose processes, all of them, get Ctrl-C so many seconds after the start of the cluster has begun."""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="needs groups of processes")
+@pytest.mark.parametrize("after", [0.0, 0.5, 1.0, 2.0, 4.0])
+def test_ctrl_c_while_the_cluster_starts_is_one_line(after: float, tmp_path: Path) -> None:
+    script = tmp_path / "sweep.py"
+    script.write_text(STOPPED)
+    done = subprocess.run(
+        [sys.executable, script, str(after)], capture_output=True, text=True, start_new_session=True, timeout=120, check=False
+    )
+    assert (done.returncode, done.stderr) == (130, "stickslip: interrupted\n")

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.foundation.arguments import check_whole, for_users, shown
+from stickslip.foundation.arguments import as_path, check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.atomic_write import held
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.inference.certainty.directions import IDLE
+from stickslip.inference.certainty.kept_walk import KeptWalk
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
 from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
 from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
@@ -75,6 +78,7 @@ class Wishes:
     seed: int
     rtol: float
     normal: str
+    checkpoint: Path | None
 
     def check(self) -> None:
         """Raise InputError for options that are out of range."""
@@ -95,7 +99,16 @@ class Wishes:
             check_whole(f"infer: {name}", getattr(self, name), least, most)
         if self.samples:
             emcee()  # a fit is not thrown away because a library is missing
+        elif self.checkpoint is not None:
+            raise InputError("infer: checkpoint is of the samples that are drawn: ask for some with samples=, or leave it out")
+        KeptWalk(self.checkpoint).check()
         check_rtol(self.rtol, "infer")
+
+    def alone(self) -> AbstractContextManager[None]:
+        """Reserve the file of the samples against other processes. Raises InputError if another one writes into it."""
+        if self.checkpoint is None:
+            return nullcontext()
+        return held(self.checkpoint, f"infer: checkpoint {self.checkpoint}: another inference is writing into it")
 
 
 @for_users
@@ -126,6 +139,7 @@ def infer(
     samples: int = 0,
     seed: int = 0,
     rtol: float = RTOL,
+    checkpoint: str | Path | None = None,
 ) -> Inference:
     """Fit the numbers of a problem to a laboratory record, by full runs, and find how well the record determines them.
 
@@ -192,6 +206,9 @@ def infer(
         Seed of starts and samples.
     rtol : float
         Relative tolerance of the runs. Default 1e-8.
+    checkpoint : str or Path, optional
+        File (.nc) in which the samples are kept while they are drawn. If the program is killed, the same call fits again and goes
+        on with them; its result is the same, bit for bit.
 
     Returns
     -------
@@ -238,6 +255,7 @@ def infer(
         sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
         bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, weight=weight, windows=windows,
         starts=starts, seed=seed, rtol=rtol, normal=normal,
+        checkpoint=None if checkpoint is None else as_path("infer: checkpoint", checkpoint),
     )  # fmt: skip
     wishes.check()
     source = read_source("infer", problem)
@@ -348,7 +366,8 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
             shared = [i for i, one in enumerate(found.model.free) if one.part is None]
             profiles.extend(profile_of(found, sure, i, tell) for i in shared)
         if finished and wishes.samples:
-            walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed)
+            with wishes.alone():
+                walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed, keep=KeptWalk(wishes.checkpoint))
             finished = not walk.stopped
     except KeyboardInterrupt:
         finished = False

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stickslip.foundation.arguments import for_users
+from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
@@ -19,15 +20,13 @@ from stickslip.observables.predictability import LOST, Predictability, is_follow
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.options import RunOptions
-from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
+from stickslip.studies.kept_runs import KeptRuns
 from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope
 from stickslip.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from stickslip.scenarios.scenario import Scenario
 
 
@@ -207,6 +206,7 @@ def ensemble(
     event_rate: float | str | WithUnit | None = None,
     progress: TextProgress | bool | None = None,
     max_pieces: int | None = None,
+    checkpoint: str | Path | None = None,
 ) -> Ensemble:
     """Run a problem once undisturbed and n times with a disturbed initial load, and compare the runs.
 
@@ -234,6 +234,9 @@ def ensemble(
     max_pieces : int, optional
         Largest number of pieces of history of one run; default 200 000, and 2 000 000 for all runs together. A run that needs more
         ends early, and all runs are compared up to that time.
+    checkpoint : str or Path, optional
+        Folder in which the runs are kept, one file each. If the program is killed, the same call takes them up from there, and its
+        result is the same, bit for bit.
 
     Returns
     -------
@@ -243,7 +246,7 @@ def ensemble(
     Raises
     ------
     InputError
-        If an argument is out of range.
+        If an argument is out of range, or if the folder holds runs of another ensemble or of another version.
     KeyboardInterrupt
         If the user presses Ctrl-C before the first member is finished.
 
@@ -259,25 +262,21 @@ def ensemble(
     pushes = drawn(given, members, size, seed)
     rate = check_event_rate(event_rate, "ensemble")
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
-    options = replace(options, max_pieces=most)
+    # leaps over creep and lumped events would hide the small differences between the runs
+    options = replace(options, max_pieces=most, creep_rtol=0.0, shortest_event=0.0)
+    folder = None if checkpoint is None else as_path("ensemble: checkpoint", checkpoint)
     runs: list[Solution] = []
-    with telling(progress, "ensemble") as tell:
+    with KeptRuns.opened("ensemble", folder) as kept, telling(progress, "ensemble") as tell:
         tell("undisturbed")
-        reference = _run(given, options)
+        reference = uninterrupted(kept.run("undisturbed", given, options))
         try:
             for i, push in enumerate(pushes.tolist()):
                 tell(f"member {i + 1} of {members}")
-                runs.append(_run(disturbed(given, push), options))
+                runs.append(uninterrupted(kept.run(f"member-{i + 1}", disturbed(given, push), options)))
         except KeyboardInterrupt:
             if not runs:
                 raise
     return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, rate)
-
-
-def _run(problem: Problem, options: RunOptions) -> Solution:
-    limits: dict[str, Any] = {"max_events": options.max_events, "max_pieces": options.max_pieces}
-    # leaps over creep and lumped events would hide the small differences between the runs
-    return uninterrupted(simulate(problem, options.duration, options.rtol, creep_rtol=0.0, shortest_event=0.0, **limits))
 
 
 def _time(seconds: float) -> str:

@@ -28,6 +28,7 @@ def ensemble(
     events: Annotated[int | None, option("Stop each run after this number of slip events.")] = None,
     seed: Annotated[int, typer.Option(help=SEED)] = 0,
     rtol: Rtol = None,
+    checkpoint: Annotated[Path | None, option("Keep the runs in this folder; the same command goes on with them.")] = None,
     out: Annotated[Path | None, table_of("event")] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
@@ -47,6 +48,7 @@ def ensemble(
       stickslip ensemble mine.toml --members 20 --size 1e-6 --seed 1
 
     After Ctrl-C the command shows and saves the result of the finished members.
+    With --checkpoint a command that was killed is typed again, and goes on.
 
     Exit code: 0 done, 1 a run failed, 2 unusable input, 130 interrupted.
     """
@@ -57,7 +59,7 @@ def ensemble(
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     chosen = load_with("ensemble", scenario, changes, duration=duration, events=events, rtol=rtol)
-    study = _study(chosen, members, size, seed)
+    study = _study(chosen, members, size, seed, checkpoint)
     show_ensemble(chosen, study)
     announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))
     if len(study.runs) < study.wanted:
@@ -65,10 +67,10 @@ def ensemble(
     raise typer.Exit(0 if study.ok else 1)
 
 
-def _study(scenario: Scenario, members: int, size: float, seed: int) -> Ensemble:
+def _study(scenario: Scenario, members: int, size: float, seed: int, checkpoint: Path | None) -> Ensemble:
     from stickslip.run.progress import progress_line
     from stickslip.studies.ensemble import ensemble as study
 
     with progress_line(f"{scenario.name}:") as report:
         run = scenario.problem, scenario.duration, members, size, scenario.rtol
-        return study(*run, max_events=scenario.max_events, seed=seed, progress=report)
+        return study(*run, max_events=scenario.max_events, seed=seed, progress=report, checkpoint=checkpoint)

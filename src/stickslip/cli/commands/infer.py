@@ -60,6 +60,7 @@ def infer(
     held_out: Annotated[str | None, option('Leave the end out, to be predicted: a share as 0.3, or "100 s".')] = None,
     profiles: Annotated[bool, typer.Option("--profiles", help="Intervals from profiles of the likelihood.")] = False,
     samples: Annotated[int, typer.Option(help="Samples of the posterior distribution to draw (needs emcee).")] = 0,
+    checkpoint: Annotated[Path | None, option("Keep the samples in this file (.nc); the same command goes on with them.")] = None,
     compare: Annotated[list[str] | None, option(COMPARE)] = None,
     compare_free: Annotated[str | None, option(COMPARE_FREE)] = None,
     rtol: Annotated[float, typer.Option(help="Relative tolerance of the runs.", rich_help_panel=ACCURACY)] = 1e-8,
@@ -94,6 +95,7 @@ def infer(
       stickslip infer mine.toml data.csv --free a,b --report fitted
 
     After Ctrl-C the command shows and saves the best numbers so far.
+    With --checkpoint a command that was killed is typed again, and its samples go on.
 
     Exit code: 0 done, 1 the record determines none of the numbers,
     2 unusable input, 130 interrupted.
@@ -116,6 +118,7 @@ def infer(
     }
     options |= {"loss": loss, "starts": starts, "weight": weight, "windows": windows}
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
+    options |= {"checkpoint": checkpoint}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
     options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
     if scenario.lower().endswith(TABLES) and data[0].lower().endswith(".toml"):
@@ -126,7 +129,10 @@ def infer(
     compared = [(one := load(name, "infer"), _free_of(name, one, compare_free or free)) for name in compare or ()]
     found = _inferred(chosen, data, free, options)
     show_inference(chosen, found)
-    others = [_inferred(one, data, names, options | dict.fromkeys(("priors", "bounds", "begin_at"))) for one, names in compared]
+    others = [
+        _inferred(one, data, names, options | dict.fromkeys(("priors", "bounds", "begin_at", "checkpoint")))
+        for one, names in compared
+    ]
     if others:
         show_ranking(found, *others)
     save = found.to_netcdf if out is not None and out.suffix.lower() == ".nc" else found.to_csv

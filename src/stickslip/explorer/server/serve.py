@@ -8,19 +8,22 @@ import os
 import signal
 import socket
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Awaitable, Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from logging.handlers import QueueHandler
 from queue import Full, Queue
 from threading import Thread
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import quote
-from weakref import ref
+from weakref import WeakKeyDictionary, ref
 
 import bokeh
 import panel as pn
+from bokeh.application.handlers import Handler
+from panel.io.state import set_curdoc
 from tornado.ioloop import IOLoop, PeriodicCallback
 from typing_extensions import override
 
@@ -46,11 +49,13 @@ class Sessions:
         self.most = most
         self.contexts: Iterable[Any] = ()
         """The application contexts of the Bokeh server, which hold its sessions."""
+        self.coming = 0
+        """Number of pages that are being built and are no session yet."""
         self._seen: set[str] = set()
 
     def refusal(self) -> str:
         """Return a sentence if no further page can be opened, and otherwise an empty text."""
-        if sum(not self._is_closed(session) for session in self._all()) < self.most:
+        if self.coming + sum(not self._is_closed(session) for session in self._all()) < self.most:
             return ""
         pages = "1 page is" if self.most == 1 else f"{self.most} pages are"
         return f"{pages} open here, which is the limit (--sessions of `stickslip explore`): close one, and load this page again."
@@ -173,6 +178,29 @@ def log_to_stderr() -> None:
         logger.handlers, logger.propagate = [through], False
 
 
+class _NewPage(NamedTuple):
+    """A page that has been built, and what brings it to a browser."""
+
+    explorer: Explorer
+    delivery: DeliveryToTab
+
+
+class _BuiltBeside(Handler):  # type: ignore[misc] # bokeh has no types here
+    """Has something done with the document of a new session of Bokeh before it is shown; the event loop goes on meanwhile."""
+
+    def __init__(self, fill: Callable[[Any], Awaitable[None]]) -> None:
+        super().__init__()
+        self._fill = fill
+
+    @override
+    async def on_session_created(self, session_context: Any) -> None:
+        await session_context.with_locked_document(self._fill)
+
+    @override
+    def modify_document(self, doc: Any) -> None:
+        """Leave the document to the handler of the page."""
+
+
 class ExplorerServer:
     """A server that is bound to its port, and answers once its event loop runs.
 
@@ -187,10 +215,14 @@ class ExplorerServer:
         names = frozenset((*LOOPBACK, endpoint.address)) if endpoint.is_loopback else None
         self.access = Access(names, frozenset(one.lower() for one in endpoint.origins), self.sessions.refusal)
         self._desks: set[ThreadDesk] = set()
+        self._built: WeakKeyDictionary[Any, _NewPage] = WeakKeyDictionary()  # by document
+        self._builder = ThreadPoolExecutor(1, "explorer-pages")
         self._bokeh = self._bound()
         application = application_of(self._bokeh)
         self.access.guard(application)
         self.sessions.contexts = application.applications.values()
+        for context in self.sessions.contexts:
+            context.application.add(_BuiltBeside(self.prepare))
         self._looking = PeriodicCallback(self.sessions.look, LOOK_EVERY_MS)
 
     @property
@@ -231,6 +263,7 @@ class ExplorerServer:
         for desk in list(self._desks):
             desk.close()
         self._looking.stop()
+        self._builder.shutdown(wait=False, cancel_futures=True)
         self._bokeh.stop(wait=False)
 
     def _bound(self) -> Any:
@@ -268,17 +301,30 @@ class ExplorerServer:
             signal.signal(signal.SIGINT, handler)  # Panel sets its own
         return server
 
+    async def prepare(self, document: Any) -> None:
+        """Fill the document of a new tab in a thread beside the event loop, which answers other pages meanwhile.
+
+        One page is built after the other: what builds them is not made for several threads.
+        """
+        self.sessions.coming += 1
+        try:
+            self._built[document] = await self._bokeh.io_loop.run_in_executor(self._builder, self._fill, document)
+        finally:
+            self.sessions.coming -= 1
+
     def _page(self) -> None:
-        """Fill the document of a new tab with its page, whose work ends with it."""
+        """Begin the work of a new tab, whose document is filled."""
         document = pn.state.curdoc
-        delivery, loop = DeliveryToTab(document), self._bokeh.io_loop
-        loop.call_later(LONGEST_LOADING, delivery.begin)
-        deliver = partial(loop.add_callback, delivery.take)
+        explorer, delivery = self._built.pop(document) if document in self._built else self._fill(document)
+        self._bokeh.io_loop.call_later(LONGEST_LOADING, delivery.begin)
+        begin(explorer, {name: values[-1].decode("utf-8", "replace") for name, values in pn.state.session_args.items() if values})
+
+    def _fill(self, document: Any) -> _NewPage:
+        """Fill the document of a new tab with its page, whose work ends with it."""
+        delivery = DeliveryToTab(document)
+        deliver = partial(self._bokeh.io_loop.add_callback, delivery.take)
         desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
-        explorer = self._make(desk, files)
-        desk.report = explorer.told
         self._desks |= {desk, files}
-        untell = self.warming.tell(desk.say)
 
         def gone(_: Any) -> None:
             untell()
@@ -286,13 +332,17 @@ class ExplorerServer:
                 one.close()
                 self._desks.discard(one)
 
-        pn.state.on_session_destroyed(gone)
-        pn.config.exception_handler = partial(_failed, explorer)
-        page = self._build(explorer)
-        freeze = getattr(document.models, "freeze", nullcontext)
-        with freeze():  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
-            page.server_doc(document, title=TITLE, location=False)
-        begin(explorer, {name: values[-1].decode("utf-8", "replace") for name, values in pn.state.session_args.items() if values})
+        with set_curdoc(document):
+            explorer = self._make(desk, files)
+            desk.report = explorer.told
+            untell = self.warming.tell(desk.say)
+            pn.state.on_session_destroyed(gone)
+            pn.config.exception_handler = partial(_failed, explorer)
+            page = self._build(explorer)
+            freeze = getattr(document.models, "freeze", nullcontext)
+            with freeze():  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
+                page.server_doc(document, title=TITLE, location=False)
+        return _NewPage(explorer, delivery)
 
 
 def _failed(explorer: Explorer, error: Exception) -> None:

@@ -12,10 +12,12 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.inference.certainty.certainty import Certainty
+from stickslip.inference.certainty.kept_walk import NOT_KEPT, KeptWalk
 from stickslip.inference.fit.estimate import Estimate
 from stickslip.inference.fit.model import FAILED
 from stickslip.inference.fit.search import Tell
 from stickslip.inference.record.noise import cost_of
+from stickslip.trajectory.status import engine
 
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
@@ -73,9 +75,18 @@ def emcee() -> Any:
 
 
 def sample(
-    found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: int = 0, before: PosteriorWalk | None = None
+    found: Estimate,
+    sure: Certainty,
+    count: int,
+    tell: Tell,
+    *,
+    seed: int = 0,
+    before: PosteriorWalk | None = None,
+    keep: KeptWalk = NOT_KEPT,
 ) -> PosteriorWalk:
     """Draw `count` samples of the searched numbers, or go on with the walk `before` until there are so many in all.
+
+    A walk that begins is kept in the file of `keep`, or taken up from there.
 
     Numbers on a bound may leave it; numbers that the record does not determine are drawn within their limits. Ctrl-C ends the walk
     early with the samples so far. Raises InputError if emcee is not installed, and KeyboardInterrupt if Ctrl-C comes before the
@@ -98,16 +109,27 @@ def sample(
         begin, kept = before.state, [before.chain]
     left, done, state = forget + steps - sum(map(len, kept)), 0, begin
     new = np.empty((max(left, 0), walkers, dimensions))
+    if before is None:
+        factor = np.empty(0) if jumps is None else jumps.factor
+        own = found.searched, begin, factor, posterior.tempered, *found.model.limits, found.model.rtol, found.loss
+        keep = keep.of(*own, seed, count, engine())
+        if (taken := keep.read(new.shape, library.State)) is not None:
+            done, state = len(taken[0]), taken[1]
+            new[:done] = taken[0]
     try:
-        for moved in sampler.sample(begin, iterations=left) if left > 0 else ():
+        for moved in sampler.sample(state, iterations=left - done, skip_initial_state_check=done > 0) if left > done else ():
             if posterior.stopped:  # in the middle of this step
                 break
             state, new[done] = library.State(moved, copy=True), moved.coords
             if done % 10 == 0:
                 tell(f"sampling: step {done + 1} of {left}, {walkers} runs each")
             done += 1
+            if before is None:
+                keep.save(new[:done], state)
     except KeyboardInterrupt:  # between two runs
         posterior.stopped = True
+    if before is None:
+        keep.save(new[:done], state, now=True)
     if posterior.stopped and before is None and done <= forget:
         raise KeyboardInterrupt
     return PosteriorWalk(np.concatenate([*kept, new[forget:done]]), state, count, posterior.stopped)

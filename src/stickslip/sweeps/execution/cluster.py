@@ -12,11 +12,14 @@ from __future__ import annotations
 import gc
 import json
 import logging
+import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from itertools import islice
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -89,10 +92,35 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         raise InputError(f"sweep: workers must be 1 or more, got {workers}")
     many = {"n_workers": workers, "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
     private = {"host": LOOPBACK, "dashboard_address": f"{LOOPBACK}:0", "worker_dashboard_address": f"{LOOPBACK}:0"}
-    with config.set(SETTINGS):
-        local = LocalCluster(**many, **private, security=security, silence_logs=logging.ERROR)
-    with _quietly(), local, Client(local, set_as_default=False) as client:
+    with ExitStack() as running:
+        running.enter_context(_quietly())
+        with config.set(SETTINGS), _ctrl_c_waits():
+            local = running.enter_context(LocalCluster(**many, **private, security=security, silence_logs=logging.ERROR))
+            client = running.enter_context(Client(local, set_as_default=False))
         yield client
+
+
+@contextmanager
+def _ctrl_c_waits() -> Iterator[None]:
+    """Hold back Ctrl-C until the end of the `with` block, in this thread, in those that it starts, and in all their processes.
+
+    Dask can end a cluster in order that has started, but not one that is being started: each of its processes would say at length
+    where it was interrupted.
+    """
+    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # its start would let the signal through again
+    noted: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: noted.append(number))  # another thread of ours may be given it
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)  # one that has waited is noted now
+        signal.signal(signal.SIGINT, before)
+    if noted:
+        signal.raise_signal(signal.SIGINT)
 
 
 @contextmanager

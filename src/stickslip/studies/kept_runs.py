@@ -1,0 +1,75 @@
+"""Runs of a study that are kept in a folder: a study that was killed goes on where it was, bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from stickslip.foundation.atomic_write import held
+from stickslip.foundation.errors import InputError
+from stickslip.io.netcdf import read_solution
+from stickslip.problem.problem import Problem
+from stickslip.run.options import RunOptions
+from stickslip.run.resume import resume_run
+from stickslip.run.simulate import simulate
+from stickslip.solution.solution import Solution
+from stickslip.trajectory.status import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, engine
+
+STOPPED = (STATUSES[UNDER_WAY].name, STATUSES[INTERRUPTED].name)
+"""Names of the statuses of runs that go on when they are asked for again."""
+
+
+@dataclass(frozen=True)
+class KeptRuns:
+    """The runs of a study, each in a file of a folder; without a folder nothing is kept."""
+
+    who: str
+    """Name of the study, for messages."""
+    folder: Path | None
+
+    @classmethod
+    @contextmanager
+    def opened(cls, who: str, folder: Path | None) -> Iterator[KeptRuns]:
+        """Make the folder if it is missing, and lock it against other studies until the `with` block ends. Raises InputError."""
+        if folder is None:
+            yield cls(who, None)
+            return
+        if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+            raise InputError(f"{who}: checkpoint {folder}: is no folder: choose another name")
+        try:
+            folder.mkdir(exist_ok=True)
+        except OSError as error:
+            raise InputError(f"{who}: checkpoint {folder}: cannot be made: {error.strerror or error}") from None
+        with held(folder, f"{who}: checkpoint {folder}: another study is writing into it: choose another name"):
+            yield cls(who, folder)
+
+    def run(self, name: str, problem: Problem, options: RunOptions) -> Solution:
+        """Return a run from its file, from where it stopped in there, or from the start.
+
+        Raises InputError if the file holds another run, or one of another version of the engine.
+        """
+        if self.folder is None or not (path := self.folder / f"{name}.nc").exists():
+            return self._begun(None if self.folder is None else path, problem, options)
+        if path.is_symlink():
+            raise InputError(f"{path}: is a link: put the file itself there")
+        found = read_solution(path)
+        wanted = (problem, options.duration, options.rtol, options.max_events, options.creep_rtol, options.shortest_event)
+        held_there = (found.problem, found.asked_duration, found.rtol, found.max_events, found.creep_rtol, found.shortest_event)
+        if held_there != wanted:
+            raise InputError(f"{path}: is a run of another {self.who}: choose another folder, or remove this one")
+        if found.checkpoint is None or found.checkpoint.engine != engine():
+            raise InputError(f"{path}: another version of stickslip's engine made it: choose another folder, or remove this one")
+        full = found.status == STATUSES[FULL_HISTORY] and len(found.history) < options.most_pieces
+        if not full and found.status.name not in STOPPED:
+            return found
+        others: dict[str, Any] = {"checkpoint": path, "max_pieces": options.max_pieces}
+        return resume_run(found, path, RunOptions.to_continue(found, options.duration, options.max_events, **others))
+
+    def _begun(self, path: Path | None, problem: Problem, options: RunOptions) -> Solution:
+        limits: dict[str, Any] = {"max_events": options.max_events, "max_pieces": options.max_pieces}
+        limits |= {"creep_rtol": options.creep_rtol, "shortest_event": options.shortest_event}
+        found: Solution = simulate(problem, options.duration, options.rtol, checkpoint=path, **limits)
+        return found
