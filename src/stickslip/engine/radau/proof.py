@@ -46,6 +46,8 @@ MARGIN = 1.02
 """Factor (1) that covers rounding, and extremes between those places."""
 ENOUGH = 1e-4
 """A hidden residual below this share (1) of what is allowed is small enough: no better disc is sought."""
+HOPELESS = 1e100
+"""A share (1) above this is infinite: the law has a singularity on the disc."""
 PROVEN = 0.02
 """Share (1) of a bound that counts as the error of a step. The bound exceeds the largest residual at the places by Lebesgue's
 constant, and a residual changes its sign at each stage, so that its effect on slip and states nearly cancels."""
@@ -230,7 +232,7 @@ def hide_by_disc(run: Run, disc: int, centre: float) -> float:
         hidden = HIDDEN[disc] * (proof.state_measured[n] + ball.change[n] + moved)
         proof.state_hidden[n] = min(proof.state_hidden[n], larger(0.0, hidden))
         share = max(share, PROVEN * proof.state_hidden[n] * proof.state_yields[n] / proof.state_allowed[n])
-    return share
+    return share if share < HOPELESS else math.inf
 
 
 @kernel

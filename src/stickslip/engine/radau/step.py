@@ -290,6 +290,19 @@ def settle_start(run: Run) -> bool:
 
 
 @kernel
+def rounding_at_turn(run: Run) -> float:
+    """Return the load (Pa or N) below which it counts as zero where slip turns: rounding and, with mass, what the step before missed.
+
+    A mass turns where its slip rate is zero. The load is zero there, too, up to what is missed, if friction follows it closely.
+    """
+    rounding = LOAD_ROUNDING * size_of_load(run)
+    if run.counts.has_inertia == 1 and run.counts.length > 0:
+        missed = run.history[run.counts.length - 1].residual
+        rounding = max(rounding, min(missed, run.params.tolerance * run.params.normal))
+    return rounding
+
+
+@kernel
 def turn_with_load(run: Run, left: float) -> float:
     """Turn slip of a contact that never rests in the direction of the load; return how long it keeps it (in xi, at most `left`).
 
@@ -297,7 +310,7 @@ def turn_with_load(run: Run, left: float) -> float:
     the load; a contact with mass turns when its slip rate is zero. The sign is never taken from the polynomial of the slip rate:
     near a load of zero the rate may be far smaller than the error of the polynomial.
     """
-    part, direction, rounding = run.trial, 1, LOAD_ROUNDING * size_of_load(run)
+    part, direction, rounding = run.trial, 1, rounding_at_turn(run)
     restrict(run.load, run.state.xi, left, part)
     part[0] += run.params.reference
     if part[0] < 0.0:
@@ -311,7 +324,7 @@ def turn_with_load(run: Run, left: float) -> float:
         if first <= TIE:
             turn_over(part)
             first, direction = first_descent(part, run.spare), -direction
-    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.params.reference:
+    if part[0] == 0.0 and math.isinf(first) and size_of_load(run) == run.params.reference:
         return left  # The load is zero throughout.
     run.counts.mode = direction
     return min(first, 1.0) * left if run.counts.has_inertia == 0 and first > TIE else left
