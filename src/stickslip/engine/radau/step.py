@@ -129,7 +129,7 @@ def grows_faster(run: Run, resistance: float, rate: float) -> bool:
 def start_of_step(run: Run) -> float:
     """Put slip rate and state at the start of the step into the stages, and return the force (Pa or N) that the step ignores.
 
-    It is 0 except where slip leaves rest, because the net force is zero by definition there.
+    It is 0 except where slip leaves rest, because the net force is zero by definition there; see also `begin_step`.
     """
     state, force = run.state, 0.0
     for n in range(run.counts.states):
@@ -290,16 +290,16 @@ def settle_start(run: Run) -> bool:
 
 
 @kernel
-def rounding_at_turn(run: Run) -> float:
-    """Return the load (Pa or N) below which it counts as zero where slip turns: rounding and, with mass, what the step before missed.
+def missed_at_turn(run: Run) -> float:
+    """Return what the step before missed of the contact equation (Pa or N), if a contact with mass turns at its end; else 0.
 
-    A mass turns where its slip rate is zero. The load is zero there, too, up to what is missed, if friction follows it closely.
+    A mass turns where its slip rate is zero. Where friction follows the load closely the load is zero there, too, up to this miss,
+    and its sign means nothing.
     """
-    rounding = LOAD_ROUNDING * size_of_load(run)
-    if run.counts.has_inertia == 1 and run.counts.length > 0:
-        missed = run.history[run.counts.length - 1].residual
-        rounding = max(rounding, min(missed, run.params.tolerance * run.params.normal))
-    return rounding
+    if run.counts.has_inertia == 0 or run.state.rate_now != 0.0 or run.counts.length == 0:
+        return 0.0
+    missed = run.history[run.counts.length - 1].residual
+    return missed if missed < math.inf else 0.0
 
 
 @kernel
@@ -310,15 +310,16 @@ def turn_with_load(run: Run, left: float) -> float:
     the load; a contact with mass turns when its slip rate is zero. The sign is never taken from the polynomial of the slip rate:
     near a load of zero the rate may be far smaller than the error of the polynomial.
     """
-    part, direction, rounding = run.trial, 1, rounding_at_turn(run)
+    part, direction, rounding = run.trial, 1, LOAD_ROUNDING * size_of_load(run)
     restrict(run.load, run.state.xi, left, part)
     part[0] += run.params.reference
     if part[0] < 0.0:
         turn_over(part)
         direction = -1
     first = first_descent(part, run.spare) if part[0] > rounding else 0.0
-    if first <= TIE:
-        run.load[0] -= direction * part[0]  # The stages must see the load pass through zero here, too.
+    if first <= TIE or (first <= LITTLE and part[0] <= missed_at_turn(run)):
+        if first <= TIE:
+            run.load[0] -= direction * part[0]  # The stages must see the load pass through zero here, too.
         part[0] = 0.0
         first = first_descent(part, run.spare)
         if first <= TIE:
@@ -458,4 +459,6 @@ def begin_step(run: Run, trial: float) -> float:
         run.load_along_slip[0] = -run.params.reference  # The load passes through zero here: slip begins at rate zero.
     run.k.speed, run.k.bend = run.state.speed * trial, 0.0
     run.k.chi = run.counts.mode if run.params.counts_net == 1.0 else 1.0
-    return start_of_step(run)
+    force = start_of_step(run)
+    against = run.load_along_slip[0] + run.params.reference
+    return against if is_odd and -missed_at_turn(run) <= against < 0.0 else force
