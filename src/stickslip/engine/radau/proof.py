@@ -46,6 +46,11 @@ MARGIN = 1.02
 """Factor (1) that covers rounding, and extremes between those places."""
 ENOUGH = 1e-4
 """A hidden residual below this share (1) of what is allowed is small enough: no better disc is sought."""
+CRUDE = 1e-4
+"""A residual above this share (1) of the normal load is too large however slow slip is: under rate and state, friction at a slip
+rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
+LONG = 1e-11
+"""This holds for steps that last at least this share (1) of a round trip. In a shorter one the acceleration of a mass is rounding."""
 HOPELESS = 1e100
 """A share (1) above this is infinite: the law has a singularity on the disc."""
 PROVEN = 0.02
@@ -124,6 +129,8 @@ def share_of_part(run: Run, start: float, width: float) -> float:
     bound = LEBESGUE * proof.measured + proof.hidden
     proof.bound = larger(proof.bound, bound)
     share = PROVEN * max(bound * proof.rate_yields - LEBESGUE * proof.rate_rounding, 0.0) / proof.rate_allowed
+    if run.counts.mode != 0 and proof.duration > LONG * run.params.round_trip_time:
+        share = larger(share, bound / (CRUDE * run.params.normal))
     for n in range(own_states(run)):
         missed = (LEBESGUE * proof.state_measured[n] + proof.state_hidden[n]) * proof.state_yields[n]
         share = larger(share, PROVEN * max(missed - LEBESGUE * proof.state_rounding[n], 0.0) / proof.state_allowed[n])
