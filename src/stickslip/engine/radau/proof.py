@@ -51,6 +51,8 @@ CRUDE = 1e-4
 rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
 LONG = 1e-11
 """This holds for steps that last at least this share (1) of a round trip. In a shorter one the acceleration of a mass is rounding."""
+MOST_HIDDEN = 0.02
+"""A part that may hide more than this share (1) of what is allowed has no bound: its parts, or a shorter step, hide far less."""
 HOPELESS = 1e100
 """A share (1) above this is infinite: the law has a singularity on the disc."""
 PROVEN = 0.02
@@ -122,7 +124,7 @@ def share_of_part(run: Run, start: float, width: float) -> float:
     """
     put_part(run, start, width)
     contact_in_middle(run)
-    if not hide(run) <= 1.0:
+    if not hide(run) <= MOST_HIDDEN:
         return math.inf
     measure(run)
     proof = step_proof(run)
