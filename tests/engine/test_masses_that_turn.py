@@ -14,14 +14,14 @@ F = ss.friction
 
 
 def drawn(seed: int) -> tuple[ss.Problem, float]:
-    """A random block under rate and state or flash heating, pulled to and fro by half to sixteen times what loads it up; seconds."""
+    """A random block under rate and state or flash heating, pulled to and fro by 0.5 to 16 times what loads it up."""
     rng = np.random.default_rng([99, seed])
     mu, a = float(rng.uniform(0.3, 0.8)), float(rng.uniform(0.003, 0.02))
     b, distance = float(a * rng.uniform(0.5, 2)), float(10 ** rng.uniform(-5, -1))
     kind, rate = rng.choice(["one", "two", "flash"]), float(10 ** rng.uniform(-7, -3))
     law: Any
     if kind == "one":
-        law = F.RateAndState(mu, a, b, distance, rate=rate, evolution=str(rng.choice(["ageing", "slip"])))  # type: ignore[arg-type]
+        law = F.RateAndState(mu, a, b, distance, rate=rate, evolution=str(rng.choice(["ageing", "slip"])))
     elif kind == "two":
         second = float(b * rng.uniform(-0.5, 0.5))
         law = TwoStateRateAndState(mu, a=a, b=b, distance=distance, second_b=second, second_distance=5.0 * distance, rate=rate)
@@ -38,7 +38,7 @@ def drawn(seed: int) -> tuple[ss.Problem, float]:
 
 @pytest.mark.parametrize("seed", [1, 2, 4, 12, 14, 36, 42, 51])
 def test_a_mass_that_is_pulled_to_and_fro_turns_every_time(seed: int) -> None:
-    """Slip to 1e-9 of its range, to rtol 1e-11; each of these ended in an event storm. The contact misses 1e-3 of the normal load."""
+    """Slip to 1e-9 of its range, to rtol 1e-11; the contact misses 1e-3 of the normal load. All of these ended in event storms."""
     problem, duration = drawn(seed)
     run, fine = ss.simulate(problem, duration, 1e-8), ss.simulate(problem, duration, 1e-11)
     assert run.status.ok

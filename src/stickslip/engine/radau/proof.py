@@ -50,7 +50,7 @@ CRUDE = 1e-4
 """A residual above this share (1) of the normal load is too large however slow slip is: under rate and state, friction at a slip
 rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
 LONG = 1e-11
-"""This holds for steps that last at least this share (1) of a round trip. In a shorter one the acceleration of a mass is rounding."""
+"""This holds for steps that last at least this share (1) of a round trip: in a shorter one the acceleration is rounding."""
 MOST_HIDDEN = 0.02
 """A part that may hide more than this share (1) of what is allowed has no bound: its parts, or a shorter step, hide far less."""
 HOPELESS = 1e100
