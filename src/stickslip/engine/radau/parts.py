@@ -17,10 +17,10 @@ from stickslip.engine.state.workspace import Run
 
 MOST_PARTS = 400
 """Largest number of parts (1) that are looked at."""
-HOPELESS = 1e3
+MISSED = 1e3
 """A step with a share (1) above this is made shorter: no other part of it is looked at."""
 ROUNDING_OF_TIME, LEAST_WIDTH = 5e-16, 2.0**-50
-"""A part is no shorter than this share (1) of the round trip, and of the step."""
+"""A part is no shorter than this share (1) of the round trip, and of the step. What lasts less than the first is one moment."""
 ZERO_DISC = 0.62
 """Radius (1) of the disc, in lengths of a part, on which a slip rate of zero counts as reached."""
 NEAR_ZERO = 0.7
@@ -42,7 +42,8 @@ def share_of_step(run: Run) -> float:
 def share_of_parts(run: Run) -> float:
     """Return the same for a step that must be proven part by part."""
     proof = step_proof(run)
-    least = max(LEAST_WIDTH, ROUNDING_OF_TIME * run.params.round_trip_time / proof.duration)
+    instant = ROUNDING_OF_TIME * run.params.round_trip_time / proof.duration
+    least = max(LEAST_WIDTH, instant)
     start, width, worst = 0.0, 0.5, 0.0
     for _ in range(MOST_PARTS):
         share = share_of_part(run, start, width)
@@ -50,7 +51,7 @@ def share_of_parts(run: Run) -> float:
             width *= 0.5
             continue
         if share == math.inf:
-            if not reaches_zero(run):
+            if width > instant and not reaches_zero(run):
                 break
             measure(run)
             proof.bound = larger(proof.bound, proof.measured)
@@ -62,7 +63,7 @@ def share_of_parts(run: Run) -> float:
         worst = max(worst, share)
         start += width
         proof.proven_to = start
-        if worst > HOPELESS:
+        if worst > MISSED:
             break
         if start >= 1.0:
             return worst

@@ -46,6 +46,15 @@ MARGIN = 1.02
 """Factor (1) that covers rounding, and extremes between those places."""
 ENOUGH = 1e-4
 """A hidden residual below this share (1) of what is allowed is small enough: no better disc is sought."""
+CRUDE = 1e-4
+"""A residual above this share (1) of the normal load is too large however slow slip is: under rate and state, friction at a slip
+rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
+LONG = 1e-11
+"""This holds for steps that last at least this share (1) of a round trip: in a shorter one the acceleration is rounding."""
+MOST_HIDDEN = 0.02
+"""A part that may hide more than this share (1) of what is allowed has no bound: its parts, or a shorter step, hide far less."""
+HOPELESS = 1e100
+"""A share (1) above this is infinite: the law has a singularity on the disc."""
 PROVEN = 0.02
 """Share (1) of a bound that counts as the error of a step. The bound exceeds the largest residual at the places by Lebesgue's
 constant, and a residual changes its sign at each stage, so that its effect on slip and states nearly cancels."""
@@ -115,13 +124,15 @@ def share_of_part(run: Run, start: float, width: float) -> float:
     """
     put_part(run, start, width)
     contact_in_middle(run)
-    if not hide(run) <= 1.0:
+    if not hide(run) <= MOST_HIDDEN:
         return math.inf
     measure(run)
     proof = step_proof(run)
     bound = LEBESGUE * proof.measured + proof.hidden
     proof.bound = larger(proof.bound, bound)
     share = PROVEN * max(bound * proof.rate_yields - LEBESGUE * proof.rate_rounding, 0.0) / proof.rate_allowed
+    if run.counts.mode != 0 and proof.duration > LONG * run.params.round_trip_time:
+        share = larger(share, bound / (CRUDE * run.params.normal))
     for n in range(own_states(run)):
         missed = (LEBESGUE * proof.state_measured[n] + proof.state_hidden[n]) * proof.state_yields[n]
         share = larger(share, PROVEN * max(missed - LEBESGUE * proof.state_rounding[n], 0.0) / proof.state_allowed[n])
@@ -230,7 +241,7 @@ def hide_by_disc(run: Run, disc: int, centre: float) -> float:
         hidden = HIDDEN[disc] * (proof.state_measured[n] + ball.change[n] + moved)
         proof.state_hidden[n] = min(proof.state_hidden[n], larger(0.0, hidden))
         share = max(share, PROVEN * proof.state_hidden[n] * proof.state_yields[n] / proof.state_allowed[n])
-    return share
+    return share if share < HOPELESS else math.inf
 
 
 @kernel

@@ -129,7 +129,7 @@ def grows_faster(run: Run, resistance: float, rate: float) -> bool:
 def start_of_step(run: Run) -> float:
     """Put slip rate and state at the start of the step into the stages, and return the force (Pa or N) that the step ignores.
 
-    It is 0 except where slip leaves rest, because the net force is zero by definition there.
+    It is 0 except where slip leaves rest, because the net force is zero by definition there; see also `begin_step`.
     """
     state, force = run.state, 0.0
     for n in range(run.counts.states):
@@ -290,6 +290,19 @@ def settle_start(run: Run) -> bool:
 
 
 @kernel
+def missed_at_turn(run: Run) -> float:
+    """Return what the step before missed of the contact equation (Pa or N), if a contact with mass turns at its end; else 0.
+
+    A mass turns where its slip rate is zero. Where friction follows the load closely the load is zero there, too, up to this miss,
+    and its sign means nothing.
+    """
+    if run.counts.has_inertia == 0 or run.state.rate_now != 0.0 or run.counts.length == 0:
+        return 0.0
+    missed = run.history[run.counts.length - 1].residual
+    return missed if missed < math.inf else 0.0
+
+
+@kernel
 def turn_with_load(run: Run, left: float) -> float:
     """Turn slip of a contact that never rests in the direction of the load; return how long it keeps it (in xi, at most `left`).
 
@@ -304,14 +317,15 @@ def turn_with_load(run: Run, left: float) -> float:
         turn_over(part)
         direction = -1
     first = first_descent(part, run.spare) if part[0] > rounding else 0.0
-    if first <= TIE:
-        run.load[0] -= direction * part[0]  # The stages must see the load pass through zero here, too.
+    if first <= TIE or (first <= LITTLE and part[0] <= missed_at_turn(run)):
+        if first <= TIE:
+            run.load[0] -= direction * part[0]  # The stages must see the load pass through zero here, too.
         part[0] = 0.0
         first = first_descent(part, run.spare)
         if first <= TIE:
             turn_over(part)
             first, direction = first_descent(part, run.spare), -direction
-    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.params.reference:
+    if part[0] == 0.0 and math.isinf(first) and size_of_load(run) == run.params.reference:
         return left  # The load is zero throughout.
     run.counts.mode = direction
     return min(first, 1.0) * left if run.counts.has_inertia == 0 and first > TIE else left
@@ -445,4 +459,6 @@ def begin_step(run: Run, trial: float) -> float:
         run.load_along_slip[0] = -run.params.reference  # The load passes through zero here: slip begins at rate zero.
     run.k.speed, run.k.bend = run.state.speed * trial, 0.0
     run.k.chi = run.counts.mode if run.params.counts_net == 1.0 else 1.0
-    return start_of_step(run)
+    force = start_of_step(run)
+    against = run.load_along_slip[0] + run.params.reference
+    return against if is_odd and -missed_at_turn(run) <= against < 0.0 else force
