@@ -77,7 +77,7 @@ def of_ground(problem: Problem, time: Floats, inside: Floats) -> tuple[Floats, F
 
 
 def breaks_at_contact(problem: Problem) -> Floats:
-    """Return the times (s) at which breaks of the loading, changes of the driver and breaks of the ground are felt at the contact."""
+    """Return the times (s) when breaks of loading and ground, and changes of the driver, are felt at the contact."""
     body = problem.body
     given = [one for one in (problem.pull_rate, problem.far_stress) if isinstance(one, LoadingHistory)]
     starts = [one.start for history in given for one in history.segments] + [start for start, _ in problem.driver_steps]

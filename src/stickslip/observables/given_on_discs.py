@@ -52,8 +52,8 @@ class NormalLoads(NamedTuple):
         amplitude, frequency, phase = load.tone
         apart, slopes = _others(load, history, n, of)
         columns = (begins, store.speed[n], store.bend[n], start[of], (value[of] - normal) / normal, slope[of] / normal)
-        first, *others = np.array((*columns, apart / normal, slopes / normal), float)[:, :, None]
-        return cls(first, *others, tone=(amplitude / normal, frequency, phase))
+        own = (np.asarray(one, float)[:, None] for one in (*columns, apart / normal, slopes / normal))
+        return cls(*own, (amplitude / normal, frequency, phase))  # type: ignore[arg-type, call-arg] # eight columns and a tone
 
     def at(self, xi: Floats) -> list[Disc]:
         """Return p and its rate of change (1/s) at places xi in each step, with a radius for rounding."""

@@ -63,7 +63,7 @@ def load_compared(history: History) -> LoadCompared:
 
 
 def _beside_breaks(history: History, expected: Expected) -> float:
-    """Return the largest difference just before and just after a break of the loading: the engine may have it in the wrong place."""
+    """Return the largest difference just before and after a break of the loading: the engine may have it in the wrong place."""
     begin, end = history.span
     times = beside(history.problem, breaks_at_contact(history.problem)[:BREAKS]) + begin
     times = times[(times > begin) & (times < end)]

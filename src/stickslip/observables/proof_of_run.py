@@ -7,7 +7,7 @@ them: which of several slip rates the selection rule takes, and leaps, which hav
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import ClassVar
 
 from stickslip.foundation.show import brief, brief_repr
@@ -66,16 +66,21 @@ class ProofOfRun(Proof):
 
 
 def proof_of_run(history: History) -> ProofOfRun:
-    """Return what is proven and measured of a history."""
-    contact = proven(history).proof(history.problem)
-    states, load, joints = states_proven(history), load_compared(history), slip_joined(history)
-    return ProofOfRun(
+    """Return what is proven and measured of a history; of one whose beginning is forgotten, only its steps."""
+    contact, states = proven(history).proof(history.problem), states_proven(history)
+    steps = ProofOfRun(
         **{field.name: getattr(contact, field.name) for field in fields(Proof)},
         states=states.missed,
         states_unproven=states.unproven,
+        pieces=len(history),
+    )
+    if history.forgotten:
+        return steps
+    load, joints = load_compared(history), slip_joined(history)
+    return replace(
+        steps,
         load=load.missed,
         compared=load.compared,
-        pieces=len(history),
         rest=exceeded_at_rest(history),
         slip=joints.slip,
         rate=joints.rate,

@@ -63,7 +63,7 @@ def states_proven(history: History) -> StatesProven:
             proven = np.isfinite(hidden) & (hidden <= np.maximum(seen, size))
             known[some] &= proven
             bound[some] = np.maximum(bound[some], np.where(proven, found, seen) / np.where(size > 0.0, size, 1.0))
-    joints = missed_at_joints(history)
+    joints = 0.0 if history.forgotten else missed_at_joints(history)
     return StatesProven(float(max(np.max(bound, initial=0.0), joints)), int(np.count_nonzero(known)), int(np.count_nonzero(~known)))
 
 

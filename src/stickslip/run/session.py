@@ -132,7 +132,7 @@ class Session:
         """Return the history so far, without the leaps over creep."""
         kept, round_trip = at.trimmed(self.store, self.length), self.problem.round_trip_time
         reached = float(kept.trip[-1] * round_trip + kept.phase_to[-1]) if len(kept.pieces) else 0.0
-        return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached)
+        return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached, forgotten=self.forgotten)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""

@@ -108,6 +108,8 @@ class History:
     """Number of slip events after which the run stopped; None if it did not stop because of them. The history goes on beyond the
     last of them until its aftermath is known, and another event may begin there.
     """
+    forgotten: int = 0
+    """Number of earlier pieces that a catalogue has discarded; pieces that are left need not follow on each other."""
 
     def seen_from(self, epoch: Epoch) -> History:
         """Return the same history with its times counted from another epoch."""
