@@ -1,4 +1,4 @@
-"""Creep of a slab beside rest, while waves of an event ring: leaps from the queue of echoes, which keep the pattern of the waves."""
+"""Creep of a slab beside rest, while waves of an event ring: leaps that take the pattern of the waves from the queue of echoes."""
 
 from __future__ import annotations
 
