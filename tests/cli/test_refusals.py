@@ -58,7 +58,7 @@ CASES = [
     (["run", "fig6-slab", "--shortest-event", "1 s"], "run: --shortest-event must be 0 or at most 0.0571429 s (1 % of the two-way"),
     (
         ["run", "cycles-block", "--creep-rtol", "1e-6"],
-        "run: --creep-rtol must be 0 here: leaps over creep need a slab or a string, which creeps",
+        "run: --creep-rtol must be 0 here: leaps over creep need a friction law that remembers all slip",
     ),
     (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),
     (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),

@@ -27,9 +27,11 @@ the last summed over the borders of slip.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from types import SimpleNamespace
+from typing import Any, Self
 
 import numpy as np
 
@@ -38,6 +40,7 @@ from stickslip.engine.compiled_formula import CompiledFormula, compile_formula
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.state.layout import Ball, Floats
 from stickslip.engine_input.branch_table import strength_change
+from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression
 from stickslip.problem.problem import Problem
 
@@ -88,7 +91,23 @@ class Strength:
 
     def __call__(self, x: float) -> float:
         """Return the static strength (Pa) after slip x (m), minus that at the start of the run."""
-        return strength_change(self.problem, self.law_slip + self.sign * x)
+        law, slip = self.problem.friction, self.law_slip + self.sign * x
+        if law.knot_variable == "slip" and len(law.knots):
+            return strength_change(self.problem, slip)
+        tree, numbers = self._only
+        return self.problem.normal * float(difference(tree, numbers, self.problem.law_slip, slip, 0.0)[0])
+
+    @cached_property
+    def _only(self) -> tuple[Expression, dict[str, float]]:
+        """The formula of a law without knots, and its numbers."""
+        return self.problem.friction.trees()[0], self.problem.friction.numbers()
+
+    @cached_property
+    def _formula(self) -> Callable[[Any], Any]:
+        """The friction coefficient of this piece of the law as a function of slip, which may be complex."""
+        law = self.problem.friction
+        formula, numbers, states = law.pieces[self.piece], SimpleNamespace(**law.numbers(self.piece)), law.each_state(0.0)
+        return lambda slip: formula(numbers, slip, 0.0, *states)
 
     @cached_property
     def piece(self) -> int:
@@ -131,17 +150,21 @@ class Strength:
     def slope(self, x: float) -> float:
         """Return the derivative with respect to x, Pa/m, by a complex step."""
         slip = complex(self.problem.law_slip + self.law_slip + self.sign * x, self.sign * COMPLEX_STEP)
-        return self.problem.normal * float(np.imag(self.problem.friction.piece_coefficient(self.piece, slip, 0.0))) / COMPLEX_STEP
+        return self.problem.normal * float(np.imag(self._formula(slip))) / COMPLEX_STEP
 
     def slopes(self, x: Floats) -> Floats:
         """Return the derivatives at several x, Pa/m."""
         slips = self.problem.law_slip + self.law_slip + self.sign * x + self.sign * COMPLEX_STEP * 1j
-        mu = self.problem.friction.piece_coefficient(self.piece, slips, 0.0)
-        return np.asarray(self.problem.normal * np.imag(mu) / COMPLEX_STEP)
+        return np.asarray(self.problem.normal * np.imag(self._formula(slips)) / COMPLEX_STEP) + np.zeros(len(slips))
 
     def curvature(self, x: float) -> float:
         """Return the second derivative with respect to x, Pa/m^2, from the slopes at two nearby slips."""
-        return (self.slope(x + self.step) - self.slope(x - self.step)) / (2.0 * self.step)
+        return self.slope_and_curvature(x)[1]
+
+    def slope_and_curvature(self, x: float) -> tuple[float, float]:
+        """Return the first (Pa/m) and the second derivative with respect to x (Pa/m^2)."""
+        before, here, after = self.slopes(np.array([x - self.step, x, x + self.step])).tolist()
+        return here, (after - before) / (2.0 * self.step)
 
 
 @dataclass(frozen=True)
@@ -189,12 +212,11 @@ class AveragedCreep:
         above, z2 = self.pattern.above(lift), 2.0 * self.impedance
         length, border = above.length, above.border
         slip = above.area / z2
-        slope = self.strength.slope(slip)
+        slope, curvature = self.strength.slope_and_curvature(slip)
         room = 1.0 + slope * length / z2
         if room <= 0.0:
             return Creep(lift, np.inf, slip, np.inf, np.inf, room, length, np.inf, np.inf, np.inf, np.inf)
         rate, mean_rate = length * self.speed / room, self.speed / room
-        curvature = self.strength.curvature(slip)
         closing = (curvature * length * length / z2 + slope * border) / z2 / room * self.gain  # d room / dn
         bend = (border * self.speed * self.gain / room - rate * closing) / room
         mean_bend = -mean_rate * closing / room

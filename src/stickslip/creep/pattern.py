@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict
+from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.trajectory.series import horner
 
@@ -62,16 +62,89 @@ class Parts:
 
 def monotone_parts(load: Floats, phase_from: Floats, speed: Floats, bend: Floats) -> Parts:
     """Cut the pieces of a load at their extrema."""
-    slope, places, spare = np.zeros(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)
-    rows: list[tuple[Floats, float, float, float]] = []
-    for p, start, a, b in zip(load, phase_from, speed, bend, strict=True):
-        slope[:-1] = p[1:] * np.arange(1, TERMS)
-        cuts = [0.0, *places[: crossings(slope, places, spare)].tolist(), 1.0]
-        for left, right in pairwise(cuts):
-            part, width = np.empty(TERMS), right - left
-            restrict(p, left, width, part)
-            rows.append((part, start + left * (a + left * b), (a + 2.0 * b * left) * width, b * width * width))
-    return Parts(*(np.array(column) for column in zip(*rows, strict=True)))
+    room, count = 2 * len(load) + 64, NO_ROOM
+    given, loads = np.array([phase_from, speed, bend], float), np.ascontiguousarray(load)
+    while count == NO_ROOM:
+        cut, shape = np.zeros((room, TERMS)), np.zeros((room, 3))
+        count = cut_at_extrema(loads, given, cut, shape)
+        room *= 2
+    return Parts(cut[:count], *np.ascontiguousarray(shape[:count].T))
+
+
+NO_ROOM = -1
+"""Says that a pattern has more monotone parts than there is room for."""
+
+
+@kernel
+def cut_at_extrema(load: Floats, given: Floats, cut: Floats, shape: Floats) -> int:
+    """Write the monotone parts of the pieces of a load into `cut`, and their phase, speed and bend into rows of `shape`.
+
+    Those of the pieces are the rows of `given`. Returns the number of parts.
+    """
+    slope, places, spare, count = np.zeros(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS), 0
+    for n in range(len(load)):
+        for k in range(1, TERMS):
+            slope[k - 1] = k * load[n, k]
+        found = crossings(slope, places, spare)
+        if count + found + 1 > len(cut):
+            return NO_ROOM
+        left, a, b = 0.0, given[1, n], given[2, n]
+        for m in range(found + 1):
+            right = places[m] if m < found else 1.0
+            width = right - left
+            restrict(load[n], left, width, cut[count])
+            shape[count, 0] = given[0, n] + left * (a + left * b)
+            shape[count, 1], shape[count, 2] = (a + 2.0 * b * left) * width, b * width * width
+            left, count = right, count + 1
+    return count
+
+
+@kernel
+def area_up_to(load: Floats, speed: float, bend: float, xi: float) -> float:
+    """Return the integral of a part of a load over the phase from its start up to the place xi (Pa s)."""
+    straight = bent = 0.0
+    for k in range(TERMS - 1, -1, -1):
+        straight = straight * xi + speed * load[k] / (k + 1)
+        bent = bent * xi + 2.0 * bend * load[k] / (k + 2)
+    return xi * (straight + xi * bent)
+
+
+@kernel
+def part_above(load: Floats, shape: Floats, ends: Floats, lift: float, out: Floats) -> None:
+    """Write into the first four entries of `out` the numbers of `Above`, for a load that is lifted by `lift` (Pa).
+
+    `shape` has phase, speed and bend of each part in its rows, `ends` its lowest and highest load, its integral and its length.
+    The rest of `out` is room for two numbers of each part that crosses the level.
+    """
+    shifted, places, spare = np.empty(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)
+    area, length, crossed = 0.0, 0.0, 0
+    for n in range(len(load)):
+        low, high, speed, bend = ends[0, n], ends[1, n], shape[1, n], shape[2, n]
+        if low >= -lift:
+            area, length = area + ends[2, n], length + ends[3, n]
+        elif high > -lift:
+            for k in range(TERMS):
+                shifted[k] = load[n, k]
+            shifted[0] += lift
+            rises = total(shifted) > shifted[0]
+            xi = 1.0 if abs(total(shifted)) < abs(shifted[0]) else 0.0  # at an end, within rounding
+            if crossings(shifted, places, spare) > 0:
+                xi = places[0]
+            covered, time = area_up_to(load[n], speed, bend, xi), xi * (speed + xi * bend)
+            own = ends[3, n] - time if rises else time
+            area += ends[2, n] - covered if rises else covered
+            length += own
+            steep = 0.0
+            for k in range(TERMS - 1, 0, -1):
+                steep = steep * xi + k * load[n, k]
+            out[4 + 2 * crossed] = 1.0 / max(abs(steep / (speed + 2.0 * xi * bend)), SMALLEST)
+            out[5 + 2 * crossed] = length - own if rises else length  # what slips before this border
+            crossed += 1
+    out[0], out[1], out[2], out[3] = area + lift * length, length, 0.0, 0.0
+    for n in range(crossed):
+        place = min(max(out[5 + 2 * n] / max(length, SMALLEST), 0.0), 1.0)
+        out[2] += out[4 + 2 * n]
+        out[3] += out[4 + 2 * n] * (place - 0.5) ** 2
 
 
 @dataclass(frozen=True)
@@ -132,12 +205,16 @@ class Pattern:
 
     def above(self, lift: float) -> Above:
         """Return the part of the load that lies above zero when the load is lifted by `lift` (Pa)."""
-        part, xi, rises = self._crossings(-lift)
-        areas, lengths = self._shares(lift, part, xi, rises)
-        length, before = float(lengths.sum()), np.cumsum(lengths)
-        steep = 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), SMALLEST)
-        place = np.clip((before[part] - lengths[part] * rises) / max(length, SMALLEST), 0.0, 1.0)
-        return Above(float(areas.sum()), length, float(steep.sum()), float((steep * (place - 0.5) ** 2).sum()))
+        shape, ends, out = self._for_kernel
+        part_above(self.parts.load, shape, ends, lift, out)
+        return Above(*out[:4].tolist())
+
+    @cached_property
+    def _for_kernel(self) -> tuple[Floats, Floats, Floats]:
+        """The tables that `part_above` takes."""
+        parts = self.parts
+        shape, ends = np.array([parts.phase_from, parts.speed, parts.bend]), np.array([*self.ends, self.whole, self.width])
+        return shape, ends, np.empty(4 + 2 * len(parts.speed))
 
     def shares(self, lift: float) -> tuple[Floats, Floats]:
         """Return the area (Pa s) and length (s) above zero of each part, when the load is lifted by `lift` (Pa)."""

@@ -22,6 +22,8 @@ FIRST_STRIDE, LONGER = 4.0, 1.5
 """First stride, and the factor by which strides grow. A stride of 1 is the lift that a contact at rest gains in one round trip."""
 SHORTEST_STRIDE = 0.5
 """Shortest stride, in the same unit: averaged creep resolves nothing within a round trip."""
+LEAST_ADVANCE = 0.25
+"""A leap ends where a stride passes over less of a round trip: creep is about to turn dynamic, and such strides lead nowhere."""
 SMOOTH = 0.05
 """Largest relative difference between the round trips of a stride and Simpson's rule for them: a larger one means that the creep
 is not smooth there.
@@ -79,6 +81,8 @@ class Planner:
             if state is None:
                 stride, growth = 0.5 * stride, 1.0
                 continue
+            if state.trips - states[-1].trips < LEAST_ADVANCE:
+                break
             states.append(state)
             stride, growth = stride * growth, min(growth + 0.1, LONGER)
         whole = math.floor(states[-1].trips)

@@ -228,13 +228,13 @@ class CreepLeaps:
         Where the engine meets only echoes that break, only what slips is written: the rest of the pattern goes on as it is.
         """
         count, end, rows, kept = run.count, plan.states[-1], run.standing(), np.empty(0, np.int64)
-        edges = np.union1d(run.store.phase_from[rows], run.store.phase_to[rows])
+        there, edges = averaged, np.union1d(run.store.phase_from[rows], run.store.phase_to[rows])
         if count.sparse == 1:
             reach = averaged.strength.slope(end.slip) * end.rate
             slips = averaged.pattern.rows_above(-end.lift - NEAR * abs(reach), run.store.phase_to[rows])
             kept = rows[~slips]
-            averaged = replace(averaged, pattern=averaged.pattern.of_rows(slips, run.store.phase_to[rows]))
-        pieces = landing(averaged, end)
+            there = replace(averaged, pattern=averaged.pattern.of_rows(slips, run.store.phase_to[rows]))
+        pieces = landing(there, end)
         run.reserve(run.length + len(plan.states) + len(pieces))
         landed_on, sign = int(count.trip) + plan.trips, averaged.strength.sign
         scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)

@@ -91,7 +91,8 @@ class SwingingBlock:
 
     def at(self, slip: float) -> CreepPlace:
         """Return the slow motion at a slip (m)."""
-        bend, k = self.strength.curvature(slip), self.spring + self.strength.slope(slip)
+        slope, bend = self.strength.slope_and_curvature(slip)
+        k = self.spring + slope
         if not k > 0.0:
             return CreepPlace(slip, k, math.nan, 0.0, False, math.inf, bend, math.nan)
         half, free, rate = 0.5 * self.damping / self.mass, k / self.mass, self.spring * self.speed / k

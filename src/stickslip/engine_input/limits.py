@@ -75,12 +75,24 @@ def _but_pull(problem: Problem) -> Over:
 
 
 def swings_as_it_creeps(problem: Problem) -> bool:
-    """Return True if a problem is a block under a law of slip alone, with all that leaps over its creep need but a pull rate."""
-    body, law = problem.body, problem.friction
-    if body.has_waves or not body.is_uniform or not law.depends_on_slip or law.depends_on_rate or law.states:
-        return False
-    changes = problem.varies or problem.driver_changes or problem.ground is not None or problem.one_way
-    return not changes and law.memory == "all" and law.sticks and law.static_excess == 0.0
+    """Return True if a problem is a block under a law of slip, with all that leaps over its creep need but a pull rate."""
+    return not problem.body.has_waves and not missing_for_swings(problem)
+
+
+def missing_for_swings(problem: Problem) -> str:
+    """Return what a block lacks for leaps over creep under a law of slip, besides a pull rate; empty if it lacks nothing."""
+    law = problem.friction
+    if not law.depends_on_slip or law.depends_on_rate or law.states:
+        return f"a friction law of slip alone ({type(law).__name__} is not one)"
+    if law.memory != "all":
+        return "a friction law that remembers all slip (no memory of its own)"
+    if not law.sticks or law.static_excess != 0.0:
+        return "a friction law under which slip begins at the friction of rest"
+    if problem.ground is not None or problem.one_way:
+        return "ground at rest, and slip in both directions"
+    if problem.varies or problem.driver_changes:
+        return "a constant pull rate and normal load"
+    return ""
 
 
 def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:
@@ -126,7 +138,7 @@ def _missing_for_leaps(problem: Problem) -> str:
     """
     shaken = problem.ground is not None and not problem.body.is_driven_rigidly
     if shaken or not _slides_alike(problem.friction):
-        return missing_for_creep(problem)
+        return (missing_for_creep if problem.body.has_waves else missing_for_swings)(problem)
     return _what_changes(problem) if problem.body.is_uniform else "a body of one layer"
 
 

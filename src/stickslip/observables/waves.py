@@ -183,7 +183,7 @@ class Waves:
             return total + self._trip_by_trip(end.trip) + self.in_trip(end.trip, 0.0, end.offset).integral(self.power)
         total += float(self._passed[int(np.searchsorted(self.history.store.trip, end.trip, side="right"))])
         piece, low, high = self.standing(end.trip)
-        total += float(self._work_of(piece, low, high, end.trip - self.history.store.trip[piece]).sum())
+        total += float(self._work_since(piece, low, high, np.full(len(piece), end.trip)).sum())
         return total + self.in_trip(end.trip, 0.0, end.offset).integral(self.power)
 
     def _trip_by_trip(self, past: int) -> float:
@@ -233,22 +233,40 @@ class Waves:
         store = self.history.store
         echo = np.flatnonzero(store.echo_of >= 0)
         source, work = store.echo_of[echo], np.zeros(len(store.trip))
-        work[echo] = self._work_of(source, store.phase_from[echo], store.phase_to[echo], store.trip[echo] - store.trip[source])
+        work[echo] = self._work_since(source, store.phase_from[echo], store.phase_to[echo], store.trip[echo])
         for trip, trips in self.history.creep[:, :2]:  # averages have the same work as the round trips that they replace
             way, landing = (np.searchsorted(store.trip, when) for when in (trip, trip + trips))
             own = np.arange(way, landing)
             work[landing] = self._work_of(own, store.phase_from[own], store.phase_to[own], np.ones(len(own), np.int64)).sum()
             before = self.history.standing(int(trip) - 1)
-            work[way] = self._work_of(*before, trip - store.trip[before[0]]).sum()
+            work[way] = self._work_since(*before, np.full(len(before[0]), int(trip))).sum()
         return np.append(0.0, np.cumsum(work))
 
-    def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, trips: NDArray[np.int64]) -> Floats:
-        """Return the work of parts of pieces between two offsets (s) and of their echoes, over `trips` round trips in all."""
+    def _work_since(self, piece: NDArray[np.intp], low: Floats, high: Floats, until: NDArray[np.int64]) -> Floats:
+        """Return the work of parts of pieces between two offsets (s) and of their echoes, before the round trips `until`.
+
+        Pieces that did not come before there are left out. What they did before the landing of a leap is left out, too: it belongs
+        to the averages of that leap, beside which they rested.
+        """
+        left = self.history.store.trip[piece]
+        landings = np.append(0, (self.history.creep[:, 0] + self.history.creep[:, 1]).astype(np.int64))
+        landed = landings[np.searchsorted(landings, until, side="right") - 1]
+        return self._work_of(piece, low, high, until - left, np.maximum(landed - left, 0))
+
+    def _work_of(
+        self, piece: NDArray[np.intp], low: Floats, high: Floats, trips: NDArray[np.int64], past: NDArray[np.int64] | int = 0
+    ) -> Floats:
+        """Return the work of parts of pieces between two offsets (s) and of their echoes, over `trips` round trips in all.
+
+        The work of the first `past` of them is left out.
+        """
         come = trips > 0
+        past = np.broadcast_to(past, trips.shape)[come]
         piece, low, high, trips = piece[come], low[come], high[come], trips[come]
         part = piece, *self._places(piece, low, high)
         once, growth = (over(self.history, *part, self._of(density)) for density in (self.power, self.power_growth))
-        return trips * once + growth * trips * (trips - 1.0) / 2.0
+        whole = trips * once + growth * trips * (trips - 1.0) / 2.0
+        return np.asarray(whole - (past * once + growth * past * (past - 1.0) / 2.0))
 
     def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
         history, start, end = self.history, self.history.store.phase_from[piece], self.history.store.phase_to[piece]

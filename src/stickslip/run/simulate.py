@@ -122,7 +122,8 @@ def simulate(
     Under a law of slip a slab may creep for days between pulses, slipping a little in each round trip. After 200 round trips with
     slip the run leaps over creep, with an error of slip of at most 0.1 sqrt(rtol), but no less than 1e-6 and no more than 1e-3,
     times the slip since the start; before and after a leap it is exact. `solution.creep` lists the leaps. A positive creep_rtol
-    sets another error and allows leaps from the start.
+    sets another error and allows leaps from the start. A block that creeps swings about its moving equilibrium; runs pass over that
+    in the same way.
 
     A slab under rate weakening may end in ever shorter events. As soon as a round trip has more than 4096 pieces, the run lumps
     events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine_input.limits`). The run up to

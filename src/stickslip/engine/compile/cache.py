@@ -49,6 +49,7 @@ NOT_COMPILED = ("cache.py", "lock.py", "private_folder.py")
 COMPILED_FOLDERS = ("engine", "batch/kernels", "friction/formula/operations")
 """Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""
 COMPILED_FILES = (
+    "creep/pattern.py",
     "engine_input/branch_table.py",
     "foundation/constants.py",
     "friction/formula/expression.py",

@@ -1,0 +1,85 @@
+"""Creep of a slab beside rest, while waves of an event ring: leaps that take the pattern of the waves from the queue of echoes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from tests.long_runs.problems import continued, differences
+
+RINGS = ss.load_scenario("fig5-slab-u0-1e-2").problem
+"""A slab that creeps under the crest of the wave that its first event leaves."""
+
+
+def test_a_leap_beside_rest_lands_where_computing_each_round_trip_does() -> None:
+    """Mean slip of the landing within the stated error; load of what rests to 1e-9 of the normal stress. Brute force: 130 trips."""
+    fast = replace(RINGS, pull_rate=3e4 * RINGS.pull_rate)
+    turn = fast.round_trip_time
+    exact, leaping = (ss.simulate(fast, 110.0 * turn, creep_rtol=rtol) for rtol in (0.0, 1e-2))
+    assert exact.status.ok
+    (leap,) = leaping.creep.itertuples()
+    assert leap.round_trips > 50
+    landed = leaping.history.store.trip == leap.start_row + leap.round_trips
+    assert leaping.history.store.phase_to[landed].sum() < 0.9 * turn * landed.sum()
+    theirs, ours = (0.5 * float(run.slip(leap.end) + run.slip(leap.end + turn)) for run in (exact, leaping))
+    assert abs(ours - theirs) <= leap.error < 1e-3
+    times = leap.end + turn * np.linspace(0.0, 1.0, 400, endpoint=False)
+    rests = (exact.slip_rate(times) == 0.0) & (leaping.slip_rate(times) == 0.0)
+    assert 100 < rests.sum() < 400
+    assert np.abs(leaping.load(times) - exact.load(times))[rests].max() <= 1e-9 * fast.normal
+
+
+@pytest.fixture(scope="module")
+def printed() -> ss.Solution:
+    """Six years of the printed slab."""
+    return ss.simulate(ss.load_scenario("fig5-slab-printed").problem, "6 years")
+
+
+def test_only_what_slips_is_written_where_a_leap_lands(printed: ss.Solution) -> None:
+    """The waves of the first events ring beside creep: a landing writes a part of the round trip, the rest stands as it was."""
+    store, turn = printed.history.store, printed.problem.round_trip_time
+    assert printed.status.ok
+    assert len(printed.history) < 70_000
+    shares = []
+    for leap in printed.creep.itertuples():
+        rows = store.trip == leap.start_row + leap.round_trips
+        shares.append((store.phase_to[rows] - store.phase_from[rows]).sum() / turn)
+    assert min(shares) < 0.8
+    assert max(shares) <= 1.0 + 1e-12
+
+
+def test_the_waves_tile_the_round_trip_after_each_leap(printed: ss.Solution) -> None:
+    """No gap and no overlap, up to roundings of the offset."""
+    turn = printed.problem.round_trip_time
+    for leap in printed.creep.itertuples():
+        _, low, high = printed.history.standing(int(leap.start_row + leap.round_trips))
+        assert low[0] == 0.0
+        assert high[-1] == turn
+        assert np.abs(low[1:] - high[:-1]).max(initial=0.0) <= 4.0 * np.spacing(turn)
+
+
+def test_energy_balances_after_leaps_beside_rest(printed: ss.Solution) -> None:
+    """To 1e-9 of the heat: the load of a leap is the mean over the whole round trip, not over what slips of it."""
+    energy = printed.energy(np.array([printed.duration]))
+    assert abs(float(energy["balance"].values[0])) <= 1e-9 * float(energy["heat"].values[0])
+
+
+def test_a_run_with_leaps_beside_rest_is_resumed_bit_for_bit(printed: ss.Solution, tmp_path: Path) -> None:
+    """Wherever it is stopped."""
+    problem = printed.problem
+    ss.simulate(problem, 3.9 * ss.YEAR, checkpoint=tmp_path / "run.nc")
+    assert differences(continued(tmp_path / "run.nc", printed.duration), printed) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "most"), [("fig5-slab-printed", 1_500_000), ("fig5-slab-u0-1e-2", 1_200_000)])
+def test_slabs_of_figure_5_go_on_for_400_years(name: str, most: int) -> None:
+    """Slip follows the plate: 20 m in 400 years, within 2 m."""
+    run = ss.simulate(ss.load_scenario(name).problem, "400 years", max_pieces=most)
+    assert run.status.ok
+    assert abs(float(run.slip(run.duration)) - 20.0) < 2.0
+    assert len(run.events) > 10
