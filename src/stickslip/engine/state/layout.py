@@ -185,7 +185,7 @@ class Counts(MemoryRecord):
     folds_follow_slip: int  # 1 if the branches change with slip
     merging: int  # 1 if pieces of the waves in layers are merged in this round trip (`waves.merged_pieces`)
     merged: int  # number of pieces whose waves are the present piece of load, if they were merged; else 0
-    to_fold: int  # 1 if these waves are written in the root of the time left until they end
+    merged_as: int  # their form (`waves.merged_pieces`)
     merge_above: int  # they are merged when a round trip has more pieces than this
     merge_at: int  # and in this round trip, if not before
 

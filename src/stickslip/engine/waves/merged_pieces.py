@@ -11,6 +11,9 @@ the second time on the waves are written in that root, up to the jump in which s
 The new series of a wave is the polynomial through its values at Chebyshev's points, cut where its terms fall below rounding or
 below the differences at the ends of the old pieces. It keeps the values at its start, and at its end unless that is a fold. Its error is measured at as many points of each old piece, and bounded by the
 sum of the terms of Chebyshev's series through these.
+
+Where a round trip has too many pieces even so, because the load has as many jumps, short pieces are lumped: the waves of a group
+that is as long as the shortest event are replaced by their means.
 """
 
 from __future__ import annotations
@@ -21,15 +24,17 @@ import numpy as np
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.memory.addresses import room_for
-from stickslip.engine.series.polynomial import copy, evaluate, fill, total
+from stickslip.engine.series.polynomial import copy, evaluate, fill, mean_of, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.ladder_rows import AIR, row_of, wave_in
 
-FEW = 32
-"""Nothing is merged in a round trip with no more pieces than this (1)."""
+IN_TIME, TO_FOLD, MEAN = 0, 1, 2
+"""Forms of the waves of merged pieces: series in time, series in the root of the time left, or their means."""
+FEW, MANY = 4, 32
+"""Nothing is merged in a round trip with no more pieces than the first number (1), and growth counts beyond the second."""
 PAUSE = 128
-"""Pieces are merged again after this many round trips (1) at the latest: merging one takes the time of some ten others."""
+"""Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
 MOST_TOGETHER = 128
 """Largest number of pieces (1) that are tried as one."""
 ENDS = MOST_TOGETHER + 1
@@ -84,7 +89,9 @@ def plan_merging(run: Run) -> None:
         state.merged_in_all += state.merged_now
         counts.merge_above = pieces + pieces // 4 + 8
     counts.merging, state.merged_now = 0, 0.0
-    if pieces > max(FEW, counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
+    if counts.merge_at == 0:
+        counts.merge_at = counts.trip + PAUSE
+    if pieces > max(MANY, counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
         counts.merging, counts.merge_at = 1, counts.trip + PAUSE
         state.merge_within = run.params.tolerance * swing_of_waves(run)
 
@@ -115,11 +122,15 @@ def gather(run: Run, source: int) -> None:
     """
     counts, state = run.counts, run.state
     if state.taken == 0.0:
-        counts.merged = counts.to_fold = 0
+        counts.merged = counts.merged_as = 0
         if counts.merging == 1:
             merge_ahead(run, source)
+        if counts.lumps == 1:
+            lump_ahead(run, source)
+    elif counts.merged_as == MEAN:
+        average(run, source, counts.merged)
     elif counts.merged > 0:
-        merge(run, source, counts.merged, counts.to_fold)
+        merge(run, source, counts.merged, counts.merged_as)
     if counts.merged == 0:
         copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), counts.slots * TERMS)
     else:
@@ -130,21 +141,21 @@ def gather(run: Run, source: int) -> None:
 def merge_ahead(run: Run, source: int) -> None:
     """Merge as many pieces from `source` on as one series describes. One next to a fold is at least written in time."""
     many = smooth_ahead(run, source)
-    if many > 1 and grows_shorter(run, source, source + many - 1) and keep_merged(run, source, many, 1):
+    if many > 1 and grows_shorter(run, source, source + many - 1) and keep_merged(run, source, many, TO_FOLD):
         return
     for _ in range(HALVINGS):
-        if (many == 1 and run.history[source].bend == 0.0) or keep_merged(run, source, many, 0) or many == 1:
+        if (many == 1 and run.history[source].bend == 0.0) or keep_merged(run, source, many, IN_TIME) or many == 1:
             return
         many = (many + 1) // 2
 
 
 @kernel
-def keep_merged(run: Run, source: int, many: int, to_fold: int) -> bool:
+def keep_merged(run: Run, source: int, many: int, form: int) -> bool:
     """Merge pieces from `source` on, and note it; return False if one series does not describe them."""
-    error = merge(run, source, many, to_fold)
+    error = merge(run, source, many, form)
     if not error < math.inf:
         return False
-    run.counts.merged, run.counts.to_fold = many, to_fold
+    run.counts.merged, run.counts.merged_as = many, form
     run.state.merged_now = max(run.state.merged_now, error)
     return True
 
@@ -211,17 +222,38 @@ def lay_out(run: Run, source: int, many: int) -> None:
     for n in range(source, source + many):
         width += width_of(run, n)
     run.state.phase_from, run.state.phase_to = run.history[source].phase_from, run.history[source + many - 1].phase_to
-    run.state.speed, run.state.bend = (2.0 * width, -width) if run.counts.to_fold == 1 else (width, 0.0)
+    run.state.speed, run.state.bend = (2.0 * width, -width) if run.counts.merged_as == TO_FOLD else (width, 0.0)
+
+
+@kernel
+def lump_ahead(run: Run, source: int) -> None:
+    """Take pieces from `source` on together until they are as long as the shortest event, unless they are merged to that length.
+
+    They are left alone where a piece begins that is as long by itself.
+    """
+    counts, shortest = run.counts, run.params.shortest
+    many, width = max(counts.merged, 1), 0.0
+    for n in range(source, source + many):
+        width += width_of(run, n)
+    if width >= shortest:
+        return
+    for n in range(source + many, counts.previous_to):
+        if width >= shortest or width_of(run, n) >= shortest:
+            break
+        width += width_of(run, n)
+        many += 1
+    counts.merged, counts.merged_as = many, MEAN
+    average(run, source, many)
 
 
 # ---- how --------------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def merge(run: Run, source: int, many: int, to_fold: int) -> float:
+def merge(run: Run, source: int, many: int, form: int) -> float:
     """Write the waves of `many` pieces of the history as one series each into the air; return the largest error (Pa).
 
-    They are series in time or, if `to_fold` is 1, in the root of the time left. The error is inf if one series does not describe one
+    They are series in time or, if the form is TO_FOLD, in the root of the time left. The error is inf if one series does not describe one
     of them.
     """
     ends, of_point, places = room_for(ENDS), room_for(POINTS), room_for(POINTS)
@@ -230,7 +262,7 @@ def merge(run: Run, source: int, many: int, to_fold: int) -> float:
         ends[i] = ends[i + 1] + width_of(run, source + i)
     i = 0
     for k in range(POINTS):
-        left = ends[0] * (1.0 - PLACES[k]) * (1.0 - PLACES[k] if to_fold == 1 else 1.0)
+        left = ends[0] * (1.0 - PLACES[k]) * (1.0 - PLACES[k] if form == TO_FOLD else 1.0)
         for _ in range(many):
             if i + 1 == many or left >= ends[i + 1]:
                 break
@@ -240,14 +272,28 @@ def merge(run: Run, source: int, many: int, to_fold: int) -> float:
     for cell in range(run.counts.cells):
         if not describe(run, source, many, cell, of_point, places):
             return math.inf
-        if to_fold == 0:
+        if form == IN_TIME:
             keep_end(run, source + many - 1, cell)
-        error = max(error, distance(run, source, many, cell, ends, to_fold))
+        error = max(error, distance(run, source, many, cell, ends, form))
         if not error <= run.state.merge_within + rounding_at(run, source, cell):
             return math.inf
     if run.counts.slots > run.counts.cells:
         fill(wave_in(run, AIR, run.counts.cells), 0.0)  # the rate of a machine is found anew
     return error
+
+
+@kernel
+def average(run: Run, source: int, many: int) -> None:
+    """Write the means in time of the waves of `many` pieces of the history into the air."""
+    for slot in range(run.counts.slots):
+        pushed = lasted = 0.0
+        for n in range(source, source + many):
+            width, piece = width_of(run, n), run.history[n]
+            pushed += width * mean_of(wave_in(run, row_of(run, n), slot), piece.speed, piece.bend, width)
+            lasted += width
+        wave = wave_in(run, AIR, slot)
+        fill(wave, 0.0)
+        wave[0] = pushed / lasted
 
 
 @kernel
@@ -260,11 +306,11 @@ def place_in(run: Run, n: int, left: float) -> float:
 
 
 @kernel
-def place_of(run: Run, n: int, xi: float, past: float, whole: float, to_fold: int) -> float:
+def place_of(run: Run, n: int, xi: float, past: float, whole: float, form: int) -> float:
     """Return the place in a new piece, of `whole` seconds, of the place xi in piece n of the history, `past` seconds before its end."""
     piece = run.history[n]
     left = (past + (1.0 - xi) * (piece.speed + piece.bend * (1.0 + xi))) / whole
-    return 1.0 - (math.sqrt(max(left, 0.0)) if to_fold == 1 else left)
+    return 1.0 - (math.sqrt(max(left, 0.0)) if form == TO_FOLD else left)
 
 
 @kernel
@@ -298,13 +344,13 @@ def keep_end(run: Run, last: int, cell: int) -> None:
 
 
 @kernel
-def distance(run: Run, source: int, many: int, cell: int, ends: Floats, to_fold: int) -> float:
+def distance(run: Run, source: int, many: int, cell: int, ends: Floats, form: int) -> float:
     """Return a bound (Pa) on the difference between the new series of the wave in a cell and the old ones."""
     wave, values, largest = wave_in(run, AIR, cell), room_for(POINTS), 0.0
     for i in range(many):
         old, apart = wave_in(run, row_of(run, source + i), cell), 0.0
         for k in range(POINTS):
-            place = place_of(run, source + i, PLACES[k], ends[i + 1], ends[0], to_fold)
+            place = place_of(run, source + i, PLACES[k], ends[i + 1], ends[0], form)
             values[k] = evaluate(wave, place) - evaluate(old, PLACES[k])
         for j in range(POINTS):
             apart += abs(term_of(values, j))
