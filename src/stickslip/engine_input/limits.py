@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from stickslip.bodies import BodyOnCharacteristics, has_dashpot
+from stickslip.bodies import BodyOnCharacteristics, OfLayers, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
@@ -129,7 +129,7 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
         raise InputError(f"{where}: {name} must be 0 here: only with waves and a rigid driver do echoes get ever shorter")
     elif problem.varies:
         raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull and normal load only")
-    largest = LARGEST_SHARE * body.two_way_time
+    largest = LARGEST_SHARE * longest_way(body)
     if not 0.0 < shortest <= largest:
         raise InputError(f"{where}: {name} must be 0 or at most {largest:g} s (1 % of the two-way travel time), got {shortest:g} s")
     return shortest
@@ -138,7 +138,7 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
 def lumps_by_itself(problem: Problem) -> bool:
     """Return True if events are lumped automatically.
 
-    That requires echoes that come back whole or through layers, and friction that depends on the slip rate and has no state variable.
+    That requires echoes that come back whole, or through layers, and friction that depends on the slip rate and has no state.
     """
     body, law = problem.body, problem.friction
     if not body.has_waves or body.has_inertia or not law.depends_on_rate or law.states:
@@ -148,7 +148,12 @@ def lumps_by_itself(problem: Problem) -> bool:
 
 def automatic_length(body: BodyOnCharacteristics) -> float:
     """Return the shortest event (s) of automatic lumping."""
-    return AUTOMATIC_SHARE * body.two_way_time
+    return AUTOMATIC_SHARE * longest_way(body)
+
+
+def longest_way(body: BodyOnCharacteristics) -> float:
+    """Return the time (s) of a wave to the driver and back, through all layers; of a block its period."""
+    return body.two_way_time if isinstance(body, OfLayers) else body.round_trip_time
 
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:

@@ -19,7 +19,7 @@ from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, counts_in
-from stickslip.engine.waves.merged_pieces import MEAN
+from stickslip.engine.waves.merged_series import MEAN
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
