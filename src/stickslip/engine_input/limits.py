@@ -143,7 +143,9 @@ def lumps_by_itself(problem: Problem) -> bool:
     body, law = problem.body, problem.friction
     if not body.has_waves or body.has_inertia or not law.depends_on_rate or law.states:
         return False
-    return not body.is_uniform or (body.is_driven_rigidly and not problem.varies)
+    if not body.is_uniform and body.has_machine:
+        return True
+    return not problem.varies and (body.is_driven_rigidly or not body.is_uniform)
 
 
 def automatic_length(body: BodyOnCharacteristics) -> float:
