@@ -100,6 +100,7 @@ def test_a_run_with_merged_pieces_is_taken_up_again_bit_for_bit(tmp_path: Path) 
         file = tmp_path / "part.nc"
         ss.simulate(machine_above_collars(), 31.3, shortest_event=shortest).to_netcdf(file)
         again = ss.resume(file, 34.0)
+        assert isinstance(again, ss.Solution)
         assert np.array_equal(again.history.store.pieces, whole.history.store.pieces)
 
 

@@ -19,7 +19,7 @@ from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, counts_in
-from stickslip.engine.waves.merged_series import MEAN
+from stickslip.engine.waves.merged_series import MEAN, MOST_TOGETHER
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
@@ -207,6 +207,8 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
     yield "engine_count merged", not 0 <= count.merged <= count.previous_to - count.previous_from
+    yield "engine_count smooth_to", not count.smooth_to <= count.previous_to
+    yield "engine_count merge_guess", not 0 <= count.merge_guess <= 4 * MOST_TOGETHER
     yield "engine_count merged_as", not 0 <= count.merged_as <= MEAN
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)
     yield "engine_count segment", not 0 <= count.trip_segment <= count.segment < len(setup.loading)

@@ -197,7 +197,7 @@ class Session:
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
         self.count.echo_of = place[self.count.echo_of]
-        for name in ("length", "trip_from", "previous_from", "previous_to", "new_from"):
+        for name in ("length", "trip_from", "previous_from", "previous_to", "new_from", "smooth_to"):
             setattr(self.count, name, getattr(self.count, name) - dropped)
         self.count.wave_shift += dropped
         self._rebuild_queue()

@@ -26,7 +26,7 @@ from stickslip.engine.waves.merged_series import (
     MEAN,
     MOST_TOGETHER,
     TO_FOLD,
-    Group,
+    WaveGroup,
     average,
     lay_out,
     merge,
@@ -52,17 +52,23 @@ LARGEST_TURN = 1.0
 
 @kernel
 def plan_merging(run: Run) -> None:
-    """Decide whether pieces are merged in the round trip that begins, from the one just closed."""
+    """Decide whether pieces are merged in the round trip that begins, from the one just closed.
+
+    Growth is counted from the round trip after a merged one: there the contact has cut merged pieces into the steps it needs.
+    """
     counts, state = run.counts, run.state
     pieces = counts.previous_to - counts.previous_from
-    if counts.merging == 1:
-        state.merged_in_all += state.merged_now
-        counts.merge_above = pieces + pieces // 4 + 8
-    counts.merging, state.merged_now = 0, 0.0
     if counts.merge_at == 0:
         counts.merge_at = counts.trip + PAUSE
-    if pieces > max(MANY, counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
+    if counts.merging == 1:
+        counts.merging, counts.merge_above = 0, 0
+        state.merged_in_all += state.merged_now
+        state.merged_now = 0.0
+    elif counts.merge_above == 0 and pieces > MANY:
+        counts.merge_above = pieces + pieces // 2 + 8
+    elif (pieces > MANY and pieces > counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
         counts.merging, counts.merge_at = 1, counts.trip + PAUSE
+        counts.smooth_to, counts.merge_guess = 0, MOST_TOGETHER
         state.merge_within = run.params.tolerance * swing_of_waves(run)
 
 
@@ -98,32 +104,37 @@ def gather(run: Run, source: int) -> None:
         if counts.lumps == 1:
             lump_ahead(run, source)
     elif counts.merged_as == MEAN:
-        average(run, Group(source, counts.merged, MEAN))
+        average(run, WaveGroup(source, counts.merged, MEAN))
     elif counts.merged > 0:
-        merge(run, Group(source, counts.merged, counts.merged_as))
+        merge(run, WaveGroup(source, counts.merged, counts.merged_as))
     if counts.merged == 0:
         copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), counts.slots * TERMS)
     else:
-        lay_out(run, Group(source, counts.merged, counts.merged_as))
+        lay_out(run, WaveGroup(source, counts.merged, counts.merged_as))
 
 
 @kernel
 def merge_ahead(run: Run, source: int) -> None:
     """Merge as many pieces from `source` on as one series describes. One next to a fold is at least written in time."""
-    many = smooth_ahead(run, source)
+    counts = run.counts
+    if counts.smooth_to <= source + 1:
+        counts.smooth_to = source + smooth_ahead(run, source)
+    many = fitting_tone(run, source, counts.smooth_to - source)
     leads_to_fold = many > 1 and width_of(run, source + many - 1) < SHORTER * width_of(run, source)
-    if leads_to_fold and keep_merged(run, Group(source, many, TO_FOLD)):
+    if leads_to_fold and keep_merged(run, WaveGroup(source, many, TO_FOLD)):
         return
+    many = min(many, counts.merge_guess)
     for _ in range(HALVINGS):
         if many == 1 and run.history[source].bend == 0.0:
-            return
-        if keep_merged(run, Group(source, many, IN_TIME)) or many == 1:
-            return
+            break
+        if keep_merged(run, WaveGroup(source, many, IN_TIME)) or many == 1:
+            break
         many = (many + 1) // 2
+    counts.merge_guess = 4 * many
 
 
 @kernel
-def keep_merged(run: Run, group: Group) -> bool:
+def keep_merged(run: Run, group: WaveGroup) -> bool:
     """Merge a group, and note it; return False if one series does not describe its waves."""
     error = merge(run, group)
     if not error < math.inf:
@@ -136,12 +147,23 @@ def keep_merged(run: Run, group: Group) -> bool:
 @kernel
 def smooth_ahead(run: Run, source: int) -> int:
     """Return the number of pieces from `source` on that follow each other without a jump."""
-    counts, history, many = run.counts, run.history, 1
-    longest = LARGEST_TURN / run.params.tone_frequency if run.params.tone_frequency > 0.0 else math.inf
-    for n in range(source + 1, min(counts.previous_to, source + MOST_TOGETHER)):
-        if history[n].phase_to - history[source].phase_from > longest or not follows(run, n):
+    many = 1
+    for n in range(source + 1, min(run.counts.previous_to, source + MOST_TOGETHER)):
+        if not follows(run, n):
             break
         many += 1
+    return many
+
+
+@kernel
+def fitting_tone(run: Run, source: int, many: int) -> int:
+    """Return how many of these pieces are so short together that a tone in the loading is a polynomial on them."""
+    if run.params.tone_frequency == 0.0:
+        return many
+    longest = LARGEST_TURN / run.params.tone_frequency
+    for n in range(source + 1, source + many):
+        if run.history[n].phase_to - run.history[source].phase_from > longest:
+            return n - source
     return many
 
 
@@ -177,4 +199,4 @@ def lump_ahead(run: Run, source: int) -> None:
         width += width_of(run, n)
         many += 1
     counts.merged, counts.merged_as = many, MEAN
-    average(run, Group(source, many, MEAN))
+    average(run, WaveGroup(source, many, MEAN))
