@@ -65,7 +65,7 @@ def plan_merging(run: Run) -> None:
         state.merged_in_all += state.merged_now
         state.merged_now = 0.0
     elif counts.merge_above == 0 and pieces > MANY:
-        counts.merge_above = pieces + pieces // 2 + 8
+        counts.merge_above = pieces + pieces // 4 + 8
     elif (pieces > MANY and pieces > counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
         counts.merging, counts.merge_at = 1, counts.trip + PAUSE
         counts.smooth_to, counts.merge_guess = 0, MOST_TOGETHER
