@@ -37,6 +37,8 @@ from stickslip.engine.waves.merged_series import (
 
 FEW, MANY = 4, 32
 """Nothing is merged in a round trip with no more pieces than the first number (1), and growth counts beyond the second."""
+CROWD = 1024
+"""Pieces of a round trip (1) from which on they are merged as often as they can be."""
 PAUSE = 128
 """Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
 HALVINGS = 8
@@ -54,14 +56,15 @@ LARGEST_TURN = 1.0
 def plan_merging(run: Run) -> None:
     """Decide whether pieces are merged in the round trip that begins, from the one just closed.
 
-    Growth is counted from the round trip after a merged one: there the contact has cut merged pieces into the steps it needs.
+    Growth is counted from the round trip after a merged one: there the contact has cut merged pieces into the steps it needs. In
+    a crowd it is counted from the merged one itself: merging every second one then saves as much time as it takes, and memory.
     """
     counts, state = run.counts, run.state
     pieces = counts.previous_to - counts.previous_from
     if counts.merge_at == 0:
         counts.merge_at = counts.trip + PAUSE
     if counts.merging == 1:
-        counts.merging, counts.merge_above = 0, 0
+        counts.merging, counts.merge_above = 0, pieces + pieces // 4 if pieces > CROWD else 0
         state.merged_in_all += state.merged_now
         state.merged_now = 0.0
     elif counts.merge_above == 0 and pieces > MANY:
