@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from stickslip.bodies import BodyOnCharacteristics, has_dashpot
+from stickslip.bodies import BodyOnCharacteristics, OfLayers, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
@@ -174,11 +174,14 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
     if shortest is None or shortest == 0.0:
         return shortest
     body = problem.body
-    if not (body.has_waves and body.is_uniform and body.is_driven_rigidly):
+    if body.has_waves and not body.is_uniform:
+        if body.has_inertia:
+            raise InputError(f"{where}: {name} must be 0 here: a contact with mass smooths the waves that come through layers")
+    elif not (body.has_waves and body.is_driven_rigidly):
         raise InputError(f"{where}: {name} must be 0 here: only with waves and a rigid driver do echoes get ever shorter")
-    if problem.varies:
+    elif problem.varies:
         raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull and normal load only")
-    largest = LARGEST_SHARE * body.round_trip_time
+    largest = LARGEST_SHARE * longest_way(body)
     if not 0.0 < shortest <= largest:
         raise InputError(f"{where}: {name} must be 0 or at most {largest:g} s (1 % of the two-way travel time), got {shortest:g} s")
     return shortest
@@ -187,23 +190,24 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
 def lumps_by_itself(problem: Problem) -> bool:
     """Return True if events are lumped automatically.
 
-    That requires echoes that come back whole, and friction that depends on the slip rate and has no state variable.
+    That requires echoes that come back whole, or through layers, and friction that depends on the slip rate and has no state.
     """
     body, law = problem.body, problem.friction
-    return (
-        body.has_waves
-        and body.is_uniform
-        and body.is_driven_rigidly
-        and not body.has_inertia
-        and not problem.varies
-        and law.depends_on_rate
-        and not law.states
-    )
+    if not body.has_waves or body.has_inertia or not law.depends_on_rate or law.states:
+        return False
+    if not body.is_uniform and body.has_machine:
+        return True
+    return not problem.varies and (body.is_driven_rigidly or not body.is_uniform)
 
 
 def automatic_length(body: BodyOnCharacteristics) -> float:
     """Return the shortest event (s) of automatic lumping."""
-    return AUTOMATIC_SHARE * body.round_trip_time
+    return AUTOMATIC_SHARE * longest_way(body)
+
+
+def longest_way(body: BodyOnCharacteristics) -> float:
+    """Return the time (s) of a wave to the driver and back, through all layers; of a block its period."""
+    return body.two_way_time if isinstance(body, OfLayers) else body.round_trip_time
 
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
@@ -220,8 +224,9 @@ def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None
 
 
 def set_length(params: Params, shortest: float | None) -> None:
-    """Set the length of the pieces that are lumped, in `Setup.params` or in one with a column for each member."""
-    params.shortest = AUTOMATIC_SHARE * params.round_trip_time if shortest is None else shortest
+    """Set the length of the pieces that are lumped, in `Setup.params` or in one with a column for each member, if it is given."""
+    if shortest is not None:
+        params.shortest = shortest
 
 
 def lumping_note(count: Counts, params: Params, shortest: float | None) -> str:

@@ -30,7 +30,7 @@ from stickslip.engine_input.forcing import (
     wave_before,
 )
 from stickslip.engine_input.ladder import first_pieces, ladder_of, set_counts
-from stickslip.engine_input.limits import set_length, set_lumping
+from stickslip.engine_input.limits import automatic_length, set_length, set_lumping
 from stickslip.engine_input.shaking import force_steps, put_ground, shaking_of, tone_of
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
@@ -129,12 +129,8 @@ def parameters_of(problem: Problem) -> Params:
     params.can_be_negative = 1.0 if law.can_be_negative else 0.0
     lowest, _ = law.range()
     params.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
-    params.damping, params.impedance, params.reflection, params.inertia = (
-        body.damping,
-        body.impedance,
-        body.reflection,
-        body.inertia,
-    )
+    params.damping, params.impedance, params.reflection = body.damping, body.impedance, body.reflection
+    params.inertia, params.shortest = body.inertia, automatic_length(body)
     if body.has_waves:
         params.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:

@@ -19,6 +19,7 @@ from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, counts_in
+from stickslip.engine.waves.merged_series import MEAN, MOST_TOGETHER
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
@@ -38,7 +39,7 @@ SAME = (
     *("driven", "one_way", "cells", "first_side", "joined", "folds_follow_slip"),
 )
 """Counts that follow from the problem alone, so that those in a file must be the same."""
-FLAGS = ("moved", "jump", "stiff", "folds_move", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps", "merging", "to_fold")
+FLAGS = ("moved", "jump", "stiff", "folds_move", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps", "merging")
 """Counts that are 0 or 1."""
 SIGNS = ("mode", "leaving_rest")
 """Counts that are a direction: -1, 0 or 1."""
@@ -206,6 +207,9 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
     yield "engine_count merged", not 0 <= count.merged <= count.previous_to - count.previous_from
+    yield "engine_count smooth_to", not count.smooth_to <= count.previous_to
+    yield "engine_count merge_guess", not 0 <= count.merge_guess <= 4 * MOST_TOGETHER
+    yield "engine_count merged_as", not 0 <= count.merged_as <= MEAN
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)
     yield "engine_count segment", not 0 <= count.trip_segment <= count.segment < len(setup.loading)
     yield "engine_count wave_shift", not 0 <= count.wave_shift <= at.NEVER

@@ -27,7 +27,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
-from stickslip.trajectory.status import Checkpoint, engine, rounding_note
+from stickslip.trajectory.status import Checkpoint, engine, merging_note, rounding_note
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""
@@ -120,8 +120,9 @@ class Session:
 
     @property
     def rounding_note(self) -> str:
-        """One line on steps with a law hidden by rounding, or an empty string if there are none."""
-        return rounding_note(int(self.count.rough), float(self.state.roughest))
+        """One line on steps with a law hidden by rounding and on merged waves, or an empty string if there are neither."""
+        merged = merging_note(float(self.state.merged_in_all + self.state.merged_now), self.problem.load_unit)
+        return "; ".join(note for note in (rounding_note(int(self.count.rough), float(self.state.roughest)), merged) if note)
 
     @property
     def creep(self) -> Floats:
@@ -231,7 +232,7 @@ class Session:
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
         self.count.echo_of = place[self.count.echo_of]
-        for name in ("length", "trip_from", "previous_from", "previous_to", "new_from"):
+        for name in ("length", "trip_from", "previous_from", "previous_to", "new_from", "smooth_to"):
             setattr(self.count, name, getattr(self.count, name) - dropped)
         self.count.wave_shift += dropped
         self._rebuild_queue()

@@ -77,6 +77,15 @@ def rounding_note(steps: int, share: float) -> str:
     )
 
 
+def merging_note(change: float, unit: str) -> str:
+    """Return one line on the changes of waves in layers by merging, in sum (Pa, N or N m); empty if nothing was merged."""
+    if change == 0.0:
+        return ""
+    return (
+        f"pieces of waves in the layers were merged, which changed the waves by {change:.1g} {unit} at most, added up over the run"
+    )
+
+
 FULL_HISTORY = -2
 """The history has reached its limit of pieces, or memory is short."""
 TOO_MANY = "too many pieces"

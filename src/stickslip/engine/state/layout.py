@@ -189,7 +189,9 @@ class Counts(MemoryRecord):
     folds_follow_slip: int  # 1 if the branches change with slip
     merging: int  # 1 if pieces of the waves in layers are merged in this round trip (`waves.merged_pieces`)
     merged: int  # number of pieces whose waves are the present piece of load, if they were merged; else 0
-    to_fold: int  # 1 if these waves are written in the root of the time left until they end
+    merged_as: int  # their form (`waves.merged_pieces`)
+    smooth_to: int  # first piece of the round trip before that does not follow without a jump, as far as is known
+    merge_guess: int  # number of pieces that are first tried as one
     merge_above: int  # they are merged when a round trip has more pieces than this
     merge_at: int  # and in this round trip, if not before
 
