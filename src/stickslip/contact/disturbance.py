@@ -47,17 +47,27 @@ class Disturbed:
     response: Response
 
     def is_stable(self) -> bool | None:
-        """Return True if every disturbance fades, False if one grows, None if one keeps its size."""
+        """Return True if every disturbance fades, False if one grows, None if one keeps its size, or if it is not decided."""
         if not self.body.has_waves:
             return _all_left(self._of_block())
         waves = self._waves
+        if isinstance(waves, LayerModes):
+            return waves.verdict
         if waves.is_off_branch or waves.roots_beyond(0.0) > 0:
             return False
         return None if waves.is_neutral else True
 
     def growth(self) -> Growth:
-        """Return the growth rate and the frequency of the disturbance that grows fastest, or fades most slowly."""
+        """Return the growth rate and the frequency of the disturbance that grows fastest, or fades most slowly; nan: not known."""
         return self._waves.growth() if self.body.has_waves else self._growth_of_block()
+
+    def one_that_grows(self) -> complex | None:
+        """Return the fastest root that is found to grow on layers (1/s), without proof that none grows faster; None without one."""
+        return self._waves.one_that_grows if isinstance(self._waves, LayerModes) else None
+
+    def near(self, root: complex) -> complex | None:
+        """Return the root on layers that the secant method reaches from a place (1/s), None if it reaches none."""
+        return self._waves.near(root) if isinstance(self._waves, LayerModes) else None
 
     @cached_property
     def _waves(self) -> WaveModes | LayerModes:

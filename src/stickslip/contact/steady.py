@@ -27,6 +27,7 @@ import numpy as np
 
 from stickslip.bodies import OfLayers
 from stickslip.bodies.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
+from stickslip.contact.crossing import crossing
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
@@ -263,6 +264,8 @@ class _Steady:
         growth = disturbed.growth()
         period = 2.0 * math.pi / growth.frequency if growth.frequency else math.inf
         stable, unit = disturbed.is_stable(), self.problem.load_unit
+        if (stable is True and growth.rate > 0.0) or (stable is False and growth.rate <= 0.0):
+            stable, growth, period = None, growth._replace(rate=math.nan), math.inf  # they contradict each other: not decided
         return Sliding(sign * rate, sign * self.traction(rate), self.states(rate)[0], stable, growth.rate, period, unit)
 
     # ---- the rates ------------------------------------------------------------------------------------------------------------
@@ -378,6 +381,8 @@ class _Steady:
     def _surely_stable(self, rate: float) -> bool | None:
         """Return whether sliding is stable; None if rounding decides: a little more or less normal load changes the answer."""
         body, response = self.problem.body, self.response(rate)
+        if isinstance(body, OfLayers):
+            return Disturbed(body, self.problem.normal, response).is_stable()
         more, less = (
             Disturbed(body, self.problem.normal * share, response).is_stable() is True for share in (1.0 + SURE, 1.0 - SURE)
         )
@@ -385,6 +390,8 @@ class _Steady:
 
     def _edge(self, low: float, high: float, stable_above: bool) -> float:
         """Return the slip rate (m/s) between two others where stability changes."""
+        if isinstance(self.problem.body, OfLayers):
+            return crossing(self.disturbed, low, high, stable_above)
         return sign_change(lambda rate: 1.0 if (self.disturbed(rate).is_stable() is True) == stable_above else -1.0, low, high)
 
     def _change(self, rate: float, stable_above: bool, enclosure: Any) -> StabilityChange:
