@@ -126,6 +126,7 @@ ROOMS = {
         ("layer_count",),
         ("rightmost",),
         ("layer_roots",),
+        ("layer_search",),
         ("layer_modes",),
         ("disturbance", "slopes", "steady_proof"),
         ("areas", "crossing", "lowest_slope", "turns"),

@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.contact.layer_count import Line, NotCountedError
-from stickslip.contact.layer_roots import LEAN, LayerRoots, in_period
+from stickslip.contact.layer_roots import LEAN, in_period
+from stickslip.contact.layer_search import LayerSearch
 from stickslip.contact.rightmost import SeenBeyond, climbed
 from stickslip.contact.secant import polished
 from stickslip.contact.wave_modes import Growth
@@ -28,7 +29,7 @@ SAME = 1e-8
 
 
 @dataclass(frozen=True)
-class LayerModes(LayerRoots):
+class LayerModes(LayerSearch):
     """The roots of a characteristic equation of layers as modes: the verdict on all of them, and the one that matters most."""
 
     @cached_property
@@ -119,7 +120,7 @@ class LayerModes(LayerRoots):
     @cached_property
     def _crowd(self) -> Growth:
         """The growth rate that modes tend to at high frequencies; -inf if there are none."""
-        if self.keeps_energy and not all(self.far):
+        if self.keeps_far_modes:
             return Growth(0.0, 0.0)
 
         def look(line: float) -> SeenBeyond:

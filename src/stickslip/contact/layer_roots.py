@@ -1,4 +1,4 @@
-"""Roots s of a(s) + b(s) W(s) = 0, the characteristic equation of layers, beyond a line of growth rates: counted, or sought.
+"""Roots s of a(s) + b(s) W(s) = 0, the characteristic equation of layers, beyond a line of growth rates.
 
 With the waves u and d = R u that leave the contact and come back this reads p u + q d = 0, p = a + Z b, q = a - Z b. Layers and
 drivers give no energy: abs(R) <= 1 for Re s >= 0. Nyquist's criterion counts the roots beyond a line where it is followed how often
@@ -26,7 +26,7 @@ from numpy.polynomial import polynomial as poly
 
 from stickslip.bodies import OfLayers
 from stickslip.bodies.layer_response import Complex, response_of
-from stickslip.contact.layer_count import MOST_PIECES, Followed, Line, NotCountedError, Share
+from stickslip.contact.layer_count import MOST_PIECES, Line, NotCountedError, Share
 from stickslip.contact.rightmost import SeenBeyond
 from stickslip.contact.secant import polished
 from stickslip.contact.wave_modes import Polynomial, WaveModes, parts_on_axis, roots_of, shifted
@@ -37,12 +37,8 @@ NEAR = 128
 """Number of places from which roots are sought."""
 SHORT = 2000
 """A span of frequencies is short if it has no more than this number of pieces at first."""
-FEWER = 8
+FEWER = 4
 """Left of the axis, where no verdict depends on it, a count may take fewer pieces by this factor (1)."""
-STRIDES = 12
-"""From a root others are sought that lie up to 2^STRIDES periods of the layers away."""
-WINDOWS = 24
-"""Number of places in which roots are sought if there are too many to count."""
 
 
 class Spans(NamedTuple):
@@ -70,7 +66,8 @@ class LayerRoots:
         return np.asarray(self.body.impedance * self.b)
 
     @cached_property
-    def _p(self) -> Polynomial:
+    def p(self) -> Polynomial:
+        """The polynomial a + Z b."""
         return np.asarray(poly.polytrim(poly.polyadd(self.a, self._z)))
 
     @property
@@ -91,6 +88,20 @@ class LayerRoots:
         return self.keeps_energy and not taken.any()
 
     @property
+    def keeps_far_modes(self) -> bool:
+        """True if modes of high frequency tend to those that drivers and contact leave alone: of any side, or of all together."""
+        of_a, of_b = self.far
+        held = math.inf if of_b == 0.0 else 0.0  # with these drivers there are modes that rest wherever drag is lumped
+        sides = [
+            abs(one.reflection) == 1.0 and (one.drag is None or one.driver_impedance == held) and not self.body.has_machine
+            for one in self.body.stacks
+        ]
+        apart = len(sides) > 1 and not self.body.is_joined
+        if of_a and of_b:
+            return False
+        return any(sides) if (of_a == 0.0) == apart else all(sides)
+
+    @property
     def is_algebraic(self) -> bool:
         """True if the contact has no mass and no states."""
         return len(self.a) == len(self.b) == 1
@@ -109,6 +120,11 @@ class LayerRoots:
     def value_far(self, s: Complex) -> Complex:
         """Return the same for the modes of high frequency."""
         return self._over_wave(s, *self.far)
+
+    def entire(self, s: Complex) -> Complex:
+        """Return a below + b above, which has no poles next to its roots, but those of modes that do not move the contact."""
+        above, below = response_of(self.body, s)
+        return np.asarray(poly.polyval(s, self.a) * below + poly.polyval(s, self.b) * above)
 
     def _over_wave(self, s: Complex, a: Any, b: Any) -> Complex:
         above, below = response_of(self.body, s)
@@ -137,16 +153,16 @@ class LayerRoots:
 
     def look(self, line: float) -> SeenBeyond:
         """Return the number of roots beyond a line (1/s), as `roots_beyond` does, and places near roots."""
-        spans = self._spans(line)
+        spans = self.spans(line)
         if spans is None:
             return SeenBeyond(math.inf, np.zeros(0, complex))
-        count, seeds = int(np.sum(roots_of(self._p).real > line)), [np.zeros(0, complex)]
+        count, seeds = int(np.sum(roots_of(self.p).real > line)), [np.zeros(0, complex)]
         lean = LEAN if line == 0.0 and len(self.body.stacks) > 1 else 0.0
         on = Line(self.body, line, lean, MOST_PIECES if line >= 0.0 else MOST_PIECES // FEWER)
         turning = on.cells - (_unmoved(self.body) if line == 0.0 and self.keeps_energy else 0)
         for low, high in spans.edges:
             turns = turning * ((high - low) / on.period - 1.0) - len(self.a) - len(self.b)
-            if line == 0.0 and self.keeps_energy and spans.share.to == self._matched and turns >= 1.0:
+            if line == 0.0 and self.keeps_energy and spans.share.to == self.matched and turns >= 1.0:
                 # R alone turns as often in each period as there are modes, and polynomials by half a turn for each of their roots
                 return SeenBeyond(math.floor(turns), np.zeros(0, complex))
             winds, found = spans.share.windings(on, low, high)
@@ -157,18 +173,18 @@ class LayerRoots:
         return SeenBeyond(count, np.concatenate(seeds))
 
     @property
-    def _matched(self) -> tuple[float, float]:
+    def matched(self) -> tuple[float, float]:
         """The numbers a' and b' of a contact from which no wave comes back: k = 0."""
         return self.body.impedance, 1.0
 
-    def _spans(self, line: float) -> Spans | None:
+    def spans(self, line: float) -> Spans | None:
         """Return where H may wind around 0 on a line, with the k that leaves less of it; None if there are endlessly many roots."""
         short, per_piece = math.inf, Line(self.body, line).period / (2 * sum(self.body.cells.counts))
         matched = None
         if line >= 0.0:
             largest = 1.0 if line == 0.0 and self.keeps_energy else _largest_share(self.body, line)
             ring = WaveModes(self.a, self._z, max(largest, 1e-300), 0.0).ring(line)
-            matched = Spans(Share(self.a, self.b, self._p, self._matched, self.body), _open(ring))
+            matched = Spans(Share(self.a, self.b, self.p, self.matched, self.body), _open(ring))
             short = matched.length / per_piece
             if short <= SHORT:
                 return matched
@@ -177,54 +193,11 @@ class LayerRoots:
         if line == 0.0 and in_period(self.body, 0.0, *self.far).number:
             return None
         of_far = Line(self.body, _off_axis(self.body, line)).largest_share(*self.far)
-        rest = poly.polysub(self.far[1] * self.a, self.far[0] * self.b)[: len(self._p) - 1]
+        rest = poly.polysub(self.far[1] * self.a, self.far[0] * self.b)[: len(self.p) - 1]
         known = 2.0 * self.body.impedance * of_far / abs(self.far[0] + self.body.impedance * self.far[1])
-        ring = poly.polysub(_square(self._p, line), known * known * _square(rest, line) if len(rest) else [0.0])
-        spans = Spans(Share(self.a, self.b, self._p, self.far, self.body), _open(ring))
+        ring = poly.polysub(_square(self.p, line), known * known * _square(rest, line) if len(rest) else [0.0])
+        spans = Spans(Share(self.a, self.b, self.p, self.far, self.body), _open(ring))
         return matched if matched is not None and matched.length < spans.length else spans
-
-    # ---- where they cannot be counted -------------------------------------------------------------------------------------------
-
-    @cached_property
-    def found_growing(self) -> list[complex]:
-        """Roots that are certain to grow, fastest first: found, not counted."""
-        return self.bettered([one for one in self.sought(0.0) if one.real > LEAN * abs(one)])
-
-    def bettered(self, roots: list[complex]) -> list[complex]:
-        """Return roots on the same side of the axis that lie no farther left, that farthest to the right first.
-
-        Roots follow each other in chains, one in each period of the layers, along which the growth rate changes slowly.
-        """
-        period, best = Line(self.body, 0.0).period, sorted(roots, key=lambda one: -one.real)[: NEAR // 8]
-        least = -math.ceil(math.log2(sum(self.body.cells.counts)))
-        strides = 1j * period * np.outer([1.0, -1.0], 2.0 ** np.arange(least, STRIDES)).ravel()
-        for _ in range(STRIDES if best else 0):
-            found = polished(self.value, (np.array(best)[:, None] + strides).ravel())
-            found = [one for one in found if (one.real < 0.0) is (best[0].real < 0.0) and abs(one.real) > LEAN * abs(one)]
-            better = sorted([*best, *found], key=lambda one: -one.real)[: NEAR // 8]
-            if better[0].real <= best[0].real:
-                break
-            best = better
-        return best
-
-    def sought(self, line: float) -> list[complex]:
-        """Return the roots that are found from places along a line (1/s), in some of all periods."""
-        try:
-            spans = self._spans(line)
-        except NotCountedError:
-            spans = None
-        if spans is None:
-            spans = Spans(Share(self.a, self.b, self._p, self._matched, self.body), [(0.0, math.inf)])
-        period, seeds = Line(self.body, line).period, []
-        number = 8 * min(sum(self.body.cells.counts), 500)
-        for low, high in spans.edges:
-            end = high if math.isfinite(high) else 1e3 * max(low, period, *np.abs(roots_of(self._p)))
-            for begin in np.append(0.0, np.geomspace(1e-12 * end, end, WINDOWS)) + low:
-                at = np.linspace(begin, begin + min(0.5 * period, end - low), number)
-                at[0] = max(at[0], 1e-15 * end)
-                values = spans.share.value(line + 1j * at)
-                seeds.append(Followed(at[:-1], at[1:], values[:-1], values[1:]).seeds(line, NEAR // 8))
-        return polished(self.value, np.concatenate(seeds)) if seeds else []
 
 
 def _square(p: Polynomial, line: float) -> Polynomial:
