@@ -346,11 +346,16 @@ class _Steady:
             return body.damping - body.impedance
         if isinstance(body, OfLayers):
             heavy = body.inertia > 0.0
-            return _largest(self._withstands, self._surely_falls_on_layers(body)) if heavy else taken_by_layers(body)
+            return _largest(self._withstands, self._surely_falls_on_layers(body)) if heavy else self._taken_by_layers(body)
         driver, own = body.driver_impedance, body.impedance
         if not body.has_inertia:
             return body.damping - own + min(driver, own * own / driver if driver else 0.0)
         return _largest(lambda fall: self._withstands(fall), driver + body.damping - own)
+
+    def _taken_by_layers(self, body: OfLayers) -> float:
+        """Return the same for layers without a mass at the contact: found by sampling, and checked by a count of roots."""
+        found = taken_by_layers(body)
+        return found if found == 0.0 or self._withstands(found * (1.0 - SAME)) else _largest(self._withstands, found)
 
     def _surely_falls(self) -> float:
         """Return a fall of friction with the slip rate (Pa s/m) that a slab under a machine does not withstand.
