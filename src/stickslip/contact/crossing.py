@@ -13,7 +13,7 @@ NARROW = 1.2
 """A root is followed between slip rates whose quotient is no larger than this at first (1)."""
 CHECKED = 1e-8
 """Verdicts are compared at slip rates that differ from the crossing by this share (1)."""
-ROUNDS = 16
+ROUNDS = 10
 """Largest number of roots that are followed."""
 
 
@@ -30,28 +30,36 @@ class _RateSought:
     disturbed: Callable[[float], Disturbed]
     stable_above: bool
 
-    def is_beyond(self, rate: float) -> bool:
-        """Return True if the verdict at a slip rate (m/s) is that above the crossing."""
-        return (self.disturbed(rate).is_stable() is True) == self.stable_above
+    def is_beyond(self, rate: float) -> bool | None:
+        """Return True if the verdict at a slip rate (m/s) is that above the crossing, None if it is not decided."""
+        stable = self.disturbed(rate).is_stable()
+        return None if stable is None else stable == self.stable_above
 
     def between(self, low: float, high: float) -> float:
         ratio = NARROW
         for _ in range(ROUNDS):
             while high > ratio * low:
                 middle = math.sqrt(low * high)
-                low, high = (low, middle) if self.is_beyond(middle) else (middle, high)
+                beyond = self.is_beyond(middle)
+                if beyond is None:
+                    break
+                low, high = (low, middle) if beyond else (middle, high)
             found = self.followed(low, high)
             if math.isnan(found):
                 ratio = math.sqrt(high / low)
                 continue
             before, after = max(found * (1.0 - CHECKED), low), min(found * (1.0 + CHECKED), high)
-            if self.is_beyond(before):
+            if self.is_beyond(before) is True:
                 high = before
-            elif self.is_beyond(after):
-                return found
-            else:
+            elif self.is_beyond(after) is False:
                 low = after
-        return sign_change(lambda rate: 1.0 if self.is_beyond(rate) else -1.0, low, high)
+            else:
+                return found
+        return sign_change(self.side, low, high)
+
+    def side(self, rate: float) -> float:
+        """Return a number above 0 beyond the crossing, where what is not decided counts as stable: no root is found that grows."""
+        return 1.0 if (self.disturbed(rate).is_stable() is not False) == self.stable_above else -1.0
 
     def followed(self, low: float, high: float) -> float:
         """Return where the root that grows fastest at one of two slip rates (m/s) crosses the axis; nan if it does not."""

@@ -23,6 +23,7 @@ from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.contact.layer_count import MOST_PIECES
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
 from stickslip.foundation.constants import RIGID
@@ -45,6 +46,8 @@ class Disturbed:
     body: BodyOnCharacteristics
     normal: float
     response: Response
+    pieces: int = MOST_PIECES
+    """Largest number of pieces in which roots on layers are counted."""
 
     def is_stable(self) -> bool | None:
         """Return True if every disturbance fades, False if one grows, None if one keeps its size, or if it is not decided."""
@@ -75,7 +78,7 @@ class Disturbed:
         own = poly.polymul([body.damping - body.impedance, body.inertia], below)
         a, z = poly.polytrim(poly.polyadd(own, self.normal * above)), body.impedance * below
         if isinstance(body, OfLayers):
-            return LayerModes(a, np.asarray(below, float), body)
+            return LayerModes(a, np.asarray(below, float), body, self.pieces)
         if not body.has_machine:
             return WaveModes(a, z, float(body.reflection), body.round_trip_time)
         # The machine resists with x = M s + kp + ki/s, so that r = -(x - Z) / (x + Z): both sides times x + Z.

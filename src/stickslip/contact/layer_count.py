@@ -24,9 +24,9 @@ from stickslip.foundation.arrays import Floats
 
 WIDEST = 1.2
 """Largest angle (rad) to each side of the middle of a piece, less than pi/2."""
-MOST_PIECES = 1 << 18
+MOST_PIECES = 1 << 17
 """Largest number of pieces of a line, unless it is given."""
-HALVINGS = 40
+HALVINGS = 22
 """Largest number of times that pieces are cut."""
 SMALL, CUTS = 0.9, 6
 """Pieces are cut so that the angle (rad) becomes this small, but into no more than so many."""

@@ -60,6 +60,8 @@ class LayerRoots:
     a: Polynomial
     b: Polynomial
     body: OfLayers
+    pieces: int = MOST_PIECES
+    """Largest number of pieces of a line."""
 
     @property
     def _z(self) -> Polynomial:
@@ -158,7 +160,7 @@ class LayerRoots:
             return SeenBeyond(math.inf, np.zeros(0, complex))
         count, seeds = int(np.sum(roots_of(self.p).real > line)), [np.zeros(0, complex)]
         lean = LEAN if line == 0.0 and len(self.body.stacks) > 1 else 0.0
-        on = Line(self.body, line, lean, MOST_PIECES if line >= 0.0 else MOST_PIECES // FEWER)
+        on = Line(self.body, line, lean, self.pieces if line >= 0.0 else MOST_PIECES // FEWER)
         turning = on.cells - (_unmoved(self.body) if line == 0.0 and self.keeps_energy else 0)
         for low, high in spans.edges:
             turns = turning * ((high - low) / on.period - 1.0) - len(self.a) - len(self.b)

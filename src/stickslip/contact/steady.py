@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any
@@ -47,6 +47,8 @@ CANCELLED = 1e-14
 """Rounding of a slope of a state's rate by the slip rate, relative to its terms."""
 SURE = 1e-12
 """Stability at a rate counts as known if this relative change of the normal load does not change it."""
+PATIENT = 1 << 20
+"""Largest number of pieces in which the roots of one motion on layers are counted, a second or two of work."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) next to rest; tractions that differ by less than this (relative) are equal."""
 
@@ -260,7 +262,7 @@ class _Steady:
 
     def sliding(self, rate: float) -> Sliding:
         """Return steady sliding at a slip rate (m/s), with its stability."""
-        disturbed, sign = self.disturbed(rate), math.copysign(1.0, self.drive)
+        disturbed, sign = replace(self.disturbed(rate), pieces=PATIENT), math.copysign(1.0, self.drive)
         growth = disturbed.growth()
         period = 2.0 * math.pi / growth.frequency if growth.frequency else math.inf
         stable, unit = disturbed.is_stable(), self.problem.load_unit
