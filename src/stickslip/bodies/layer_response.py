@@ -45,7 +45,32 @@ def response_of(body: OfLayers, s: NDArray[Any]) -> Quotient:
     return Quotient(one.above * other.above, crossed)
 
 
-def _of_side(layers: Layers, s: Complex) -> Quotient:
+class Crossing(NamedTuple):
+    """What happens to a disturbance on its way from a driver to the contact: a change of layer, drag, or cells that it crosses."""
+
+    ratio: float
+    """Impedance of the layer behind over that of the layer in front (1)."""
+    drag: float
+    """Stress over velocity that drag takes first, over the impedance in front (1)."""
+    time: float
+    """Time (s) that it then takes to cross cells."""
+
+
+def crossings_of(layers: Layers) -> list[Crossing]:
+    """Return what a disturbance of layers meets from the driver inwards."""
+    found, last = [], layers.impedances[-1]
+    drags = np.cumsum((0, *layers.counts[:-1]))
+    for z, count, dragged in zip(*map(reversed, (layers.impedances, layers.counts, layers.drags[drags].tolist())), strict=True):
+        together = 1 if dragged else count
+        for crossed in range(count // together):
+            ratio = last / z if crossed == 0 else 1.0
+            found.append(Crossing(ratio, dragged / z if crossed % 2 else 0.0, together * layers.time))
+        last = z
+    return found
+
+
+def at_driver(layers: Layers, s: Complex) -> Quotient:
+    """Return how the driver of layers resists, over the impedance of the last layer."""
     rigid, last = math.isinf(layers.driver_impedance), layers.impedances[-1]
     above = np.full(s.shape, 1.0 if rigid else layers.driver_impedance / last, complex)
     below = np.full(s.shape, 0.0 if rigid else 1.0, complex)
@@ -53,20 +78,28 @@ def _of_side(layers: Layers, s: Complex) -> Quotient:
         above += layers.driver_inertia * s / last
     if layers.driver_gain > 0.0:
         above, below = above * s + layers.driver_gain / last, s.copy()
-    drags = np.cumsum((0, *layers.counts[:-1]))
-    for z, count, dragged in zip(*map(reversed, (layers.impedances, layers.counts, layers.drags[drags].tolist())), strict=True):
-        above *= last / z  # above / below is W over the impedance of the present layer
-        together = 1 if dragged else count
-        fades = np.expm1(-2.0 * s * (together * layers.time))
-        with_it, against = 1.0 + 0.5 * fades, -0.5 * fades  # cosh and sinh, times exp(-s T)
-        for crossed in range(count // together):
-            if crossed % 2:
-                above = above + (dragged / z) * below
-            above, below = above * with_it + below * against, below * with_it + above * against
-            size = np.maximum(np.abs(above), np.abs(below))
-            above, below = np.asarray(above / size), np.asarray(below / size)
-        last = z
-    return Quotient(np.asarray(above * last), np.asarray(below))
+    return Quotient(above, below)
+
+
+def met_by(meets: Crossing, s: Complex, behind: Quotient) -> Quotient:
+    """Return how all that lies behind the near end of a crossing resists, over the impedance there."""
+    above, below = behind
+    if meets.ratio != 1.0:
+        above = above * meets.ratio
+    if meets.drag:
+        above = above + meets.drag * below
+    fades = np.expm1(-2.0 * s * meets.time)
+    with_it, against = 1.0 + 0.5 * fades, -0.5 * fades  # cosh and sinh, times exp(-s T)
+    above, below = above * with_it + below * against, below * with_it + above * against
+    size = np.maximum(np.abs(above), np.abs(below))
+    return Quotient(np.asarray(above / size), np.asarray(below / size))
+
+
+def _of_side(layers: Layers, s: Complex) -> Quotient:
+    found = at_driver(layers, s)
+    for meets in crossings_of(layers):
+        found = met_by(meets, s, found)
+    return Quotient(found.above * layers.impedances[0], found.below)
 
 
 class SteadyDrive(NamedTuple):

@@ -23,6 +23,7 @@ from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.contact.layer_count import MOST_PIECES
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
 from stickslip.foundation.constants import RIGID
@@ -45,19 +46,31 @@ class Disturbed:
     body: BodyOnCharacteristics
     normal: float
     response: Response
+    pieces: int = MOST_PIECES
+    """Largest number of pieces in which roots on layers are counted."""
 
     def is_stable(self) -> bool | None:
-        """Return True if every disturbance fades, False if one grows, None if one keeps its size."""
+        """Return True if every disturbance fades, False if one grows, None if one keeps its size, or if it is not decided."""
         if not self.body.has_waves:
             return _all_left(self._of_block())
         waves = self._waves
+        if isinstance(waves, LayerModes):
+            return waves.verdict
         if waves.is_off_branch or waves.roots_beyond(0.0) > 0:
             return False
         return None if waves.is_neutral else True
 
     def growth(self) -> Growth:
-        """Return the growth rate and the frequency of the disturbance that grows fastest, or fades most slowly."""
+        """Return the growth rate and the frequency of the disturbance that grows fastest, or fades most slowly; nan: not known."""
         return self._waves.growth() if self.body.has_waves else self._growth_of_block()
+
+    def one_that_grows(self) -> complex | None:
+        """Return the fastest root that is found to grow on layers (1/s), without proof that none grows faster; None without one."""
+        return self._waves.one_that_grows if isinstance(self._waves, LayerModes) else None
+
+    def near(self, root: complex) -> complex | None:
+        """Return the root on layers that the secant method reaches from a place (1/s), None if it reaches none."""
+        return self._waves.near(root) if isinstance(self._waves, LayerModes) else None
 
     @cached_property
     def _waves(self) -> WaveModes | LayerModes:
@@ -65,7 +78,7 @@ class Disturbed:
         own = poly.polymul([body.damping - body.impedance, body.inertia], below)
         a, z = poly.polytrim(poly.polyadd(own, self.normal * above)), body.impedance * below
         if isinstance(body, OfLayers):
-            return LayerModes(a, np.asarray(below, float), body)
+            return LayerModes(a, np.asarray(below, float), body, self.pieces)
         if not body.has_machine:
             return WaveModes(a, z, float(body.reflection), body.round_trip_time)
         # The machine resists with x = M s + kp + ki/s, so that r = -(x - Z) / (x + Z): both sides times x + Z.

@@ -37,9 +37,9 @@ class Sliding:
     states: tuple[float, ...]
     """The states of the law, as users see them, in the direction of slip."""
     stable: bool | None
-    """True if every small disturbance fades, False if one grows, None if one keeps its size."""
+    """True if every small disturbance fades, False if one grows, None if one keeps its size, or if it is not decided."""
     growth: float
-    """Growth rate (1/s) of the disturbance that grows fastest or fades most slowly.
+    """Growth rate (1/s) of the disturbance that grows fastest or fades most slowly; nan if it is not decided.
 
     It is inf if the contact has no mass and friction falls with the slip rate faster than waves carry away: nothing stays at
     such a rate. It is 0 if disturbances keep their size, or fade ever more slowly at ever higher frequencies.
@@ -60,18 +60,25 @@ class Sliding:
 
     @property
     def verdict(self) -> str:
-        """The word for `stable`: stable, unstable or neutral."""
+        """The word for `stable`: stable, unstable, neutral or not decided."""
+        if self.stable is None and math.isnan(self.growth):
+            return "not decided"
         return "neutral" if self.stable is None else "stable" if self.stable else "unstable"
 
     def __str__(self) -> str:
         if self.growth == math.inf:
             return "unstable at once: friction falls faster with the slip rate than waves carry away"
+        if math.isnan(self.growth):
+            known = {True: "every small disturbance fades", False: "a small disturbance grows"}
+            if self.stable is None:
+                return "not decided: too many modes, or one of them so close to keeping its size that rounding decides"
+            return f"{self.verdict}: {known[self.stable]}, how fast is not decided"
         if self.stable is None:
             return "neutral: a small disturbance neither grows nor fades"
         swings = f", with a period of {self.period:.6g} s" if 0.0 < self.period < math.inf else ""
         if self.growth == 0.0:
             return "stable: every small disturbance fades, but the faster it swings, the more slowly"
-        does = "grows" if self.growth > 0.0 else "fades"
+        does = "fades" if self.stable else "grows"
         size = "at once" if math.isinf(self.growth) else f"at {abs(self.growth):.6g} /s"
         slowly = f", by a factor e in {brief(1.0 / self.growth / YEAR, '1', 2)} years" if 0.0 < self.growth <= NEVER else ""
         return f"{self.verdict}: a small disturbance {does} {size}{slowly}{swings}"

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any
@@ -27,6 +27,7 @@ import numpy as np
 
 from stickslip.bodies import OfLayers
 from stickslip.bodies.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
+from stickslip.contact.crossing import crossing
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
@@ -46,6 +47,8 @@ CANCELLED = 1e-14
 """Rounding of a slope of a state's rate by the slip rate, relative to its terms."""
 SURE = 1e-12
 """Stability at a rate counts as known if this relative change of the normal load does not change it."""
+PATIENT = 1 << 20
+"""Largest number of pieces in which the roots of one motion on layers are counted, a second or two of work."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) next to rest; tractions that differ by less than this (relative) are equal."""
 
@@ -259,10 +262,12 @@ class _Steady:
 
     def sliding(self, rate: float) -> Sliding:
         """Return steady sliding at a slip rate (m/s), with its stability."""
-        disturbed, sign = self.disturbed(rate), math.copysign(1.0, self.drive)
+        disturbed, sign = replace(self.disturbed(rate), pieces=PATIENT), math.copysign(1.0, self.drive)
         growth = disturbed.growth()
         period = 2.0 * math.pi / growth.frequency if growth.frequency else math.inf
         stable, unit = disturbed.is_stable(), self.problem.load_unit
+        if (stable is True and growth.rate > 0.0) or (stable is False and growth.rate <= 0.0):
+            stable, growth, period = None, growth._replace(rate=math.nan), math.inf  # they contradict each other: not decided
         return Sliding(sign * rate, sign * self.traction(rate), self.states(rate)[0], stable, growth.rate, period, unit)
 
     # ---- the rates ------------------------------------------------------------------------------------------------------------
@@ -343,11 +348,16 @@ class _Steady:
             return body.damping - body.impedance
         if isinstance(body, OfLayers):
             heavy = body.inertia > 0.0
-            return _largest(self._withstands, self._surely_falls_on_layers(body)) if heavy else taken_by_layers(body)
+            return _largest(self._withstands, self._surely_falls_on_layers(body)) if heavy else self._taken_by_layers(body)
         driver, own = body.driver_impedance, body.impedance
         if not body.has_inertia:
             return body.damping - own + min(driver, own * own / driver if driver else 0.0)
         return _largest(lambda fall: self._withstands(fall), driver + body.damping - own)
+
+    def _taken_by_layers(self, body: OfLayers) -> float:
+        """Return the same for layers without a mass at the contact: found by sampling, and checked by a count of roots."""
+        found = taken_by_layers(body)
+        return found if found == 0.0 or self._withstands(found * (1.0 - SAME)) else _largest(self._withstands, found)
 
     def _surely_falls(self) -> float:
         """Return a fall of friction with the slip rate (Pa s/m) that a slab under a machine does not withstand.
@@ -378,6 +388,8 @@ class _Steady:
     def _surely_stable(self, rate: float) -> bool | None:
         """Return whether sliding is stable; None if rounding decides: a little more or less normal load changes the answer."""
         body, response = self.problem.body, self.response(rate)
+        if isinstance(body, OfLayers):
+            return Disturbed(body, self.problem.normal, response).is_stable()
         more, less = (
             Disturbed(body, self.problem.normal * share, response).is_stable() is True for share in (1.0 + SURE, 1.0 - SURE)
         )
@@ -385,6 +397,8 @@ class _Steady:
 
     def _edge(self, low: float, high: float, stable_above: bool) -> float:
         """Return the slip rate (m/s) between two others where stability changes."""
+        if isinstance(self.problem.body, OfLayers):
+            return crossing(self.disturbed, low, high, stable_above)
         return sign_change(lambda rate: 1.0 if (self.disturbed(rate).is_stable() is True) == stable_above else -1.0, low, high)
 
     def _change(self, rate: float, stable_above: bool, enclosure: Any) -> StabilityChange:
