@@ -351,9 +351,17 @@ class Waves:
         at, weights = places_in(self.history, piece, *self._places(piece, begin, end), leaped)
         return Sampled(self.leaving(at), self._time(at, since), weights.ravel())
 
+    @cached_property
+    def _breaks(self) -> dict[int, list[float]]:
+        """The offsets (s) where segments of the loading begin, by round trip."""
+        found: dict[int, list[float]] = {}
+        for trip, offset in self.inflow.breaks():
+            found.setdefault(trip, []).append(offset)
+        return found
+
     def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, trip: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Cut pieces (offsets in a round trip, s) into parts whose echo meets the same segment of the loading throughout."""
-        breaks = np.array([offset for other, offset in self.inflow.breaks() if other == trip + 1])
+        breaks = np.array(self._breaks.get(trip + 1, ()))
         edges = np.unique(np.concatenate([begin, breaks[(breaks > begin[:1]) & (breaks < end[-1:])] if len(piece) else breaks[:0]]))
         which = np.searchsorted(begin, edges, side="right") - 1
         return piece[which], edges, np.minimum(np.append(edges[1:], end[-1:]), end[which])
