@@ -51,6 +51,8 @@ CRUDE = 1e-4
 rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
 LONG = 1e-11
 """This holds for steps that last at least this share (1) of a round trip: in a shorter one the acceleration is rounding."""
+FAINT = 1e-290
+"""And for slip rates (m/s) above this: below, floats lose their digits."""
 MOST_HIDDEN = 0.02
 """A part that may hide more than this share (1) of what is allowed has no bound: its parts, or a shorter step, hide far less."""
 HOPELESS = 1e100
@@ -131,7 +133,8 @@ def share_of_part(run: Run, start: float, width: float) -> float:
     bound = LEBESGUE * proof.measured + proof.hidden
     proof.bound = larger(proof.bound, bound)
     share = PROVEN * max(bound * proof.rate_yields - LEBESGUE * proof.rate_rounding, 0.0) / proof.rate_allowed
-    if run.counts.mode != 0 and proof.duration > LONG * run.params.round_trip_time:
+    long = proof.duration > LONG * run.params.round_trip_time
+    if run.counts.mode != 0 and long and abs(run.trial[0]) > FAINT:
         share = larger(share, bound / (CRUDE * run.params.normal))
     for n in range(own_states(run)):
         missed = (LEBESGUE * proof.state_measured[n] + proof.state_hidden[n]) * proof.state_yields[n]
