@@ -1,8 +1,8 @@
 """`python -m benchmarks.wrong_code`: is a run noticed whose engine has one wrong line of code, where it writes what is given?
 
 The engine runs as plain Python (`engine.compile.uncompiled`), and a function of it is replaced by one whose result has a wrong
-coefficient: of the series of the normal load, of that of a machine's rate, and of that of the tone of a loading. Implicit steps take
-too long as plain Python.
+coefficient: of the series of the normal load, of that of a machine's rate, and of that of the tone of a loading. Implicit steps
+take too long as plain Python.
 """
 
 from __future__ import annotations
