@@ -78,8 +78,9 @@ def test_a_run_with_leaps_beside_rest_is_resumed_bit_for_bit(printed: ss.Solutio
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "most"), [("fig5-slab-printed", 1_500_000), ("fig5-slab-u0-1e-2", 1_200_000)])
 def test_slabs_of_figure_5_go_on_for_400_years(name: str, most: int) -> None:
-    """Slip follows the plate: 20 m in 400 years, within 2 m."""
-    run = ss.simulate(ss.load_scenario(name).problem, "400 years", max_pieces=most)
+    """Slip is more than the plate's 20 m, because the slab begins loaded, and less than that with all of the load given back."""
+    stated = ss.load_scenario(name).problem
+    run = ss.simulate(stated, "400 years", max_pieces=most)
     assert run.status.ok
-    assert abs(float(run.slip(run.duration)) - 20.0) < 2.0
+    assert 20.0 < float(run.slip(run.duration)) < 20.0 + stated.load / stated.body.stiffness
     assert len(run.events) > 10

@@ -81,9 +81,10 @@ class Planner:
             if state is None:
                 stride, growth = 0.5 * stride, 1.0
                 continue
-            if state.trips - states[-1].trips < LEAST_ADVANCE:
-                break
+            advance = state.trips - states[-1].trips
             states.append(state)
+            if advance < LEAST_ADVANCE:
+                break
             stride, growth = stride * growth, min(growth + 0.1, LONGER)
         whole = math.floor(states[-1].trips)
         while len(states) > 1 and states[-1].trips > whole:
