@@ -88,6 +88,7 @@ def test_a_normal_load_that_varies_on_layers_tells_the_same_merged() -> None:
     np.testing.assert_allclose(merged.slip(time), known.slip(time), rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_energies_balance_where_pieces_are_merged() -> None:
     run = ss.simulate(machine_above_collars(), 18.0)
     energy = run.energy(np.array([13.0, 18.0]))

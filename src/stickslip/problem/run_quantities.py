@@ -10,7 +10,9 @@ from stickslip.foundation.quantities import Quantity
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
 CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
-SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
+SHORTEST_EVENT = Quantity(
+    "s", "lump slip events that are shorter (slab, rigid driver; layers); 0: none; else automatic", at_least=0
+)
 CHECKPOINT_INTERVAL = Quantity("s", "wall-clock time between two checkpoints", at_least=0, infinite=True)
 EVENT_RATE = Quantity("m/s", "slip rate above which the contact is in a slip event", at_least=0)
 EVENT_SHARE = 1e-6
