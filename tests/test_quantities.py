@@ -175,7 +175,7 @@ def test_turns_and_radians_are_not_confused(unit: str, si: str) -> None:
         si_factor(unit, si)
 
 
-@pytest.mark.parametrize(("unit", "si"), [("mN", "N m"), ("lb", "Pa"), ("G", "m"), ("KN", "N m"), ("ms-2", "m/s^2")])
+@pytest.mark.parametrize(("unit", "si"), [("mN", "N m"), ("lb", "Pa"), ("G", "m"), ("lb", "s"), ("ms-2", "m/s^2")])
 def test_a_unit_that_does_not_fit_is_not_made_to(unit: str, si: str) -> None:
     with pytest.raises(InputError) as caught:
         si_factor(unit, si)

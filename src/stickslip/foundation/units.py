@@ -147,8 +147,11 @@ _ACCELERATIONS = {
     "mGal": Fraction(1, 100_000),
 }
 """Units of acceleration whose names mean another thing elsewhere: g is also a gram, and pint's gal is a gallon."""
-_IN_CAPITALS = "m mm cm km ft kft in s ms min hr kg lb rad deg rpm rev N kN MN lbf lbs klb klbs klbf kip Pa kPa MPa GPa bar psi ksi Nm kNm daNm"
-_CAPITALS = {name.upper(): name for name in _IN_CAPITALS.split()}
+_LOGGED = (
+    *("m", "mm", "cm", "km", "ft", "kft", "in", "s", "ms", "min", "hr", "kg", "rad", "deg", "rpm", "rev", "N", "kN", "MN"),
+    *("lb", "lbs", "lbf", "klb", "klbs", "klbf", "kip", "Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "Nm", "kNm", "daNm"),
+)
+_CAPITALS = {name.upper(): name for name in _LOGGED}
 """What a unit in capitals means, as old loggers write it, where it means nothing else: MPA is never a thousandth of a pascal."""
 _WEIGHTS = {"lb": "lbf", "lbs": "lbf", "klb": "klbf", "klbs": "klbf"}
 """What drillers weigh in pounds is a force, as in ft-lb, wherever a mass does not convert."""
