@@ -10,6 +10,8 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.headings import is_number
+from stickslip.foundation.units import split_quantity
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
@@ -17,7 +19,10 @@ _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?
 
 
 class TypedRange(NamedTuple):
-    """A range as it is typed, LOW..HIGH[:POINTS][:log]: its ends as texts, and the number of points, None if it has none."""
+    """A range as it is typed, LOW..HIGH[:POINTS][:log]: its ends as texts, and the number of points, None if it has none.
+
+    A unit at one end is that of both: 40..120 rpm begins at 40 rpm.
+    """
 
     low: str
     high: str
@@ -28,7 +33,16 @@ class TypedRange(NamedTuple):
     def of(cls, text: str) -> TypedRange | None:
         """Return the range in a text, or None if it has another form."""
         found = _RANGE.fullmatch(text.strip())
-        return found and cls(found["low"], found["high"], int(found["points"]) if found["points"] else None, bool(found["log"]))
+        if found is None:
+            return None
+        low, high = _in_one_unit(found["low"], found["high"]), _in_one_unit(found["high"], found["low"])
+        return cls(low, high, int(found["points"]) if found["points"] else None, bool(found["log"]))
+
+
+def _in_one_unit(end: str, other: str) -> str:
+    """Return the text of an end with the unit of the other one, if it is a number without a unit."""
+    quantity = split_quantity(other)
+    return f"{end.strip()} {quantity[1]}" if quantity and is_number(end) else end
 
 
 def check_ends(name: str, low: float, high: float, *, log: bool = False, unit: str = "") -> None:
