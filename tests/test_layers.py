@@ -39,9 +39,9 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "axis", "determined", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "memory", "names", "units"),
         ("conversion", "headings", "netcdf_file"),
-        ("columns", "quantities"),
+        ("axis", "columns", "quantities"),
         ("other_values", "show", "text_columns"),
         ("zarr_folder",),
     ),

@@ -16,7 +16,17 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import LARGEST, LARGEST_WHOLE, SMALLEST, Quantity, fields_of
-from stickslip.foundation.units import COMMON_UNITS, UNITS, _looked_up, si_factor, split_quantity, tabulated, to_si
+from stickslip.foundation.units import (
+    _TORQUES,
+    COMMON_UNITS,
+    SPELLINGS,
+    UNITS,
+    _looked_up,
+    si_factor,
+    split_quantity,
+    tabulated,
+    to_si,
+)
 from stickslip.friction import LAWS
 from stickslip.loading import HISTORIES
 
@@ -103,22 +113,73 @@ def test_other_units_are_refused(unit: str, si: str, message: str) -> None:
     assert str(caught.value) == message
 
 
-@pytest.mark.parametrize("name", UNITS)
+@pytest.mark.parametrize("name", sorted(set(UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES}))
 def test_every_name_of_the_table_is_what_the_library_of_units_says(name: str) -> None:
     assert tabulated(name) == _looked_up(name, "")
 
 
 def test_units_made_of_several_names_are_what_the_library_of_units_says() -> None:
     draw = random.Random(1)
-    names = list(UNITS)
+    names = sorted(set(UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES})
     for _ in range(500):
-        factors = [draw.choice(names) + draw.choice(["", "", "^2", "**-1", " ^ 3", "^-9"]) for _ in range(draw.randint(1, 4))]
+        factors = [draw.choice(names) + draw.choice(["", "", "^2", "**-1", " ^ 3", "^-9", "-2"]) for _ in range(draw.randint(1, 4))]
         unit = (
             draw.choice(["", "1/", "1/ "])
             + factors[0]
-            + "".join(draw.choice([" ", "*", "/", " * ", " / "]) + one for one in factors[1:])
+            + "".join(draw.choice([" ", "*", "/", " * ", " / ", ".", "·", "-"]) + one for one in factors[1:])
         )
         assert tabulated(unit) == _looked_up(unit, ""), unit
+
+
+FEET = 0.3048
+POUNDS = 4.4482216152605
+"""Newtons in a pound-force."""
+
+
+@pytest.mark.parametrize(
+    ("written", "si", "expected"),
+    [
+        *((unit, "N m", 1.0) for unit in ("N.m", "N·m", "Nm", "N-m", "NM")),
+        *((unit, "N m", 1000.0) for unit in ("kN.m", "kNm", "kN-m", "KNM", "KN.M", "kN m")),
+        *((unit, "N m", 10.0) for unit in ("daNm", "daN.m", "DANM")),
+        *((unit, "N m", FEET * POUNDS) for unit in ("ft-lbf", "ft.lbf", "FT-LBF", "ft-lb", "lb-ft", "FT.LBS", "ft lbf")),
+        *((unit, "N m", 1000 * FEET * POUNDS) for unit in ("kft.lbf", "kft-lb", "klbf ft", "KFT-LBF")),
+        *((unit, "N", 1000 * POUNDS) for unit in ("klbf", "klb", "klbs", "KLBF", "kip", "KIP")),
+        *(
+            (unit, "rad/s", math.pi / 30)
+            for unit in ("rpm", "RPM", "rev/min", "r/min", "REV/MIN", "1/min", "min-1", "min^-1", "/min")
+        ),
+        *((unit, "m/s^2", 9.80665) for unit in ("g", "G", "g's")),
+        *((unit, "m/s^2", 0.0980665) for unit in ("%g",)),
+        *((unit, "m/s^2", 0.00980665) for unit in ("mg",)),
+        *((unit, "m/s^2", 0.01) for unit in ("Gal", "gal", "cm/s/s", "cm.s-2", "cm s-2")),
+        *((unit, "m/s^2", 1.0) for unit in ("m.s-2", "m s-2", "m/s/s", "m/s2", "M/S2")),
+        *((unit, "m", 1e-6) for unit in ("mic", "mics", "micron", "microns")),
+        *((unit, "Pa", 1e6) for unit in ("MPa", "MPA")),
+        *((unit, "Pa", 6894.757293168362) for unit in ("psi", "PSI")),
+    ],
+)
+def test_units_as_the_trades_write_them(written: str, si: str, expected: float) -> None:
+    number, unit = split_quantity(f"2 {written.removeprefix('1')}") or (0.0, "")
+    assert to_si(number, unit, si) == pytest.approx(2.0 * expected, rel=1e-15, abs=0)
+
+
+def test_an_angle_in_a_unit_is_taken_at_its_word() -> None:
+    assert to_si(60.0, "rad/min", "rad/s") == 1.0
+    assert to_si(60.0, "/min", "1/s") == 1.0
+
+
+@pytest.mark.parametrize(("unit", "si"), [("/min", "N m/rad"), ("min^-1", "s/rad"), ("kHz", "rad/s")])
+def test_turns_and_radians_are_not_confused(unit: str, si: str) -> None:
+    with pytest.raises(InputError, match="may be turns or radians per second: write rpm or rad/s"):
+        si_factor(unit, si)
+
+
+@pytest.mark.parametrize(("unit", "si"), [("mN", "N m"), ("lb", "Pa"), ("G", "m"), ("lb", "s"), ("ms-2", "m/s^2")])
+def test_a_unit_that_does_not_fit_is_not_made_to(unit: str, si: str) -> None:
+    with pytest.raises(InputError) as caught:
+        si_factor(unit, si)
+    assert str(caught.value) == f"'{unit}' does not convert to {si}"
 
 
 @pytest.mark.parametrize("unit", COMMON_UNITS)
@@ -126,7 +187,7 @@ def test_common_units_need_no_library_of_units(unit: str) -> None:
     assert tabulated(unit) is not None
 
 
-@pytest.mark.parametrize("unit", ["", "1", "m*", "* m", "m^10", "m^", "m//s", "m (s)", "parsnip", "psi", "km parsnip", "hbar"])
+@pytest.mark.parametrize("unit", ["", "1", "m*", "* m", "m^10", "m^", "m//s", "m (s)", "parsnip", "mmHg", "km parsnip", "hbar"])
 def test_the_table_leaves_all_else_to_the_library_of_units(unit: str) -> None:
     assert tabulated(unit) is None
 

@@ -93,3 +93,9 @@ def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -
 def test_what_cannot_be_is_refused_in_one_line(values: dict[str, Any], message: str) -> None:
     with refused(message):
         ss.scenarios["fig6-slab"].with_values(values)
+
+
+def test_a_plain_number_for_what_turns_is_said_back_with_its_unit() -> None:
+    string = ss.scenarios["drill-string"]
+    assert string.with_values({"pull_rate": 120.0}).title.endswith(": pull_rate = 120 rad/s (1145.9 rpm)")
+    assert string.with_values({"pull_rate": "120 rpm"}).title.endswith(": pull_rate = 120 rpm")

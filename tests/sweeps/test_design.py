@@ -37,6 +37,8 @@ def test_a_range_is_even_or_in_equal_ratios_and_in_si() -> None:
     np.testing.assert_allclose(thickness, [1e3, 1e4, 1e5], rtol=1e-14, atol=0)
     assert thickness[0] == 1e3
     assert thickness[-1] == 1e5
+    np.testing.assert_array_equal(values("body.thickness=1..3 km:3"), values("body.thickness=1km..3:3"))
+    np.testing.assert_array_equal(values("body.thickness=1..3 km:3"), [1e3, 2e3, 3e3])
     rates = values("loading.pull_rate=1 mm/year..1 m/year:4:log") * ss.YEAR
     np.testing.assert_allclose(rates, [1e-3, 1e-2, 1e-1, 1.0], rtol=1e-14, atol=0)
 
@@ -204,7 +206,7 @@ BAD = {
     "friction.alpha=1..2:4:lin": "the number of points of a range must be a whole number, as in LOW..HIGH:40, got '4:lin'",
     "friction.alpha=2..1:5": "must go from a smaller to a larger number, got 2 to 1 s/m",
     "friction.alpha=0..1:5:log": "must begin above 0",
-    "friction.alpha=1..2 km:5": "'2 km': 'km' does not convert to s/m",
+    "friction.alpha=1..2 km:5": "'1 km': 'km' does not convert to s/m",
     "friction.alpha=1,1": "has the value 1.0 twice",
     "friction.alpha=-1..1:5": "friction.alpha must be",
     "friction.alpha=nan,1": "must be finite",

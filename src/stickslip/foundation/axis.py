@@ -11,6 +11,8 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.headings import is_number
+from stickslip.foundation.units import split_quantity
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
@@ -19,7 +21,10 @@ _COUNTED = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+?)\s*:(?P<points>.*?)(?P<l
 
 
 class TypedRange(NamedTuple):
-    """A range as it is typed, LOW..HIGH[:POINTS][:log]: its ends as texts, and the number of points, None if it has none."""
+    """A range as it is typed, LOW..HIGH[:POINTS][:log]: its ends as texts, and the number of points, None if it has none.
+
+    A unit at one end is that of both: 40..120 rpm begins at 40 rpm.
+    """
 
     low: str
     high: str
@@ -33,9 +38,11 @@ class TypedRange(NamedTuple):
         Raises InputError, which begins with `where`, for a number of points that is not whole; 1e3 is.
         """
         if found := _RANGE.fullmatch(text.strip()):
-            return cls(found["low"], found["high"], None, bool(found["log"]))
-        counted = _COUNTED.fullmatch(text.strip())
-        return counted and cls(counted["low"], counted["high"], _count(counted["points"].strip(), where), bool(counted["log"]))
+            return cls(*_in_one_unit(found["low"], found["high"]), None, bool(found["log"]))
+        if counted := _COUNTED.fullmatch(text.strip()):
+            ends = _in_one_unit(counted["low"], counted["high"])
+            return cls(*ends, _count(counted["points"].strip(), where), bool(counted["log"]))
+        return None
 
 
 def _count(text: str, where: str) -> int:
@@ -44,6 +51,14 @@ def _count(text: str, where: str) -> int:
         if float(text).is_integer():
             return int(text) if text.isdecimal() else int(float(text))
     raise InputError(f"{where}: the number of points of a range must be a whole number, as in LOW..HIGH:40, got {ascii(text)[:60]}")
+
+
+def _in_one_unit(low: str, high: str) -> tuple[str, str]:
+    """Return two ends as texts; one that is a number without a unit gets that of the other one."""
+    first, last = split_quantity(low), split_quantity(high)
+    if first and is_number(high):
+        return low, f"{high.strip()} {first[1]}"
+    return (f"{low.strip()} {last[1]}" if last and is_number(low) else low), high
 
 
 def check_ends(name: str, low: float, high: float, *, log: bool = False, unit: str = "") -> None:

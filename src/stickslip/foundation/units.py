@@ -8,6 +8,7 @@ start. All others are left to pint.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache, lru_cache
 from typing import Any
@@ -25,16 +26,20 @@ COMMON_UNITS = (
 Dimensions = dict[str, int]
 """Powers of the base dimensions of a unit, by their names in pint; a dimension with the power 0 is left out."""
 
-_NAME = r"[A-Za-zµ][A-Za-zµ_]*"
-_POWER = r"(?:\s*(?:\^|\*\*)\s*-?[1-9]|[1-9])"
+_NAME = r"(?:%g|[A-Za-zµ][A-Za-zµ_]*(?:'s)?)"
+_POWER = r"(?:\s*(?:\^|\*\*)\s*-?[1-9]|-?[1-9])"
 _FACTOR = rf"{_NAME}{_POWER}?"
-UNIT = rf"(?:/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*"
-"""Grammar of a unit: names with small powers, m^3 or m3; a stroke applies to the next name only."""
+_PRODUCT = r"(?:\s*[*/ ]\s*|[.·⋅](?=[A-Za-zµ])|-(?=[A-Za-zµ]))"
+UNIT = rf"(?:/\s*)?{_FACTOR}(?:{_PRODUCT}{_FACTOR})*"
+"""Grammar of a unit: names with small powers, m^3, m3 or s-1, apart or joined as in kN.m and ft-lbf; a stroke applies to the next
+name only."""
 _ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME})(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>-?[1-9]))?")
 _WHOLE = re.compile(rf"1?\s*{UNIT}\s*")
 _QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)(?:\s+1(?=/)|\s*)(?P<unit>{UNIT})\s*")
 _PER_TURN = re.compile(r"(Hz|hertz)(?![A-Za-z])")
 """A frequency: the unit library has it as 1/s, where drillers and turners mean turns per second."""
+_PER_MINUTE = re.compile(r"/\s*min(?:utes?)?|min(?:\s*(?:\^|\*\*)\s*)?-1")
+"""Without an angle: what turns is said to do so many turns, not radians, in a minute."""
 _BASES = ("[length]", "[mass]", "[time]")
 _PREFIXES = {
     **{"p": -12, "n": -9, "u": -6, "µ": -6, "m": -3, "c": -2, "d": -1, "h": 2, "k": 3, "M": 6, "G": 9, "T": 12},
@@ -43,6 +48,8 @@ _PREFIXES = {
 """Powers of ten."""
 _PI = Fraction("3.1415926535897932384626433832795028841971693993751")
 """Pi as in pint."""
+_INCH, _POUND, _GRAVITY = Fraction(254, 10_000), Fraction(45_359_237, 100_000), Fraction(980_665, 100_000)
+"""In m, in g and in m/s^2."""
 _SYMBOLS = {
     "rad": (1, (0, 0, 0)),
     "m": (1, (1, 0, 0)),
@@ -76,8 +83,20 @@ _OTHERS: dict[str, tuple[int | Fraction, tuple[int, ...]]] = {
     **dict.fromkeys(("deg", "degree", "degrees"), (_PI / 180, (0, 0, 0))),
     **dict.fromkeys(("turn", "turns", "revolution", "revolutions"), (2 * _PI, (0, 0, 0))),
     "rpm": (_PI / 30, (0, 0, -1)),
+    **dict.fromkeys(("ft", "foot", "feet"), (_INCH * 12, (1, 0, 0))),
+    "kft": (_INCH * 12_000, (1, 0, 0)),
+    **dict.fromkeys(("in", "inch", "inches"), (_INCH, (1, 0, 0))),
+    **dict.fromkeys(("lb", "pound", "pounds"), (_POUND, (0, 1, 0))),
+    "lbf": (_POUND * _GRAVITY, (1, 1, -2)),
+    **dict.fromkeys(("klbf", "kip"), (1000 * _POUND * _GRAVITY, (1, 1, -2))),
+    "psi": (_POUND * _GRAVITY / _INCH**2, (-1, 1, -2)),
+    "ksi": (1000 * _POUND * _GRAVITY / _INCH**2, (-1, 1, -2)),
 }
 """Units that are not taken apart into a prefix and a symbol. A year is the Julian one."""
+_TORQUES = {"": 0, "m": -3, "da": 1, "k": 3, "M": 6, "G": 9}
+"""Powers of ten of Nm, a torque: in the unit library, Nm is the fineness of yarn."""
+SPELLINGS = {**dict.fromkeys(("rev", "revs", "r"), "turn"), **dict.fromkeys(("mic", "mics"), "micron"), "RPM": "rpm"}
+"""What the trades write, and the name that is meant."""
 
 
 def _table() -> dict[str, tuple[Fraction, tuple[int, ...]]]:
@@ -91,7 +110,9 @@ def _table() -> dict[str, tuple[Fraction, tuple[int, ...]]]:
     for prefix, those in names.items():
         scale = Fraction(10) ** _PREFIXES.get(prefix, 0)
         table |= {prefix + name: (scale * _SYMBOLS[symbol][0], _SYMBOLS[symbol][1]) for name, symbol in those.items()}
-    return table
+    newton, (length, mass, time) = table["N"]
+    table |= {f"{prefix}Nm": (newton * Fraction(10) ** power, (length + 1, mass, time)) for prefix, power in _TORQUES.items()}
+    return table | {name: table[meant] for name, meant in SPELLINGS.items()}
 
 
 UNITS = _table()
@@ -118,8 +139,22 @@ def split_quantity(text: str) -> tuple[float, str] | None:
     return (float(found["number"]), found["unit"]) if found else None
 
 
-_ACCELERATIONS = {"g": Fraction(980_665, 100_000), "gal": Fraction(1, 100), "Gal": Fraction(1, 100)}
+_ACCELERATIONS = {
+    **dict.fromkeys(("g", "G", "g's", "G's"), _GRAVITY),
+    "%g": _GRAVITY / 100,
+    "mg": _GRAVITY / 1000,
+    **dict.fromkeys(("gal", "Gal", "gals", "Gals"), Fraction(1, 100)),
+    "mGal": Fraction(1, 100_000),
+}
 """Units of acceleration whose names mean another thing elsewhere: g is also a gram, and pint's gal is a gallon."""
+_LOGGED = (
+    *("m", "mm", "cm", "km", "ft", "kft", "in", "s", "ms", "min", "hr", "kg", "rad", "deg", "rpm", "rev", "N", "kN", "MN"),
+    *("lb", "lbs", "lbf", "klb", "klbs", "klbf", "kip", "Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "Nm", "kNm", "daNm"),
+)
+_CAPITALS = {name.upper(): name for name in _LOGGED}
+"""What a unit in capitals means, as old loggers write it, where it means nothing else: MPA is never a thousandth of a pascal."""
+_WEIGHTS = {"lb": "lbf", "lbs": "lbf", "klb": "klbf", "klbs": "klbf"}
+"""What drillers weigh in pounds is a force, as in ft-lb, wherever a mass does not convert."""
 
 
 @lru_cache(maxsize=256)  # a page of the explorer reads the same units again at each move of a slider
@@ -131,12 +166,28 @@ def si_factor(unit: str, si: str) -> Fraction:
     """
     if si == "m/s^2" and unit in _ACCELERATIONS:
         return _ACCELERATIONS[unit]
+    unit = "rpm" if si == "rad/s" and _PER_MINUTE.fullmatch(unit) else unit
+    if "rad" in si and (_PER_TURN.search(unit) or _PER_MINUTE.fullmatch(unit)):
+        raise InputError(f"'{unit}' may be turns or radians per second: write rpm or rad/s")
+    fault = InputError("")
+    for text in dict.fromkeys((unit, in_small := _renamed(unit, _CAPITALS), _renamed(in_small, _WEIGHTS))):
+        try:
+            return _convert(text, si)
+        except InputError as error:
+            fault = error if text is unit else fault
+    raise fault
+
+
+def _renamed(unit: str, names: Mapping[str, str]) -> str:
+    """Return a unit with other names for those that have one."""
+    return _ONE_FACTOR.sub(lambda found: found[0].replace(found["name"], names.get(found["name"], found["name"])), unit)
+
+
+def _convert(unit: str, si: str) -> Fraction:
     factor, dimensionality = _read_unit(unit, f"; write it like {si}")
     target, wanted = _read_unit(si)
     if dimensionality != wanted:
         raise InputError(f"'{unit}' does not convert to {si}")
-    if "rad" in si and _PER_TURN.search(unit):
-        raise InputError(f"'{unit}' may be turns or radians per second: write rpm or rad/s")
     return factor / target
 
 
@@ -153,8 +204,7 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
 
     registry = _registry()
     try:
-        written = re.sub(rf"({_NAME})([1-9])", r"\1^\2", f"1{unit}" if unit.startswith("/") else unit)
-        parsed = registry.parse_units(written)  # the parser understands 1/ m and m^3, but not / m or m3
+        parsed = registry.parse_units(_as_product(unit))  # the parser understands 1/m and m^3, but neither / m nor m3 nor kN.m
         for name in (one.removeprefix("delta_") for one in parsed._units):
             if name in registry._units and registry._units[name].is_logarithmic:
                 raise pint.UndefinedUnitError(name)  # no factor converts decibels to SI units, although pint gives them one
@@ -166,6 +216,14 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
         raise InputError(f"'{name}' is not a unit; {examples}") from None
     except (pint.PintError, ValueError):  # ValueError for the unit "nan", from fractions
         raise InputError(f"'{unit}' is not a unit{hint}") from None
+
+
+def _as_product(unit: str) -> str:
+    """Return a unit of our grammar as the unit library reads it: "1*ft**1*lbf**1"; anything else as it is."""
+    if not _WHOLE.fullmatch(unit):
+        return unit
+    factors = ((SPELLINGS.get(one["name"], one["name"]), one["power"] or "1", one["stroke"]) for one in _ONE_FACTOR.finditer(unit))
+    return "1" + "".join(f"{stroke or '*'}{name}**{power}" for name, power, stroke in factors)
 
 
 def to_si(number: float, unit: str, si: str) -> float:

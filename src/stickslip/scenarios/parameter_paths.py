@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from stickslip.foundation.errors import InputError, full_name
+from stickslip.foundation.names import short_units
 from stickslip.foundation.quantities import Choice, Quantity, quantities_of
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.planar.nodes import varying
@@ -156,13 +157,20 @@ def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Sc
     for name, value in values.items():
         parameter = find_parameter(scenario, name, where)
         changes.append((parameter, parameter.read(value, where)))
-        counts = parameter.name in WHOLE and isinstance(value, float) and value.is_integer()
-        texts.append(f"{name} = {int(value) if counts else value}")
+        texts.append(f"{name} = {_said_back(parameter, value)}")
     changed = ", ".join(texts)
     title = f"{scenario.heading}: {changed}" if scenario.heading else changed
     return replace(
         scenario_of(document_with(scenario, changes, where), Source(where)), name=scenario.name, title=title, description=""
     )
+
+
+def _said_back(parameter: ParameterPath, value: Any) -> Any:
+    """Return a value as it was given. A plain number for what turns gets its unit: few would guess that it is read in rad/s."""
+    if isinstance(value, float) and parameter.unit in ("rad", "rad/s"):
+        ((unit, size),) = short_units(parameter.unit)
+        return f"{value:g} {parameter.unit} ({value / size:.5g} {unit})"
+    return int(value) if parameter.name in WHOLE and isinstance(value, float) and value.is_integer() else value
 
 
 def values_in(scenario: Scenario) -> Iterator[tuple[ParameterPath, Any]]:
