@@ -75,7 +75,7 @@ def catalogue(
     checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
-        Largest number of pieces of history kept at a time, a million by default. An event that needs more, together with what
+        Largest number of pieces of history kept at a time, 1.5 million by default. An event that needs more, together with what
         precedes it, ends the run with the status "too many pieces".
 
     Returns

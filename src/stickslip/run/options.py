@@ -29,8 +29,8 @@ RTOL = 1e-10
 """Default relative tolerance."""
 CHECKPOINT_EVERY = 30.0
 """Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
-MAX_PIECES = 1_000_000
-"""Largest number of pieces of a history unless `max_pieces` is given: some 0.4 GB."""
+MAX_PIECES = 1_500_000
+"""Largest number of pieces of a history unless `max_pieces` is given: some 0.6 GB, as 400 years of the slabs of Fig. 5 need."""
 
 LARGEST_HISTORY = 1_000_000_000
 """Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines."""

@@ -33,8 +33,8 @@ SHORTEST_EVENT = (
     "only where a round trip has more than 4096 pieces. 0 resolves them all."
 )
 MAX_PIECES = (
-    "Largest number of pieces of history (0.42 kB each). Not given: a million. A run that needs more, or more than a sixth of the "
-    "free memory, ends there; --out keeps what there is, and --resume goes on with a larger number."
+    "Largest number of pieces of history (0.42 kB each). Not given: 1.5 million. A run that needs more, or more than a sixth of "
+    "the free memory, ends there; --out keeps what there is, and --resume goes on with a larger number."
 )
 OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] a new folder (.zarr)."
 CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
