@@ -76,11 +76,16 @@ def test_a_run_with_leaps_beside_rest_is_resumed_bit_for_bit(printed: ss.Solutio
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "most"), [("fig5-slab-printed", 1_500_000), ("fig5-slab-u0-1e-2", 1_200_000)])
-def test_slabs_of_figure_5_go_on_for_400_years(name: str, most: int) -> None:
-    """Slip is more than the plate's 20 m, because the slab begins loaded, and less than that with all of the load given back."""
-    stated = ss.load_scenario(name).problem
-    run = ss.simulate(stated, "400 years", max_pieces=most)
+@pytest.mark.parametrize("name", ["fig5-slab-printed", "fig5-slab-u0-1e-2"])
+def test_slabs_of_figure_5_go_on_for_400_years(name: str) -> None:
+    """The mean traction of the last round trips is what the driver, less all slip, makes of that at the start: to 1e-4 of it.
+
+    That is 3 mm of 36 m of slip, through all leaps. They need no larger history than a run may have unless told otherwise.
+    """
+    run = ss.simulate(ss.load_scenario(name).problem, "400 years")
     assert run.status.ok
-    assert 20.0 < float(run.slip(run.duration)) < 20.0 + stated.load / stated.body.stiffness
+    problem, trip = run.problem, run.problem.round_trip_time
+    times = run.duration - np.linspace(50.0, 10.0, 20_001) * trip
+    held = problem.pull_rate * times.mean() - (run.slip(times).mean() - problem.initial_slip)
+    assert run.traction(times).mean() == pytest.approx(problem.load + problem.body.stiffness * held, rel=1e-4)
     assert len(run.events) > 10

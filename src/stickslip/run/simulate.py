@@ -101,8 +101,8 @@ def simulate(
     checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
-        Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
-        million, some 0.4 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
+        Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is
+        1.5 million, some 0.6 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
     title : str
         Title of the run, for figures; by default the scenario's title.
 
