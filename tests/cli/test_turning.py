@@ -91,7 +91,7 @@ DOORS: dict[str, tuple[tuple[str, ...], str, str]] = {
 OF_SECTIONS = {
     "path": TAKEN,
     "analogy": "SectionedString: equivalent_block needs a rigid driver",
-    "lumps of events": "run: --shortest-event must be 0 here: only with waves and a rigid driver",
+    "lumps of events": "run: --shortest-event must be 0 or at most 0.0124593 s (1 % of the two-way travel time)",
 }
 """What is said of a string of sections where it differs from what is said of a string of one."""
 SCENARIOS = {"string": "drill-string", "sections": "pipe-and-collar", "disc": "disc.toml"}

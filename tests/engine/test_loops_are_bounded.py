@@ -32,6 +32,7 @@ OTHER_LOOPS = {
 }
 """Loops that no syntax tells to end, by file and function, with the reason why they do."""
 RECURSIONS = {
+    ("echo_queue.py", "in_order"): "each call goes down one level of a finite tree",
     ("echo_queue.py", "join"): "each call takes one node off one of two finite trees",
     ("echo_queue.py", "split"): "each call goes down one level of a finite tree",
     ("echo_queue.py", "without_first"): "each call goes down one level of a finite tree",

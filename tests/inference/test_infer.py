@@ -282,7 +282,8 @@ def test_more_samples_than_none_are_refused(found: Inference) -> None:
 def drawn(residual: Any, fit: np.ndarray, slopes: np.ndarray, count: int, before: Any = None) -> Any:
     """Samples of a posterior given by its residuals, around a fit with some derivatives of them."""
     wide = np.full(len(fit), 9.0)
-    found: Any = SimpleNamespace(model=SimpleNamespace(limits=(-wide, wide), residual=residual), searched=fit, loss="linear")
+    model = SimpleNamespace(limits=(-wide, wide), residual=residual, rtol=1e-10)
+    found: Any = SimpleNamespace(model=model, searched=fit, loss="linear")
     covariance = np.linalg.inv(slopes.T @ slopes)
     sure: Any = SimpleNamespace(widths=np.sqrt(np.diag(covariance)), covariance=covariance, excess=np.ones(len(fit)), slopes=slopes)
     return sample(found, sure, count, lambda _: None, seed=1, before=before)
