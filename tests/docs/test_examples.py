@@ -90,6 +90,7 @@ def test_numbers_in_comments_are_those_printed(comment: str, wrong: list[str]) -
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md"], ids=page_name)
 def test_every_link_has_its_target(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
+    assert not re.search(r"\]\([^)\s]+\n", text), f"{page.name}: a link is broken into two lines, and leads nowhere"
     for target in LINK.findall(text):
         if re.match(r"[a-z]+://|mailto:", target):
             continue

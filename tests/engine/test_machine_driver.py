@@ -217,6 +217,10 @@ def test_growth_of_steady_sliding_solves_its_equation(body: ElasticSlab) -> None
         ({"driver_inertia": 1.0}, "driver_inertia needs a finite driver_impedance"),
         ({"driver_integral_gain": 1.0}, "driver_integral_gain needs a finite driver_impedance"),
         ({"driver_integral_gain": 1.0, "driver_impedance": 0.0}, "nothing damps the driver"),
+        (
+            {"driver_integral_gain": 1.0, "driver_impedance": Z, "driver_inertia": math.inf},
+            "driver_integral_gain needs a finite driver_inertia",
+        ),
         ({"driver_inertia": -1.0, "driver_impedance": Z}, "driver_inertia must be at least 0"),
         ({"driver_integral_gain": -1.0, "driver_impedance": Z}, "driver_integral_gain must be at least 0"),
         ({"driver_integral_gain": math.inf, "driver_impedance": Z}, "driver_integral_gain must be finite"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -77,6 +78,17 @@ def test_a_slab_slides_at_the_plate_rate_for_480_years(excess: float) -> None:
     slip = PLATE * run.duration + excess / run.problem.body.stiffness  # what the driver moved and the load lost
     assert float(run.slip(run.duration)) == pytest.approx(slip, rel=0.0, abs=2.0 * PLATE * EARTH.round_trip_time)
     assert "steady sliding" in run.creep_note
+
+
+@pytest.mark.parametrize("rate", [PLATE, 1.234e-9])
+def test_no_error_is_said_to_be_below_rounding(rate: float) -> None:
+    """Of pulses that are all the same the next can be told exactly, and yet not better than slip and time are rounded."""
+    run = ss.simulate(replace(EARTH, friction=ss.friction.Coulomb(0.6, 0.6), pull_rate=rate, initial_excess=0.0), 1e3 * ss.YEAR)
+    assert len(run.creep) == 1
+    missed = abs(float(run.slip(run.duration)) - rate * run.duration)
+    said = re.search(r"error (?:no larger than (rounding)|at most (\S+) m of slip)", run.creep_note)
+    assert said is not None
+    assert missed <= (2e-15 * rate * run.duration if said[1] else float(said[2]))
 
 
 def test_a_block_that_swings_about_the_plate_rate_is_followed_for_centuries() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -45,6 +46,7 @@ def problem(body: Any = SLAB, law: Any = COULOMB, **fields: Any) -> ss.Problem:
         (problem(HEAVY, far_stress=6.2e5), "beside 590 kPa in the slab: the difference accelerates the driver"),
         (problem(HEAVY), "the driver begins at 10 mm/s, the pull rate, and its integral gain has nothing to make up for yet"),
         (problem(GAIN, far_stress=6.2e5), "the driver begins at 12.0408 mm/s, at which the forces on it balance, and"),
+        (problem(replace(SOFT, driver_inertia=math.inf)), "the driver is rigid, because its mass is infinite: its impedance"),
         (problem(JOINED), "the two sides share the load and the far stress in proportion to their stiffness: 0.234375 to 0.765625"),
         (problem(APART), "mm/s at the driver and from 2.34375 mm/s at the contact to 0 m/s at the driver, as if they had"),
         (problem(ground_acceleration=ss.loading.PiecewiseLinear([0, 1, 2], [0, 1, 0])), "before the start the ground is at rest"),

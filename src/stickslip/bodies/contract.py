@@ -289,11 +289,14 @@ def check_driver(body: BodyOnCharacteristics) -> None:
     """Raise InputError if the mass and the gains of a driver do not go together."""
     owner = type(body).__name__
     rigid, gain = np.isinf(body.driver_impedance), np.greater(body.driver_integral_gain, 0.0)
-    heavy = np.greater(body.driver_inertia, 0.0) & ~np.isinf(body.driver_inertia)
+    unmoved = np.isinf(body.driver_inertia)
+    heavy = np.greater(body.driver_inertia, 0.0) & ~unmoved
+    why = "a rigid driver holds its rate whatever its mass and gains"
     for name, given in (("driver_inertia", heavy), ("driver_integral_gain", gain)):
         if np.any(given & rigid):
-            why = "a rigid driver holds its rate whatever its mass and gains"
             raise InputError(f"{owner}: {name} needs a finite driver_impedance, the proportional gain: {why}")
+    if np.any(gain & unmoved):
+        raise InputError(f"{owner}: driver_integral_gain needs a finite driver_inertia: {why}")
     if np.any(gain & np.equal(body.driver_impedance, 0.0)):
         why = "nothing damps the driver, and its swings grow where friction falls with the slip rate"
         raise InputError(

@@ -49,6 +49,8 @@ SURE = 1e-12
 """Stability at a rate counts as known if this relative change of the normal load does not change it."""
 PATIENT = 1 << 20
 """Largest number of pieces in which the roots of one motion on layers are counted, a second or two of work."""
+BELOW = 1e-4
+"""Share of a fall of friction below which that is checked by a count of roots."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) next to rest; tractions that differ by less than this (relative) are equal."""
 
@@ -355,9 +357,12 @@ class _Steady:
         return _largest(lambda fall: self._withstands(fall), driver + body.damping - own)
 
     def _taken_by_layers(self, body: OfLayers) -> float:
-        """Return the same for layers without a mass at the contact: found by sampling, and checked by a count of roots."""
+        """Return the same for layers without a mass at the contact: found by sampling, and checked by a count of roots.
+
+        A count decides nothing where a root is as good as on the axis, so it is made a little below.
+        """
         found = taken_by_layers(body)
-        return found if found == 0.0 or self._withstands(found * (1.0 - SAME)) else _largest(self._withstands, found)
+        return found if found == 0.0 or self._withstands(found * (1.0 - BELOW)) else _largest(self._withstands, found)
 
     def _surely_falls(self) -> float:
         """Return a fall of friction with the slip rate (Pa s/m) that a slab under a machine does not withstand.

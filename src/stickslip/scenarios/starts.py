@@ -5,6 +5,7 @@ What the contact does at t = 0+ is told by `stability.start_of`; here is what bo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -88,6 +89,8 @@ def _stress(problem: Problem) -> Iterator[str]:
 def _driver(problem: Problem) -> Iterator[str]:
     """Yield how a driver that is a machine begins."""
     body, unit = problem.body, problem.unit_of("slip_rate")
+    if math.isinf(body.driver_inertia) and not math.isinf(body.driver_impedance):
+        yield "the driver is rigid, because its mass is infinite: its impedance is not felt"
     if not body.has_machine:
         return
     why = "the pull rate" if body.driver_inertia > 0.0 else "at which the forces on it balance"

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from stickslip.trajectory.status import Status
 
 CREEP_RTOL = (
-    "Leap over slow creep between pulses (a slab under a law of slip) from the start, with an error of slip of at most this times "
-    "the slip so far. Not given: after 200 round trips, with an error that follows rtol (1e-6). 0 runs every round trip."
+    "Leap over slow creep between pulses (under a law of slip) and over steady sliding from the start, with an error of slip of at "
+    "most this times the slip so far. Not given: after 200 round trips, or periods of a block, with an error that follows rtol "
+    "(1e-6). 0 runs every one."
 )
 SHORTEST_EVENT = (
     'Lump slip events that are shorter than this, say "1 ms" (a slab under rate weakening ends in ever shorter ones). Not given: '
