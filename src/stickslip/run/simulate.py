@@ -102,7 +102,7 @@ def simulate(
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
         Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is
-        1.5 million, some 0.6 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
+        two million, some 0.8 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
     title : str
         Title of the run, for figures; by default the scenario's title.
 
