@@ -76,7 +76,7 @@ def test_a_run_with_leaps_beside_rest_is_resumed_bit_for_bit(printed: ss.Solutio
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "most"), [("fig5-slab-printed", 1_500_000), ("fig5-slab-u0-1e-2", 1_200_000)])
+@pytest.mark.parametrize(("name", "most"), [("fig5-slab-printed", 400_000), ("fig5-slab-u0-1e-2", 600_000)])
 def test_slabs_of_figure_5_go_on_for_400_years(name: str, most: int) -> None:
     """Slip is more than the plate's 20 m, because the slab begins loaded, and less than that with all of the load given back."""
     stated = ss.load_scenario(name).problem
