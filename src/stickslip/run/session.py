@@ -27,7 +27,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
-from stickslip.trajectory.status import Checkpoint, engine, merging_note, rounding_note
+from stickslip.trajectory.status import Checkpoint, engine, merging_note, rounding_note, strips_note
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""
@@ -120,9 +120,11 @@ class Session:
 
     @property
     def rounding_note(self) -> str:
-        """One line on steps with a law hidden by rounding and on merged waves, or an empty string if there are neither."""
+        """One line on steps with a law hidden by rounding, and on merged waves and strips; an empty string if there are none."""
         merged = merging_note(float(self.state.merged_in_all + self.state.merged_now), self.problem.load_unit)
-        return "; ".join(note for note in (rounding_note(int(self.count.rough), float(self.state.roughest)), merged) if note)
+        strips = strips_note(float(self.state.shifted), self.problem.unit_of("slip"))
+        rounding = rounding_note(int(self.count.rough), float(self.state.roughest))
+        return "; ".join(note for note in (rounding, merged, strips) if note)
 
     @property
     def creep(self) -> Floats:

@@ -86,6 +86,15 @@ def merging_note(change: float, unit: str) -> str:
     )
 
 
+def strips_note(shift: float, unit: str) -> str:
+    """Return one line on merged strips of creep and how far slip is off within them, in sum (m or rad); empty if there are none."""
+    if shift == 0.0:
+        return ""
+    return (
+        f"strips at the borders of creep were merged: within them slip is off by {shift:.1g} {unit} at most, added up over the run"
+    )
+
+
 FULL_HISTORY = -2
 """The history has reached its limit of pieces, or memory is short."""
 TOO_MANY = "too many pieces"

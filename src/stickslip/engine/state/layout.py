@@ -113,6 +113,7 @@ class State(MemoryRecord):
     merged_now: float  # Pa: largest such change in this round trip
     merged_in_all: float  # Pa: sum of those of all round trips before
     table_pressing: float  # 1: growth of the normal load (`contact.pressing`) of the present table of branches
+    shifted: float  # m: sum of the bounds on how far slip is off within merged strips of creep (`waves.merged_creep`)
 
 
 SAVED = State.places["taken"].first
@@ -189,6 +190,7 @@ class Counts(MemoryRecord):
     folds_follow_slip: int  # 1 if the branches change with slip
     merging: int  # 1 if pieces of the waves in layers are merged in this round trip (`waves.merged_pieces`)
     merged: int  # number of pieces whose waves are the present piece of load, if they were merged; else 0
+    merged_from: int  # first of them, in creep beside rest (`waves.merged_creep`)
     merged_as: int  # their form (`waves.merged_pieces`)
     smooth_to: int  # first piece of the round trip before that does not follow without a jump, as far as is known
     merge_guess: int  # number of pieces that are first tried as one

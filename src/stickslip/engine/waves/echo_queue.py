@@ -21,6 +21,7 @@ from stickslip.engine.memory.addresses import bits_of
 from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.engine.waves.merged_creep import plan_group
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""
@@ -262,6 +263,10 @@ def next_echo(run: Run) -> int:
         source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.trip)
     if source != NOTHING:
         pass_to(run, source)
+        plan_group(run, source)
+        for n in range(source + 1, source + run.counts.merged):
+            run.counts.ahead = without_first(run.echoes, run.params.ramp, run.counts.ahead)
+            run.state.taken_to = run.history[n].phase_to
     return source
 
 
@@ -287,6 +292,7 @@ def start_of_slide(run: Run) -> int:
 @kernel
 def end_trip(run: Run) -> None:
     """Close a round trip, and go to the next one that may let the contact slip; set `is_locked` if there is none."""
+    run.counts.merged = 0
     if run.counts.creep_in > 0:
         first = start_of_slide(run)
         beside_rest = is_slip_law(run) and run.counts.moved == 1

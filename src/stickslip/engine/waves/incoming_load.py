@@ -12,6 +12,7 @@ from stickslip.engine.series.polynomial import fill, mean_of
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING
+from stickslip.engine.waves.merged_creep import continue_echo, lay_out_group
 
 
 @kernel
@@ -39,6 +40,9 @@ def find_echo(run: Run) -> bool:
         source = int(call_part(run.echo_queue, run, Task.NEXT_ECHO, 0.0))
         if source == NOTHING:
             return False
+        if run.counts.merged > 0:
+            lay_out_group(run)
+            return True
     else:
         source = run.counts.previous_from + run.counts.source
         if source >= run.counts.previous_to:
@@ -88,12 +92,16 @@ def bring_echo(run: Run) -> None:
         return
     for k in range(TERMS):
         run.load[k] = share * (2.0 * params.impedance * rate[k] - load[k])
+    first = left
+    if run.counts.sparse == 1 and run.counts.merged > 0:
+        first = run.history[run.counts.merged_from]
+        continue_echo(run, share)
     time = run.counts.trip * params.round_trip_time + run.state.phase_from
     run.load[0] += params.inflow + params.inflow_rate * time - share * trips_leaped(run, source) * params.ramp
     run.load[1] += params.inflow_rate * run.state.speed
     run.load[2] += params.inflow_rate * run.state.bend
     # `lumped` still belongs to the piece of load before this one: there is a jump where its mean load ends
-    jumps = left.jump == 1 or run.counts.lumped == 1
+    jumps = first.jump == 1 or run.counts.lumped == 1
     run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < params.shortest else 0
     if run.counts.lumped == 1:
         lump(run)
