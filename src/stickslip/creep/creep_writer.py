@@ -73,22 +73,25 @@ class HistoryWriter:
             (plan.trips * self.round_trip_time, last_slip, (last.rate - 0.5 * last.bend) / self.round_trip_time),
         ]
 
-    def write_landing(self, n: int, trip: int, pieces: list[Piece], edges: Floats) -> None:
-        """Write the round trip on which the leap lands, or what slips of it, from piece n on.
+    def write_landing(self, n: int, trip: int, pieces: list[Piece], edges: Floats) -> int:
+        """Write the round trip on which the leap lands, or what slips of it, from piece n on. Return where the next piece goes.
 
         `edges` are the offsets (s) at which pieces of the pattern begin or end: where one of them is meant, it is taken to the
-        last digit, so that no piece of the pattern is overlapped and no gap is left.
+        last digit, so that no piece of the pattern is overlapped and no gap is left. A piece of which nothing is left is not kept:
+        the queue of echoes could not tell it from the piece that begins there.
         """
-        store, close = self.store, EDGE * float(np.spacing(self.round_trip_time))
-        for k, piece in enumerate(pieces):
-            self._write(n + k, trip, piece)
+        store, close, first = self.store, EDGE * float(np.spacing(self.round_trip_time)), n
+        for piece in pieces:
+            self._write(n, trip, piece)
             for field in (store.phase_from, store.phase_to):
-                after = min(int(np.searchsorted(edges, field[n + k])), len(edges) - 1)
+                after = min(int(np.searchsorted(edges, field[n])), len(edges) - 1)
                 near = edges[[max(after - 1, 0), after]]
-                nearest = near[np.abs(near - field[n + k]).argmin()]
-                field[n + k] = nearest if abs(nearest - field[n + k]) <= close else field[n + k]
-            if k > 0 and abs(store.phase_from[n + k] - store.phase_to[n + k - 1]) <= close:
-                store.phase_to[n + k - 1] = store.phase_from[n + k]
+                nearest = near[np.abs(near - field[n]).argmin()]
+                field[n] = nearest if abs(nearest - field[n]) <= close else field[n]
+            if n > first and abs(store.phase_from[n] - store.phase_to[n - 1]) <= close:
+                store.phase_to[n - 1] = store.phase_from[n]
+            n += int(store.phase_to[n] > store.phase_from[n])
+        return n
 
     def _write(self, n: int, trip: int, piece: Piece) -> None:
         store, state = self.store, self.state

@@ -239,9 +239,8 @@ class CreepLeaps:
         landed_on, sign = int(count.trip) + plan.trips, averaged.strength.sign
         scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
         landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
-        scribe.write_landing(landed_from, landed_on, pieces, edges)
+        count.length = scribe.write_landing(landed_from, landed_on, pieces, edges)
         self._move(run, pieces[-1], sign)
-        count.length = landed_from + len(pieces)
         count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
         count.trip, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
         if count.sparse == 1:
