@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -15,6 +16,7 @@ import stickslip as ss
 from stickslip.creep.creep_writer import HistoryWriter
 from stickslip.creep.landing import Piece
 from stickslip.engine.state.layout import TERMS, new_store
+from stickslip.foundation.units import to_si
 from tests.long_runs.problems import continued, differences
 
 RINGS = ss.load_scenario("fig5-slab-u0-1e-2").problem
@@ -72,6 +74,15 @@ def test_energy_balances_after_leaps_beside_rest(printed: ss.Solution) -> None:
     """To 1e-9 of the heat: the load of a leap is the mean over the whole round trip, not over what slips of it."""
     energy = printed.energy(np.array([printed.duration]))
     assert abs(float(energy["balance"].values[0])) <= 1e-9 * float(energy["heat"].values[0])
+
+
+def test_a_catalogue_takes_no_leap_for_a_step_that_it_proves() -> None:
+    """Its bound is that of the steps, below 1e-8 of the normal stress; the pieces of a leap are means over round trips."""
+    problem = ss.load_scenario("fig5-slab-printed").problem
+    told = ss.catalogue(problem, "6 years").attrs
+    assert "leaps over" in told["creep"]
+    number, unit = re.findall(r"holds to (\S+) (\w*Pa)", told["proven"])[0]
+    assert to_si(float(number), unit, "Pa") <= 1e-8 * problem.normal
 
 
 def test_a_run_with_leaps_beside_rest_is_resumed_bit_for_bit(printed: ss.Solution, tmp_path: Path) -> None:

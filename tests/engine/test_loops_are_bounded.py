@@ -28,6 +28,7 @@ OTHER_LOOPS = {
     ("lanes.py", "step_under"): "each pass clears a bit of a whole number",
     ("lanes.py", "choose_length"): "each pass clears a bit of a whole number",
     ("certificate.py", "least_share"): "each pass goes to the next disc of a list, in one direction",
+    ("merged_creep.py", "plan_group"): "each pass takes the next piece of a round trip, in one direction",
     ("turning_points.py", "piece_next_to_rest"): "each pass goes to the next piece of a history, in one direction",
 }
 """Loops that no syntax tells to end, by file and function, with the reason why they do."""

@@ -238,7 +238,7 @@ class EventRows:
         """
         run = self.run
         if self.residual is None:
-            self.residual = proven(run.history()).residual
+            self.residual = _residual(run)
         if run.forget_reported() > 0:
             self._remember()
         return run.length < len(run.store.pieces) // 2 or run.grow()
@@ -258,7 +258,7 @@ class EventRows:
         solution = run.solution(code)
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
-        residual = max(float(run.state.largest_residual), self.residual or 0.0, proven(run.history()).residual)
+        residual = max(float(run.state.largest_residual), self.residual or 0.0, _residual(run))
         share = float(run.state.slid_unproven / run.state.slid) if run.count.unproven else 0.0
         proof = Proven(residual, 0, 0, int(run.count.unproven), share, float(run.state.missed)).proof(run.problem).text
         self.rows.publish(origin(solution) | {"proven": proof} | attributes_of(prediction), run.problem.load_unit)
@@ -295,6 +295,11 @@ class EventRows:
             "energies": int(stream.energies),
             "forgotten": self.run.forgotten,
         }
+
+
+def _residual(run: ExactRun) -> float:
+    """Return the largest bound (Pa or N) of the steps in memory that are proven anew; leaps over creep are no steps."""
+    return proven(replace(run.history(), creep=run.creep)).residual
 
 
 def checkpoint_of(rows: Rows) -> Path:
