@@ -50,7 +50,7 @@ SURE = 1e-12
 PATIENT = 1 << 20
 """Largest number of pieces in which the roots of one motion on layers are counted, a second or two of work."""
 BELOW = 1e-4
-"""Share of a fall of friction below which that is checked by a count of roots."""
+"""What layers withstand is checked by a count of roots under a fall of friction that is smaller by this share (1)."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) next to rest; tractions that differ by less than this (relative) are equal."""
 

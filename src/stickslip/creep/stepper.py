@@ -39,7 +39,7 @@ LONGEST_SPENT = 4096
 FAST = 1000.0
 """A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
 NEAR = 4.0
-"""A part of the round trip may slip where a leap lands if its load is nearer to the strength than friction changes in so many."""
+"""A part of the round trip may slip where a leap lands if friction could fall to its load within so many round trips."""
 CHECKED = 1
 """Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
 STEPS = 10_000

@@ -30,7 +30,7 @@ RTOL = 1e-10
 CHECKPOINT_EVERY = 30.0
 """Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
 MAX_PIECES = 2_000_000
-"""Largest number of pieces of a history unless `max_pieces` is given: 0.8 GB, of which 400 years of the printed slab take half."""
+"""Largest number of pieces of a history unless `max_pieces` is given: 0.8 GB."""
 
 LARGEST_HISTORY = 1_000_000_000
 """Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines."""
