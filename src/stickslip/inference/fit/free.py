@@ -17,7 +17,7 @@ FARTHEST, FARTHEST_PURE = 1e3, 30.0
 """Largest factors between a positive number (with a unit, without) and its starting value, unless the user gives bounds."""
 NEAR, NEAR_KNOWN = 10.0, 2.0
 """Starts are drawn within these factors: slips and rates of a law; pure numbers and the body, which are known better."""
-TREND, DELAY, SERVO = "record.trend", "record.delay", "record.servo"
+TREND, DRIFT, DELAY, SERVO = "record.trend", "record.drift", "record.delay", "record.servo"
 LOAD, STATE = "initial.load", "initial.state"
 _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,()]+)\s*\)\s*")
 
@@ -143,6 +143,7 @@ def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tup
         state = problem.friction.states[0]
         found[STATE] = Quantity(state.unit, "state at the start", above=None if state.signed else 0.0), hints.get(STATE, math.nan)
     found[TREND] = Quantity("1/m", "trend of friction with slip"), 0.0
+    found[DRIFT] = Quantity("1/s", "drift of friction with time"), 0.0
     found[DELAY] = Quantity("s", "delay of the record behind the machine"), 0.0
     found[SERVO] = Quantity("s", "time in which the load point approaches a new rate", at_least=0.0), 0.0
     return found
