@@ -14,6 +14,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
 from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
 from stickslip.inference.fit.part import Part, approached, changed, not_begun
+from stickslip.inference.fit.turns import felt, moving
 from stickslip.inference.record.record import SHEAR
 from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.problem.problem import Problem
@@ -123,7 +124,8 @@ class Model:
     def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
         this, least = self.parts[part], SEEN * self.sizes.get(name, 0.0)
         step = self.every * this.record.clock[-1] / max(len(this.record) - 1, 1)
-        return jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
+        found = jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
+        return moving(found, felt(run.problem, this.duration, step), step)
 
     def with_jumps(self, searched: Floats) -> Model:
         """Return the model with added uncertainty for samples beside a jump, whose time lies somewhere between two samples."""
