@@ -88,7 +88,7 @@ ROOMS = {
         ("layers", "proof_of_rest", "proof_of_slip", "proof_of_states", "waves"),
         ("inside_layers", "layers_found_again"),
         ("energy", "field", "proof_of_load"),
-        ("event_table", "proof_of_run"),
+        ("at_driver", "event_table", "proof_of_run"),
         ("energetics", "event_stream"),
     ),
     "solution": (("evaluation",), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),

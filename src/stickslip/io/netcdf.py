@@ -158,14 +158,24 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
     loading history is not registered, the file could not be read back.
     """
     file = as_path("to_netcdf: path", path)
-    time, values = solution.curves_together(solution.curves, 0.0, float(solution.breaks[-1]), DRAWN_POINTS)
-    curves = _curves(solution, time, dict(zip(solution.curves, values, strict=True)))
-    variables = history_variables(solution) | curves | _tables(solution)
+    names = [name for name in solution.curves if name not in solution.at_drive]
+    time, values = solution.curves_together(names, 0.0, float(solution.breaks[-1]), DRAWN_POINTS)
+    curves = _curves(solution, time, dict(zip(names, values, strict=True)))
+    variables = history_variables(solution) | curves | _at_drive(solution) | _tables(solution)
     try:
         return write_variables(variables, _engine(solution) | provenance(solution) | {"stickslip_format": FORMAT}, file)
     except FullDiskError as error:
         error.solution = solution
         raise
+
+
+def _at_drive(solution: Solution) -> dict[str, Variable]:
+    """Return what the drive of a string measures at evenly spaced times, which are its own: other curves have those of shocks."""
+    if not solution.at_drive:
+        return {}
+    time, about = np.linspace(*solution.history.span, DRAWN_POINTS), about_curves(solution.problem)
+    found = {name: Variable(("drive_time",), getattr(solution, name)(time), about[name]) for name in solution.at_drive}
+    return found | {"drive_time": Variable(("drive_time",), time, about["time"])}
 
 
 def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None = None) -> None:

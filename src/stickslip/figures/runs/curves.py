@@ -30,7 +30,7 @@ from stickslip.figures.style import (
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.names import name_of, readable_unit
+from stickslip.foundation.names import TURNS, name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
@@ -48,6 +48,9 @@ COLOURS: dict[str, str] = {
     "state": PURPLE,
     "second_state": PURPLE,
     "friction": VERMILLION,
+    "drive_rate": PURPLE,
+    "drive_traction": PURPLE,
+    "surface_torque": PURPLE,
 }
 """Colour of each curve, the same in all figures."""
 MOST_SHOCKS = 60
@@ -98,6 +101,15 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
         set_log_ticks(axes, "y")
     elif name in ("slip", "event_slip", "slip_rate"):
         zero_line(axes)
+
+
+def draw_drive_rate(axes: Axes, readings: Readings, span: Span) -> None:
+    """Draw the rate of the drive beside that of the contact, in the unit of the latter, with an entry for a key."""
+    _, values = readings.curve("slip_rate", *span)
+    time, drive = readings.curve("drive_rate", *span)
+    size = readable_unit(readings.problem.unit_of("slip_rate"), values, log=readings.problem.friction.creeps)[1]
+    look: dict[str, Any] = {"color": PURPLE, "linewidth": 1.0, "linestyle": "--", "label": name_of("drive_rate", TURNS)}
+    draw_line(axes, time / time_unit(span[1] - span[0])[1], drive / size, **look)
 
 
 def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
