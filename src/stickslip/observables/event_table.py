@@ -217,6 +217,13 @@ def column_unit(name: str, load_unit: str) -> str:
     return in_files(si_unit(known[name].unit, load_unit)) if name in known else ""
 
 
+def with_units(table: pd.DataFrame, load_unit: str) -> pd.DataFrame:
+    """Return a table of slip events whose headings name the units of columns that are known, such as "slip (m)"."""
+    known = EVENT_COLUMNS | ENERGY_COLUMNS
+    units = {name: si_unit(one.unit, load_unit) for name, one in known.items()}
+    return table.rename(columns={name: f"{name} ({unit})" for name, unit in units.items() if unit != "1"})
+
+
 def shown_columns() -> list[str]:
     """Return the names of the columns that summaries show, in their order."""
     return sorted((name for name, one in EVENT_COLUMNS.items() if one.place), key=lambda name: EVENT_COLUMNS[name].place)
