@@ -92,7 +92,7 @@ CASES = [
     (["compare", "fig6-slab", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean"),
     (["analogy", "fig6-slab"], 'analogy: give two --map, as --map "friction.alpha=0.01..10:20:log", got 0'),
     (["analogy", "fig6-slab", "--map", "alpha=1..2", "--map", "alpha=1..2"], "analogy: needs two different parameters"),
-    (["export", "fig6-slab", "a.csv"], "FILE a.csv: the name must end in .txt or .dat"),
+    (["export", "fig6-slab", "a.md"], "FILE a.md: the name must end in .csv or .nc or .txt or .dat"),
     (["export", "fig6-slab", "a.txt", "--event", "1"], "window: no event 1: the run has 1, 0 to 0"),
     (["benchmark", "get", "loop", "--out", "a.csv"], "benchmark: --out does not belong to get: get writes files to --folder"),
     (["benchmark", "list", "--folder", "x"], "benchmark: --folder does not belong to list: leave it out"),

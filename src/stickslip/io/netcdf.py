@@ -309,6 +309,9 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
 
     Raises InputError if a part is missing, a number is out of range, or the selection rule is not registered.
     """
+    if "time" in dataset.dims and "scenario" in dataset.attrs and "history_rate" not in dataset:
+        whole = "`stickslip run --out` keeps a whole run"
+        raise InputError(f"{path}: holds curves of a run, not the run: xarray.open_dataset reads them; {whole}")
     try:
         found = _solution(dataset, path)
     except InputError:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.arguments import NamesAttributes
+from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import in_files, si_unit
@@ -263,6 +263,15 @@ class PlanarSolution(NamesAttributes):
     def plot(self) -> PlanarPlots:
         """The figures: `plot()` draws slip rate over the contact and time, `plot.animation(path)` writes a film."""
         return PlanarPlots(self)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write time, slip, slip rate, traction and heat of the node in the middle at the frames as CSV, and return the path.
+
+        The headings name the units (SI). A path that ends in .nc makes a netCDF file of `dataset`, with all nodes.
+        """
+        from stickslip.io.curves import write_contact
+
+        return write_contact(self, as_path("to_csv: path", path))
 
     def dataset(self) -> xr.Dataset:
         """Return slip, slip rate, traction and heat as an xarray dataset over time, y and, for a plane, z (SI units)."""

@@ -124,7 +124,7 @@ _ALL = (
     Summary("first_start", "s", "start of the first slip event", _first("start")),
     Summary("first_end", "s", "end of the first slip event", _first("end")),
     Summary("first_duration", "s", "duration of the first slip event", _first("duration")),
-    Summary("first_slip", "slip", "slip of the first slip event", _first("slip")),
+    Summary("first_slip", "slip", "slip of the first slip event, negative if it slips back", _first("slip")),
     Summary("first_traction_drop", "load", "friction before minus friction after the first slip event", _first("traction_drop")),
     Summary("first_static_drop", "load", "stiffness times slip of the first slip event", _first("static_drop")),
     Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence(np.mean, 1)),
