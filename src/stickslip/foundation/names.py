@@ -145,6 +145,9 @@ _SHORT = {
     "rad/s": (("rpm", math.pi / 30.0),),
 }
 """Units, with their sizes in SI units, among which the shortest text of one number is looked for (`show.brief`)."""
+_FACTOR = re.compile(r"([A-Za-zµ%]+)\^?(-?[1-9]|)")
+"""A name in a unit, with its power: m, s-1 of files, s^-1."""
+_SUPERSCRIPTS = str.maketrans("123456789", "¹²³⁴⁵⁶⁷⁸⁹")
 DECADES = 1e6
 """A logarithmic axis that spans more than this factor has the SI unit: a prefix would not make its powers of ten more readable."""
 
@@ -198,10 +201,17 @@ def in_files(unit: str) -> str:
 
 
 def for_readers(unit: str) -> str:
-    """Return a unit, of a file or declared, as readers expect to see it: "m/s" for "m s-1", "kg/m³" for "kg/m^3"."""
-    known = {"m^-1 s": "s/m", "1/m": "m⁻¹"}.get(unit, unit)
-    plain = re.sub(r" ([a-z]+)-(\d)$", r"/\1^\2", known).removesuffix("^1")
-    return re.sub(r"(?<=/[ms])\^([23])$", lambda found: "²³"[int(found[1]) - 2], plain)
+    """Return a unit, of a file, declared or in powers, as readers expect to see it: "m/s" for "m s-1", "kg/m³" for "kg/m^3"."""
+    factors = [_FACTOR.fullmatch(one) for one in unit.split()]
+    if any(one and one[2].startswith("-") for one in factors) and all(factors):
+        over = [_raised(one[1], int(one[2] or 1)) for one in factors if one and not one[2].startswith("-")]
+        below = [_raised(one[1], int(one[2][1:])) for one in factors if one and one[2].startswith("-")]
+        unit = f"{' '.join(over) or '1'}/{below[0] if len(below) == 1 else '(' + ' '.join(below) + ')'}"
+    return "m⁻¹" if unit == "1/m" else re.sub(r"(?<=/[ms])\^([23])$", lambda found: _raised("", int(found[1])), unit)
+
+
+def _raised(name: str, power: int) -> str:
+    return name + ("" if power == 1 else str(power).translate(_SUPERSCRIPTS))
 
 
 def has_prefixes(unit: str) -> bool:

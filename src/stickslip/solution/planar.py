@@ -81,7 +81,7 @@ class PlanarSolution(NamesAttributes):
 
     `times` are those of the frames (s), `fields` the arrays by the names in `FIELDS`, each read when it is first used. `status`
     says what ended the run, and `residual` how well the contact equation is solved: the largest |Z v + tau - load| at any node and
-    time step, as a share of the load.
+    time step, as a share of the load. `title` is that of its scenario, for figures.
     """
 
     slab: PlanarSlab
@@ -90,6 +90,7 @@ class PlanarSolution(NamesAttributes):
     steps_per_round_trip: int
     status: Status
     residual: float
+    title: str = ""
 
     def __repr__(self) -> str:
         nodes = " x ".join(str(count) for count in self.slab.shape)
@@ -301,6 +302,8 @@ class Frames:
     """Largest slip rate at any node and frame, m/s."""
     residual: float = 0.0
     """See `PlanarSolution`."""
+    title: str = field(default="", kw_only=True)
+    """See `PlanarSolution`."""
 
     def add(self, time: float, motion: PlanarMotion) -> float:
         """Keep the motion at a time (s), and return the largest slip rate in it (m/s)."""
@@ -325,4 +328,5 @@ class Frames:
     def solution(self, code: int) -> PlanarSolution:
         """Return the run, with the status that belongs to a code."""
         fields = {name: np.stack(frames) for name, frames in self.waiting.items()}
-        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, STATUSES[code], self.residual)
+        status = STATUSES[code]
+        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, status, self.residual, self.title)

@@ -82,7 +82,8 @@ def check(
         steady.check_drawn("check: --steady-figure")
     show_examination(loaded, replace(examine(loaded), steady=steady))
     files = [(figure, drawing(drawn, look))] if drawn is not None else []
-    announce(*write_files(*files, (steady_figure, drawing(steady.plot, look))))
+    steadily = None if steady_figure is None else _sliding(steady, loaded.heading)
+    announce(*write_files(*files, *([(steady_figure, drawing(steadily, look))] if steadily is not None else [])))
 
 
 def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
@@ -112,6 +113,13 @@ def _set(loaded: Scenario) -> Callable[..., object]:
     from stickslip.figures.contact import admissible
 
     return partial(admissible.draw, admissible.data(loaded.problem, title=loaded.heading))
+
+
+def _sliding(found: SteadySlidings, title: str) -> Callable[..., object]:
+    """Return the function that draws steady sliding."""
+    from stickslip.figures.contact import steady
+
+    return partial(steady.draw, steady.data(found, title))
 
 
 def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
