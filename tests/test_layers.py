@@ -38,6 +38,7 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "foundation": (
+        ("synonyms",),
         ("arrays", "constants", "errors", "place"),
         ("arguments", "atomic_write", "determined", "memory", "names", "units"),
         ("conversion", "headings", "netcdf_file"),
@@ -156,6 +157,7 @@ ROOMS = {
     "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
         ("expand", "options"),
+        ("mistyped",),
         ("output", "overrides"),
         ("long_run", "installation"),
         ("commands",),
