@@ -218,7 +218,7 @@ def _hint(name: str, options: list[str]) -> str:
 
 def _bad_value(error: Any) -> str:
     """Return what a value must be and what was given, if both are known."""
-    from stickslip.foundation.conversion import decimal_point  # imports numpy
+    from stickslip.foundation.meant import decimal_point
 
     described = getattr(error.param, "type_descriptor", None)  # private to typer
     kind = _KINDS.get(getattr(getattr(described, "annotation", None), "__name__", ""))
