@@ -40,7 +40,8 @@ ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
         ("arguments", "atomic_write", "determined", "memory", "names", "units"),
-        ("conversion", "headings", "netcdf_file"),
+        ("headings", "meant", "netcdf_file"),
+        ("conversion",),
         ("axis", "columns", "quantities"),
         ("other_values", "show", "text_columns"),
         ("zarr_folder",),

@@ -28,6 +28,7 @@ from stickslip.cli.commands.schemes import schemes
 from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
 from stickslip.cli.expand import expanded
+from stickslip.cli.extra_words import about_extra
 from stickslip.cli.options import CHOICES
 from stickslip.foundation.errors import InputError, nearest
 
@@ -201,7 +202,7 @@ def explain(error: Any) -> str:
         "MissingParameter": lambda: f"{_name(error.param)} is missing; {teach}",
         "NoSuchOption": lambda: f"there is no option {error.option_name}; {_hint(error.option_name, options)}{teach}",
         "BadParameter": lambda: _bad_value(error),
-        "UsageError": lambda: _too_many(error.format_message(), teach),
+        "UsageError": lambda: _too_many(error.format_message(), context, teach),
     }.get(type(error).__name__)
     return f"{command}{said()}" if said else str(error.format_message())
 
@@ -232,10 +233,6 @@ def _bad_value(error: Any) -> str:
     return f"{_name(error.param)} must be {kind}{bound}, got {given[:60]!a}" + (f": write {point}" if point else "")
 
 
-def _too_many(message: str, teach: str) -> str:
+def _too_many(message: str, context: Any, teach: str) -> str:
     found = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
-    if found is None:
-        return message
-    if "=" in found[1]:
-        return f"{ascii(found[1])[:60]} is not expected; --set NAME=VALUE replaces a value of the scenario; {teach}"
-    return f'{ascii(found[1])[:60]} is not expected; put a text with spaces in quotes, as "480 years"; {teach}'
+    return about_extra(found[1], context, teach) if found else message

@@ -87,8 +87,15 @@ def _about_first_bytes(path: Path) -> str | None:
 
 
 def _hint(path: Path) -> str:
+    if path.stem in library.STARTERS:
+        return f"`stickslip new {path.stem} > {path.stem}.toml` writes one to start from"
     hint = nearest(path.stem, library.names())
     return hint if hint.startswith("did") else "`stickslip new --list` lists them"
+
+
+def is_scenario_name(text: str) -> bool:
+    """Return True for a text that is the name of a scenario, bundled or in TOML, where the name of another file is expected."""
+    return text.endswith(".toml") or (text in (*library.STARTERS, *library.names()) and not Path(text).exists())
 
 
 def about_suffix(file: str) -> str | None:

@@ -74,7 +74,10 @@ def fit(
     from stickslip import friction
     from stickslip.cli.overrides import typed_values
     from stickslip.friction import Points
+    from stickslip.scenarios.text_of_files import is_scenario_name
 
+    if is_scenario_name(data):
+        raise InputError(f"fit: DATA is a file of measured points, got the scenario {ascii(data)[:60]}; it may be that of --body")
     check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})
