@@ -156,7 +156,7 @@ ROOMS = {
     ),
     "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
-        ("expand", "options"),
+        ("expand", "extra_words", "options"),
         ("output", "overrides"),
         ("long_run", "installation"),
         ("commands",),
