@@ -41,7 +41,8 @@ ROOMS = {
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
         ("arguments", "atomic_write", "determined", "memory", "names", "units"),
-        ("conversion", "headings", "netcdf_file"),
+        ("headings", "meant", "netcdf_file"),
+        ("conversion",),
         ("axis", "columns", "quantities"),
         ("other_values", "show", "text_columns"),
         ("zarr_folder",),
@@ -156,7 +157,7 @@ ROOMS = {
     ),
     "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
-        ("expand", "options"),
+        ("expand", "extra_words", "options"),
         ("mistyped",),
         ("output", "overrides"),
         ("long_run", "installation"),

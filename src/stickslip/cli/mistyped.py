@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
+from stickslip.cli.extra_words import about_extra
 from stickslip.cli.options import is_data
 from stickslip.foundation.errors import did_you_mean, meant, nearest
 from stickslip.foundation.synonyms import same
@@ -94,7 +95,7 @@ def _owners(name: str, context: Any) -> Iterator[str]:
 
 def _bad_value(error: Any) -> str:
     """Return what a value must be and what was given, if both are known."""
-    from stickslip.foundation.conversion import decimal_point  # imports numpy
+    from stickslip.foundation.meant import decimal_point
 
     described = getattr(error.param, "type_descriptor", None)  # private to typer
     kind = _KINDS.get(getattr(getattr(described, "annotation", None), "__name__", ""))
@@ -110,13 +111,4 @@ def _bad_value(error: Any) -> str:
 
 def _too_many(message: str, context: Any, teach: str) -> str:
     found = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
-    if found is None:
-        return message
-    extra = found[1]
-    shown = ascii(extra)[:60]
-    if "=" in extra:
-        return f"{shown} is not expected; --set NAME=VALUE replaces a value of the scenario; {teach}"
-    if is_data(extra):
-        first = next((str(one) for one in context.params.values() if isinstance(one, str)), "SCENARIO")
-        return f"{shown} is not expected; to follow a record: `stickslip infer {first} {extra} --free NAMES`; {teach}"
-    return f'{shown} is not expected; put a text with spaces in quotes, as "480 years"; {teach}'
+    return about_extra(found[1], context, teach) if found else message

@@ -39,7 +39,11 @@ def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, c
     if not changes:
         return loaded
     where = f"{command}: --set"
-    return with_values(loaded, typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"'), where)
+    values = typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"')
+    several = next((name for name, value in values.items() if isinstance(value, str) and ".." in value), None)
+    if several is not None:
+        raise InputError(f"{where}: {shown(several)} takes one value; `stickslip sweep` runs a range: --vary NAME=LOW..HIGH:POINTS")
+    return with_values(loaded, values, where)
 
 
 def _load(scenario: str) -> Scenario:

@@ -12,11 +12,14 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import is_number
-from stickslip.foundation.units import split_quantity
+from stickslip.foundation.units import LONGEST, split_quantity
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
 _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+?)(?P<log>\s*:\s*log)?", re.DOTALL)
+_BETWEEN = r"\s*(?:(?<![eE])[-–]|\bto\b|:|\.\.\.+)\s*"
+_MISTYPED = re.compile(rf"(?P<low>[^:]*?\d[^:]*?){_BETWEEN}(?P<high>[\d.][^:]*?)(?P<rest>\s*:.*)?", re.DOTALL)
+"""Two ends with something else than two points between them; of three points one would be read as a decimal point."""
 _COUNTED = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+?)\s*:(?P<points>.*?)(?P<log>:\s*log)?", re.DOTALL)
 
 
@@ -37,6 +40,8 @@ class TypedRange(NamedTuple):
 
         Raises InputError, which begins with `where`, for a number of points that is not whole; 1e3 is.
         """
+        if "..." in text:
+            raise InputError(f"{where}: {range_meant(text) or 'a range is LOW..HIGH, with two points'}, got {ascii(text)[:60]}")
         if found := _RANGE.fullmatch(text.strip()):
             return cls(*_in_one_unit(found["low"], found["high"]), None, bool(found["log"]))
         if counted := _COUNTED.fullmatch(text.strip()):
@@ -45,12 +50,28 @@ class TypedRange(NamedTuple):
         return None
 
 
+def range_meant(text: str) -> str:
+    """Return how a range that is typed as 1-50 km, 1 to 50 km or 1:50 km, or a list without commas, is written; else nothing."""
+    if len(text) > LONGEST:
+        return ""
+    found = _MISTYPED.fullmatch(text.strip())
+    if found and all(is_number(one) or split_quantity(one) for one in (found["low"], found["high"])):
+        return f"a range is written {found['low']}..{found['high']}{(found['rest'] or '').strip()}"
+    parts = re.split(r"\s*[;|]\s*|\s+", text.strip())
+    if len(parts) > 1 and all(is_number(one) or split_quantity(one) for one in parts):
+        return f"values are written with commas, as {','.join(parts)}"
+    return ""
+
+
 def _count(text: str, where: str) -> int:
     """Return a number of points that was typed. Raises InputError, which begins with `where`."""
     with suppress(ValueError):
         if float(text).is_integer():
             return int(text) if text.isdecimal() else int(float(text))
-    raise InputError(f"{where}: the number of points of a range must be a whole number, as in LOW..HIGH:40, got {ascii(text)[:60]}")
+    more = "; equal ratios end in :log, equal steps in nothing" if ":" in text else ""
+    raise InputError(
+        f"{where}: the number of points of a range must be a whole number, as in LOW..HIGH:40, got {ascii(text)[:60]}{more}"
+    )
 
 
 def _in_one_unit(low: str, high: str) -> tuple[str, str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Collection, Sequence
 from decimal import Decimal
 from typing import Any, Protocol, TypeVar
@@ -12,6 +11,7 @@ import numpy as np
 
 from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.meant import probably_meant
 from stickslip.foundation.units import LONGEST, split_quantity, to_si
 
 LARGEST_INTEGER = 10**300
@@ -20,10 +20,6 @@ SAME = 1e-12
 """Definitions of a unit in two libraries that differ by less than this (relative) count as the same."""
 NO_UNIT = "dimensionless"
 """Name of the unit of a pure number in pint."""
-
-
-_COMMA = re.compile(r"(?P<whole>[+-]?[\d_]+),(?P<part>\d+)(?P<rest>(?:[eE][+-]?\d+)?(?:\s*[^\d\s,][^,]*)?)")
-"""A number with a decimal comma, and what may follow it."""
 
 
 class WithUnit(Protocol):
@@ -137,20 +133,14 @@ def _in_one_of(number: Any, unit: str, wanted: str) -> Any:
 def _hint(text: str) -> str:
     if len(text) > LONGEST:
         return f": longer than {LONGEST} characters"
-    point = decimal_point(text)
-    if point:
-        return f": write {shown(point)}, with a decimal point"
+    meant = probably_meant(text)
+    if meant:
+        return f": write {meant}"
     try:
         float(text)
     except ValueError:
         return ""
     return ": write a number without quotes"
-
-
-def decimal_point(text: str) -> str | None:
-    """Return a text that begins with a number with a decimal comma, with a point in its place; None if it is no such text."""
-    found = _COMMA.fullmatch(text.strip())
-    return f"{found['whole']}.{found['part']}{found['rest']}" if found else None
 
 
 def without_unit(value: Any, unit: str) -> Any:

@@ -15,7 +15,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, meant, warn
-from stickslip.foundation.units import si_factor, split_quantity, tabulated
+from stickslip.foundation.units import plain_signs, si_factor, split_quantity, tabulated
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,6 @@ _HEADING = re.compile(r"(?P<name>[^()\[\]]*)(?:[(\[](?P<unit>[^()\[\]]*)[)\]])?\
 _BETWEEN = re.compile(r"\s*[\s_,:/]\s*")
 _CAMEL = re.compile(r"(?<=[a-zα-ω])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _NO_LETTER = re.compile(r"[\W_]+")
-_SIGNS = str.maketrans({"μ": "µ", "·": " ", "⁻": "-", "⁰": "0", "¹": "1", "²": "2", "³": "3", "−": "-"})
 _POWER = re.compile(r"(?<=[A-Za-zµ])(-?\d)")
 
 
@@ -227,7 +226,7 @@ def _fits(unit: str, column: str) -> bool:
 
 
 def _unit_text(unit: str) -> str:
-    return _POWER.sub(r"^\1", unit.translate(_SIGNS).replace("^", "").replace("**", ""))
+    return _POWER.sub(r"^\1", plain_signs(unit).replace("·", " ").replace("^", "").replace("**", ""))
 
 
 def factor_of(unit: str | None, column: str, place: str) -> Fraction:

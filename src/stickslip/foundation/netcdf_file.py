@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
+OTHER_FORMATS = (".csv", ".tsv", ".txt", ".dat", ".parquet", ".png", ".pdf", ".svg", ".gif", ".toml", ".json", ".mat", ".xlsx")
+"""Ends of names by which other programs, and people, take a file for something else than netCDF."""
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file, and so of every netCDF file of this package."""
 MARK = b"\nstickslip sha256 "
@@ -96,6 +98,8 @@ def write_variables(variables: Mapping[str, Variable], attrs: Mapping[str, Any],
 
 def write_with(fill: Callable[[Any], object], path: Path) -> Path:
     """Let `fill` write into an `h5netcdf.File`, with the guarantees and errors of `write`."""
+    if path.suffix.lower() in OTHER_FORMATS:
+        raise InputError(f"{path}: what is written is netCDF: the name must end in .nc")
     try:
         return write_atomically(path, lambda draft: _sealed(draft, fill))
     except OSError as error:

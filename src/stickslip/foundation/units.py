@@ -35,6 +35,9 @@ UNIT = rf"(?:/\s*)?{_FACTOR}(?:{_PRODUCT}{_FACTOR})*"
 name only."""
 _ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME})(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>-?[1-9]))?")
 _WHOLE = re.compile(rf"1?\s*{UNIT}\s*")
+_RAISED = re.compile(r"(?<=[A-Za-zµ])⁻?[¹²³⁴⁵⁶⁷⁸⁹]")
+"""A power as typesetters write it, after a name: N/mm² and s⁻¹, but no 10² m."""
+_SIGNS = str.maketrans("μ−⁻¹²³⁴⁵⁶⁷⁸⁹", "µ--123456789")
 _QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)(?:\s+1(?=/)|\s*)(?P<unit>{UNIT})\s*")
 _PER_TURN = re.compile(r"(Hz|hertz)(?![A-Za-z])")
 """A frequency: the unit library has it as 1/s, where drillers and turners mean turns per second."""
@@ -133,9 +136,14 @@ def tabulated(unit: str) -> tuple[Fraction, Dimensions] | None:
     return total, {base: power for base, power in zip(_BASES, sums, strict=True) if power}
 
 
+def plain_signs(text: str) -> str:
+    """Return a text with the micro sign, a minus and powers as a keyboard has them: "10 μm" and "N/mm²" are copied from papers."""
+    return _RAISED.sub(lambda found: found[0].translate(_SIGNS), text.replace("μ", "µ").replace("−", "-"))
+
+
 def split_quantity(text: str) -> tuple[float, str] | None:
     """Return number and unit of a text such as "0.05 m/year", or None if the text is not of that form."""
-    found = _QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
+    found = _QUANTITY.fullmatch(plain_signs(text)) if len(text) <= LONGEST else None
     return (float(found["number"]), found["unit"]) if found else None
 
 
@@ -153,8 +161,10 @@ _LOGGED = (
 )
 _CAPITALS = {name.upper(): name for name in _LOGGED}
 """What a unit in capitals means, as old loggers write it, where it means nothing else: MPA is never a thousandth of a pascal."""
-_WEIGHTS = {"lb": "lbf", "lbs": "lbf", "klb": "klbf", "klbs": "klbf"}
-"""What drillers weigh in pounds is a force, as in ft-lb, wherever a mass does not convert."""
+_OTHERWISE = {**{"lb": "lbf", "lbs": "lbf", "klb": "klbf", "klbs": "klbf"}, **dict.fromkeys(("mil", "mils"), "thou")}
+"""What a name means where it does not convert: drillers weigh in pounds, as in ft-lb, and a mil is an angle or a length."""
+_WEIGHED = {"g": "gf", "kg": "kgf", "t": "tf", **dict.fromkeys(("ton", "tons", "tonne", "tonnes"), "tf")}
+"""The force that is the weight of a mass; it is not read by itself, as a mass may stand there by mistake."""
 
 
 @lru_cache(maxsize=256)  # a page of the explorer reads the same units again at each move of a slider
@@ -170,7 +180,7 @@ def si_factor(unit: str, si: str) -> Fraction:
     if "rad" in si and (_PER_TURN.search(unit) or _PER_MINUTE.fullmatch(unit)):
         raise InputError(f"'{unit}' may be turns or radians per second: write rpm or rad/s")
     fault = InputError("")
-    for text in dict.fromkeys((unit, in_small := _renamed(unit, _CAPITALS), _renamed(in_small, _WEIGHTS))):
+    for text in dict.fromkeys((unit, in_small := _renamed(unit, _CAPITALS), _renamed(in_small, _OTHERWISE))):
         try:
             return _convert(text, si)
         except InputError as error:
@@ -187,7 +197,8 @@ def _convert(unit: str, si: str) -> Fraction:
     factor, dimensionality = _read_unit(unit, f"; write it like {si}")
     target, wanted = _read_unit(si)
     if dimensionality != wanted:
-        raise InputError(f"'{unit}' does not convert to {si}")
+        weight = _WEIGHED.get(unit) if si == "N" else None
+        raise InputError(f"'{unit}' does not convert to {si}" + (f": it is a mass; a weight is in {weight}" if weight else ""))
     return factor / target
 
 
@@ -211,7 +222,8 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
         return Fraction(registry.get_root_units(parsed)[0]), dict(parsed.dimensionality)
     except pint.UndefinedUnitError as error:
         name = str(error.args[0])
-        known = nearest(name, COMMON_UNITS)
+        alike = [one for one in (*COMMON_UNITS, *UNITS) if one.casefold() == name.casefold()][:1]
+        known = f"did you mean '{alike[0]}'?" if alike else nearest(name, COMMON_UNITS)
         examples = known if known.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
         raise InputError(f"'{name}' is not a unit; {examples}") from None
     except (pint.PintError, ValueError):  # ValueError for the unit "nan", from fractions

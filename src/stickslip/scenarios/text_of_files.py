@@ -16,8 +16,8 @@ LARGEST_SCENARIO_FILE = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
 _SHOW = "a file of results, not a scenario: `stickslip show` summarises it, and `stickslip run --resume` continues a run"
 _TABLE = (
-    "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it; to follow a record the "
-    "scenario comes first: `stickslip infer SCENARIO DATA --free NAMES`"
+    "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it; to follow a record "
+    "the scenario comes first: `stickslip infer SCENARIO DATA --free NAMES`"
 )
 _PICTURE = "a picture, not a scenario"
 _STARTS = (
@@ -90,10 +90,15 @@ def _about_first_bytes(path: Path) -> str | None:
 
 
 def _hint(path: Path) -> str:
-    if path.name in library.STARTERS:
-        return f"it is a starter: `stickslip new {path.name} > mine.toml` writes it, and then name mine.toml"
+    if path.stem in library.STARTERS:
+        return f"`stickslip new {path.stem} > {path.stem}.toml` writes one to start from"
     close = meant(path.stem, library.names())
     return did_you_mean(close) if close else library.LISTED
+
+
+def is_scenario_name(text: str) -> bool:
+    """Return True for a text that is the name of a scenario, bundled or in TOML, where the name of another file is expected."""
+    return text.endswith(".toml") or (text in (*library.STARTERS, *library.names()) and not Path(text).exists())
 
 
 def about_suffix(file: str) -> str | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import Changes, FigureFile, complete_fitted, complete_table, complete_template, is_data, option
+from stickslip.cli.options import Changes, FigureFile, complete_fitted, complete_table, complete_template, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, gathered
@@ -74,9 +74,9 @@ def fit(
     from stickslip import friction
     from stickslip.cli.overrides import typed_values
     from stickslip.friction import Points
-    from stickslip.scenarios import library
+    from stickslip.scenarios.text_of_files import is_scenario_name
 
-    if data.endswith(".toml") or (not is_data(data) and data in (*library.STARTERS, *library.names())):
+    if is_scenario_name(data):
         cure = "`stickslip infer SCENARIO DATA --free NAMES` follows a record with runs of a scenario"
         raise InputError(f"fit: {data} is a scenario, and points come first here: `stickslip fit DATA`; {cure}")
     check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))

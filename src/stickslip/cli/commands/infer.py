@@ -189,6 +189,7 @@ def _values(texts: list[str] | None, where: str) -> dict[str, Any] | None:
 
 def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
     """Return limits by name. Raises InputError."""
+    from stickslip.foundation.arguments import shown
     from stickslip.foundation.axis import TypedRange
     from stickslip.scenarios.entries import typed_number
 
@@ -198,8 +199,6 @@ def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
     for name, value in (_values(texts, "--bound") or {}).items():
         typed = TypedRange.of(str(value), "infer: --bound")
         if typed is None or typed.points is not None or typed.log:
-            raise InputError(
-                f'infer: --bound must be NAME=LOW..HIGH, as "friction.a=0.001..0.1", got {ascii(name)[:40]}={ascii(value)[:40]}'
-            )
+            raise InputError(f'infer: --bound must be NAME=LOW..HIGH, as "friction.a=0.001..0.1", got {shown(f"{name}={value}")}')
         found[name] = (typed_number(typed.low), typed_number(typed.high))
     return found

@@ -149,7 +149,8 @@ def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, f
     from stickslip.sweeps.sweep import check_out
 
     if (table is None) == (not vary):
-        raise InputError(f"sweep: needs either --vary or --list, got {'both' if vary else 'neither'}")
+        got = "both" if vary else "neither; as in --vary friction.alpha=0.1..1:20"
+        raise InputError(f"sweep: needs either --vary or --list, got {got}")
     if out is not None:
         check_out(out, "--out")
     check_target(figure, "--figure")

@@ -16,7 +16,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.headings import COLUMNS, missing
+from stickslip.foundation.headings import COLUMNS, headings, missing, names_of
 from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Choice, NumberSeries, Quantity, declare
 from stickslip.foundation.text_columns import read_file, read_text
@@ -184,7 +184,9 @@ def _complete(table: Table) -> tuple[Table, str]:
     if "friction" not in found:
         raise InputError(f"{place}: no column 'friction'; {missing(header, 'friction')}")
     if not set(ALONG) & set(found):
-        raise InputError(f"{place}: no column slip or slip_rate; {missing(header, 'slip_rate')}")
+        over_time = not headings("time").isdisjoint(names_of(header))
+        cure = "a record over time is for `stickslip infer`" if over_time else missing(header, "slip_rate")
+        raise InputError(f"{place}: no column slip or slip_rate; {cure}")
     if len(found["friction"]) < 2:
         raise InputError(f"{table.place}: at least two points are needed, got {len(found['friction'])}")
     for numbers in found.values():

@@ -101,7 +101,9 @@ def _ordered(source: Any) -> _Columns:
     passed = tuple(heading for i, heading in enumerate(table.header) if i not in used and heading.strip())
     at_header = table.at_header or table.place
     if "time" not in table.columns:
-        raise InputError(f"{at_header}: no column 'time'; {missing(table.header, 'time')}{_there(passed)}")
+        motion = not {"slip", "slip_rate"}.isdisjoint(table.columns)
+        cure = "points of friction without time are for `stickslip fit`" if motion else missing(table.header, "time")
+        raise InputError(f"{at_header}: no column 'time'; {cure}{_there(passed)}")
     notes: list[str] = []
     return _Columns(_in_order(dict(table.columns), table.place, notes), table.place, at_header, tuple(table.header), passed, notes)
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.axis import TypedRange, check_ends, spaced
+from stickslip.foundation.axis import TypedRange, check_ends, range_meant, spaced
 from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
@@ -149,7 +149,11 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> DesignAxis:
     found = TypedRange.of(content, f"{where}: {parameter.name}")
     values = [typed_value(parameter, one) for one in (found[:2] if found else content.split(","))]
     if found is None:
-        return DesignAxis(parameter, read_values(parameter, values, where))
+        try:
+            return DesignAxis(parameter, read_values(parameter, values, where))
+        except InputError as error:
+            meant = range_meant(content)
+            raise InputError(f"{where}: {parameter.name}: {meant}, got {shown(content)}" if meant else str(error)) from None
     axis = DesignAxis.of_range(parameter, values, found.log, where)
     return axis if found.points is None else _with_points(axis, found.points, where)
 
