@@ -98,6 +98,7 @@ ROOMS = {
         ("catalogue_rows", "sampling", "series", "soundness", "zarr_store"),
         ("planar_layout", "scec"),
         ("netcdf", "planar_store"),
+        ("curves",),
     ),
     "run": (
         ("options", "progress"),

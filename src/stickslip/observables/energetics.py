@@ -63,7 +63,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
 
     events = SlipEvents.of(history, threshold)
     begin, end = events.begin, events.end
-    columns = {
+    columns: dict[str, Floats] = {
         "start": history.seconds(*history.placed(begin)),
         "slip": history.slipped_within(begin, end),
         **_energies(history, begin, end),
