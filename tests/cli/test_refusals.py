@@ -12,7 +12,10 @@ BAD = template("slab").replace("thickness =", "thicknes =")
 FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
 CASES = [
     (["rn"], "there is no command 'rn'; did you mean 'run'?"),
-    (["frobnicate"], "there is no command 'frobnicate'; allowed: compare, doctor, find, fit, new, run and 11 more: `stickslip --help"),
+    (
+        ["frobnicate"],
+        "there is no command 'frobnicate'; allowed: compare, doctor, find, fit, new, run and 11 more: `stickslip",
+    ),
     (["fig6-slab"], "'fig6-slab' is a scenario, not a command: did you mean `stickslip run fig6-slab` or `stickslip check fig6-"),
     (["run"], "run: nothing to run: give a SCENARIO, or --resume FILE"),
     (["run", "fig6-slab", "--figur", "a.png"], "run: there is no option --figur; did you mean '--figure'? `stickslip run --help`"),
@@ -108,7 +111,10 @@ CASES = [
     (["sweep", "fig6-slab"], "sweep: needs either --vary or --list, got neither"),
     (["sweep", "fig6-slab", "-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got both"),
     (["sweep", "fig6-slab", "-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
-    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "xyz"], "sweep: quantity 'xyz' is unknown; allowed: arrested, balance, branches, damped, end_time, "),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "xyz"],
+        "sweep: quantity 'xyz' is unknown; allowed: arrested, balance, branches, damped, ",
+    ),
     (["sweep", "fig6-slab", "-v", "alpha=1,2", "--out", "map.nc"], "--out map.nc: the name must end in .zarr"),
     (["sweep", "fig6-slab", "-v", "alpha=1,2", "--out", "no/map.zarr"], "--out no/map.zarr: there is no folder no"),
     (["sweep", "fig6-slab", "--list", "no.csv"], "--list no.csv: no such file"),

@@ -16,8 +16,8 @@ LARGEST_SCENARIO_FILE = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
 _SHOW = "a file of results, not a scenario: `stickslip show` summarises it, and `stickslip run --resume` continues a run"
 _TABLE = (
-    "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it; to follow a record the "
-    "scenario comes first: `stickslip infer SCENARIO DATA --free NAMES`"
+    "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it; to follow a record "
+    "the scenario comes first: `stickslip infer SCENARIO DATA --free NAMES`"
 )
 _PICTURE = "a picture, not a scenario"
 _STARTS = (
