@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.arguments import for_users
@@ -46,9 +46,9 @@ def read_source(who: str, source: Problem | Scenario | str | Path, *, contact: b
 
 def under_rule(source: Problem | Scenario, rule: str | SelectionRule) -> Problem | Scenario:
     """Return a problem, or a scenario, under another selection rule. Raises InputError for an unknown rule."""
-    if isinstance(source, Problem):
-        return replace(cast(Problem, source), selection=rule)
-    return replace(source, problem=replace(source.problem, selection=rule))
+    problem: Problem = source if isinstance(source, Problem) else source.problem
+    changed = replace(problem, selection=rule)
+    return changed if isinstance(source, Problem) else replace(source, problem=changed)
 
 
 def read_duration_and_problem(
