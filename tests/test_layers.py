@@ -40,7 +40,7 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "lazy_names", "memory", "names", "units"),
         ("headings", "meant", "netcdf_file"),
         ("conversion",),
         ("axis", "columns", "quantities"),

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from types import ModuleType
 
 from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same
 
@@ -34,16 +35,17 @@ class ArgumentError(InputError, TypeError):
 
 
 class UnknownAttributeError(AttributeError):
-    """Raised for an attribute that an object does not have; the message names the nearest public one, or all."""
+    """Raised for an attribute that an object or a module does not have; the message names the nearest public ones."""
 
     def __init__(self, owner: object, attribute: str) -> None:
         super().__init__(owner, attribute)  # the message is made when it is read: `hasattr` needs none
 
     def __str__(self) -> str:
         owner, attribute = self.args
-        public = [one for one in dir(owner) if not one.startswith("_")]
+        public = getattr(owner, "__all__", None) or [one for one in dir(owner) if not one.startswith("_")]
         hint = nearest(attribute, public, "it has ", "dir() of it lists all")
-        return f"{type(owner).__name__} has no attribute {ascii(attribute)[:60]}; {hint}"
+        who = owner.__name__ if isinstance(owner, ModuleType) else type(owner).__name__
+        return f"{who} has no attribute {ascii(attribute)[:60]}; {hint}"
 
 
 class InputWarning(UserWarning):
