@@ -38,6 +38,7 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "foundation": (
+        ("synonyms",),
         ("arrays", "constants", "errors", "place"),
         ("arguments", "atomic_write", "determined", "memory", "names", "units"),
         ("headings", "meant", "netcdf_file"),
@@ -89,7 +90,7 @@ ROOMS = {
         ("layers", "proof_of_rest", "proof_of_slip", "proof_of_states", "waves"),
         ("inside_layers", "layers_found_again"),
         ("energy", "field", "proof_of_load"),
-        ("event_table", "proof_of_run"),
+        ("at_driver", "event_table", "proof_of_run"),
         ("energetics", "event_stream"),
     ),
     "solution": (("evaluation",), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
@@ -157,6 +158,7 @@ ROOMS = {
     "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
         ("expand", "extra_words", "options"),
+        ("mistyped",),
         ("output", "overrides"),
         ("long_run", "installation"),
         ("commands",),

@@ -140,9 +140,7 @@ def test_files_and_readers_have_spellings_of_their_own(unit: str, file: str, rea
     assert for_readers(file) == for_readers(unit) == readers
 
 
-@pytest.mark.parametrize(
-    ("unit", "readers"), [("m^-1 s", "s/m"), ("1/m", "m⁻¹"), ("kg/m^3", "kg/m³"), ("m s^-1", "m s^-1"), ("", "")]
-)
+@pytest.mark.parametrize(("unit", "readers"), [("m^-1 s", "s/m"), ("1/m", "m⁻¹"), ("kg/m^3", "kg/m³"), ("m s^-1", "m/s"), ("", "")])
 def test_declared_units_are_spelled_for_readers(unit: str, readers: str) -> None:
     assert for_readers(unit) == readers
 

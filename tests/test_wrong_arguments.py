@@ -271,7 +271,8 @@ def test_copies_and_pickles_of_checked_objects_are_equal() -> None:
         (PROBLEM, "pullrate", "Problem has no attribute 'pullrate'; did you mean 'pull_rate'?"),
         (LAW, "alfa", "HyperbolicRate has no attribute 'alfa'; did you mean 'alpha'?"),
         (ss.simulate(PROBLEM, 1.0), "plott", "Solution has no attribute 'plott'; did you mean 'plot'?"),
-        (ss.simulate(PROBLEM, 1.0), "velocity", "Solution has no attribute 'velocity'; it has "),
+        (ss.simulate(PROBLEM, 1.0), "velocity", "Solution has no attribute 'velocity'; did you mean 'slip_rate'?"),
+        (ss.simulate(PROBLEM, 1.0), "zzz", "Solution has no attribute 'zzz'; it has "),
         (ss.PlanarSlab(LINE, nodes=8, length=1e4), "node", "PlanarSlab has no attribute 'node'; did you mean 'nodes'?"),
     ],
 )

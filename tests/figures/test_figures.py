@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import regime_map
+from stickslip.contact.steady import steady_traction
 from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
@@ -270,3 +271,26 @@ def test_the_same_figure_gives_the_same_bytes() -> None:
     dataset = systems.data(BLOCK_PROBLEM, SLAB_PROBLEM)
     for kind in ("png", "svg"):
         assert image(systems.draw(dataset), kind) == image(systems.draw(dataset), kind)
+
+
+@pytest.mark.parametrize("gives_way", [False, True])
+def test_the_figure_of_steady_sliding_has_the_edge_from_rest(gives_way: bool) -> None:
+    """Between the critical rate and the edge, a contact from rest sticks; one behind a driver that gives way slides more slowly."""
+    slab = replace(SLAB, driver_impedance=0.5 * SLAB.impedance) if gives_way else SLAB
+    law = ss.friction.ExponentialStribeck(static=0.8, dynamic=0.3, rate="1 m/s", viscosity="0.02 s/m")
+    far = {"far_stress": 0.31 * slab.normal_stress} if gives_way else {}
+    problem = ss.Problem(replace(slab, contact_mass=1e6), law, pull_rate="20 m/s", initial_load=0.0, **far)
+    found = ss.studies.steady(problem)
+    assert found.from_rest is not None
+    assert found.from_rest.sticks_at is not None
+    axes = found.plot().axes[0]
+    (edge,) = (line for line in axes.lines if line.get_label().startswith("edge of sticking from rest"))
+    rate, pull = edge.get_xdata()[0], found.from_rest.sticks_at
+    if gives_way:
+        held = slab.driver_impedance * (pull - rate) + problem.far_stress
+        assert held == pytest.approx(float(steady_traction(problem, np.array([rate]))[0]), rel=1e-9)
+        assert rate < pull
+    else:
+        assert rate == pytest.approx(pull, rel=1e-12)
+    (span,) = axes.patches
+    assert span.get_extents().transformed(axes.transData.inverted()).x1 == pytest.approx(rate, rel=1e-9)

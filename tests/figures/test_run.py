@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import stickslip as ss
-from stickslip.figures.runs.curves import RANGE
+from stickslip.figures.runs.curves import PEAKS, RANGE
 from stickslip.figures.runs.run import draw
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from tests.figures.legible import size_of
@@ -120,19 +120,56 @@ def test_a_rest_of_any_length_shows_how_far_the_waves_in_the_body_swing_the_load
 
 
 def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
-    figure = draw(LONG)
-    (rate,), (stress,) = (panel.collections for panel in figure.axes[1:3])
-    lows, highs = (np.sort(stress.get_paths()[0].vertices[:, 1])[part] for part in (slice(200), slice(-200, None)))
-    rests = 1e-6 * LONG.events.traction_after
+    run = ss.simulate("granite-slab", 200.0)
+    figure = draw(run)
+    (stress,) = figure.axes[2].collections
+    lows, highs = (np.sort(stress.get_paths()[0].vertices[:, 1])[part] for part in (slice(400), slice(-400, None)))
+    rests = 1e-6 * run.events.traction_after
     assert (rests.min(), rests.max()) == (pytest.approx(2.50005, abs=1e-5), pytest.approx(2.50016, abs=1e-5))
     assert (lows.min() > 2.4999, lows.max() < rests.max() + 1e-6) == (True, True)
     assert (highs.min(), highs.max()) == (pytest.approx(3.5, abs=2e-4), pytest.approx(3.5, abs=2e-4))
-    corners = rate.get_paths()[0].vertices
-    assert corners[:, 1].max() == pytest.approx(1e3 * LONG.events.peak_rate.max(), rel=1e-9)
-    assert np.ptp(corners[:, 0]) > 99.0
     assert [text.get_text() for text in figure.legends[0].get_texts()].count(RANGE) == 1
-    figure = draw(LONG, 0.0, 19.0)
-    assert [len(panel.collections) for panel in figure.axes] == [0, 0, 0], "46 events can be seen"
+
+
+def test_slip_rates_of_many_events_are_their_peaks_and_no_filled_band() -> None:
+    """A band would say that the contact slips all the time: of 477 events each peak is a point, at its time and its rate."""
+    run = ss.simulate("granite-slab", 200.0)
+    figure = draw(run)
+    rate = figure.axes[1]
+    assert not rate.collections
+    (peaks,) = (line for line in rate.lines if line.get_label() == PEAKS)
+    time, height = peaks.get_xydata().T
+    assert len(time) >= len(run.events) - 1 > 400
+    assert 1e-3 * height == pytest.approx(np.interp(time, run.events.start, run.events.peak_rate), rel=1e-3)
+    assert np.abs(time[:, None] - run.events.start.to_numpy()).min(axis=1).max() < 1e-3
+    assert [text.get_text() for text in figure.legends[0].get_texts()].count(PEAKS) == 1
+
+
+@pytest.mark.parametrize("last", [19.0, 40.0, 100.0])
+def test_the_slip_rate_of_tens_and_hundreds_of_events_is_a_curve(last: float) -> None:
+    figure = draw(LONG, 0.0, last)
+    assert [len(panel.collections) for panel in figure.axes] == [0, 0, 0]
+    time, rate = figure.axes[1].lines[0].get_xydata().T
+    events = LONG.events[LONG.events.start < last - 0.1]
+    assert np.isfinite(rate).all()
+    for event in events.itertuples():
+        assert rate[(time >= event.start - 1e-3) & (time <= event.end + 1e-3)].max() == pytest.approx(
+            1e3 * event.peak_rate, rel=1e-9
+        )
+
+
+def test_load_and_traction_are_both_seen_where_they_coincide() -> None:
+    """A resting contact bears its load: the dashes of the load lie above the line of the traction."""
+    figure = draw(ss.simulate("direct-shear-block"))
+    above = {line.get_label().split()[0]: line.get_zorder() for line in figure.axes[2].lines}
+    assert above["spring"] > above["friction"]
+
+
+def test_slip_that_hardly_changes_is_drawn_as_its_change() -> None:
+    run = ss.simulate("fig5-slab-printed")
+    panel = draw(run).axes[0]
+    assert panel.get_ylabel() == "change of slip $u$ (mm)"
+    assert panel.lines[0].get_ydata()[[0, -1]] == pytest.approx([0.0, 1e3 * (run.slip(12.0) - run.slip(0.0))], rel=1e-12)
 
 
 def test_the_traction_of_a_block_that_sticks_has_no_notches() -> None:

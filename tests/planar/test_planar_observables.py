@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -82,6 +83,17 @@ def test_a_run_draws_itself_with_units(plane: bool) -> None:
     figure = ss.simulate(patch(nodes=32, length=2e4, **grid), 3.0, frames=10).plot(figure=Figure())
     labels = " ".join(axis.get_ylabel() + axis.get_xlabel() for axis in figure.axes)
     assert all(unit in labels for unit in ("(km)", "(m/s)", "(s)"))
+
+
+def test_the_figure_has_the_title_of_the_scenario_also_from_a_folder(tmp_path: Path) -> None:
+    scenario = ss.load_scenario("planar-patch")
+    scenario = replace(scenario, duration=0.5, contact=replace(scenario.contact, nodes=64, frames=10))
+    run = ss.simulate(scenario, checkpoint=tmp_path / "fault.zarr")
+    for one in (run, ss.open_solution(tmp_path / "fault.zarr"), ss.simulate(scenario)):
+        assert one.title == scenario.title
+        assert one.plot(figure=Figure()).get_suptitle() == scenario.title
+    plain = ss.simulate(patch(nodes=32, length=2e4), 1.0, frames=10, checkpoint=tmp_path / "plain.zarr")
+    assert [one.plot(figure=Figure()).get_suptitle() for one in (plain, ss.open_solution(tmp_path / "plain.zarr"))] == ["", ""]
 
 
 @pytest.mark.sampled(every=2)

@@ -31,6 +31,7 @@ from stickslip.foundation.show import Declared
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
+OTHER = " on the other side"
 LISTS = ("thickness", "density", "wave_speed", "drag")
 """The lists of one side of a slab that have a number for each layer."""
 DRAG_STEP = Quantity("1", "largest share of a wave that drag takes at one place", above=0)
@@ -289,17 +290,17 @@ class TwoSlabs(Declared, OfSlabs):
     thickness: Numbers = declare(of_layers("m", "thickness h"))
     density: Numbers = declare(of_layers("kg/m^3", "density rho"))
     wave_speed: Numbers = declare(of_layers("m/s", "shear wave speed c"))
-    other_thickness: Numbers = declare(of_layers("m", "on the other side, thickness"))
-    other_density: Numbers = declare(of_layers("kg/m^3", "on the other side, density"))
-    other_wave_speed: Numbers = declare(of_layers("m/s", "on the other side, shear wave speed"))
+    other_thickness: Numbers = declare(of_layers("m", "thickness", OTHER))
+    other_density: Numbers = declare(of_layers("kg/m^3", "density", OTHER))
+    other_wave_speed: Numbers = declare(of_layers("m/s", "shear wave speed", OTHER))
     normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
     driver_impedance: Number = declare(_driver(""), math.inf)
-    other_driver_impedance: Number = declare(_driver(" on the other side"), math.inf)
+    other_driver_impedance: Number = declare(_driver(OTHER), math.inf)
     contact_mass: Number = quantity("kg/m^2", "mass at the contact of joined sides, per unit area", at_least=0, default=0.0)
     travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
     sides: str = declare(Choice("whether slip is between the sides, or they slip as one", (APART, JOINED)), APART)
     drag: OptionalNumbers = declare(drag_of_layers(), None)
-    other_drag: OptionalNumbers = declare(drag_of_layers("on the other side, "), None)
+    other_drag: OptionalNumbers = declare(drag_of_layers(OTHER), None)
     drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
 
     def __post_init__(self) -> None:

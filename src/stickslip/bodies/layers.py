@@ -19,14 +19,14 @@ LARGEST_ERROR = 0.1
 """Largest relative error (1) of a layer's travel time that may be allowed."""
 
 
-def of_layers(unit: str, meaning: str) -> NumberSeries:
-    """Declare a number above 0 of each layer, from the contact outwards."""
-    return NumberSeries(Quantity(unit, f"{meaning} of each layer, from the contact outwards", above=0), least=1)
+def of_layers(unit: str, meaning: str, side: str = "") -> NumberSeries:
+    """Declare a number above 0 of each layer on one side, from the contact outwards."""
+    return NumberSeries(Quantity(unit, f"{meaning} of each layer{side}, from the contact outwards", above=0), least=1)
 
 
 def drag_of_layers(side: str = "") -> NumberSeries:
     """Declare the drag of each layer on one side."""
-    meaning = f"{side}viscous drag of each layer: stress over velocity for each metre of thickness"
+    meaning = f"viscous drag of each layer{side}: stress over velocity for each metre of thickness"
     return NumberSeries(Quantity("Pa s/m^2", meaning, at_least=0), least=1)
 
 

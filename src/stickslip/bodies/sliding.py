@@ -18,7 +18,7 @@ DRIVER_INERTIA = Quantity(
 )
 """Mass of a driver that is a machine."""
 DRIVER_INTEGRAL_GAIN = Quantity(
-    "Pa/m", "stress with which the driver makes up for each metre that it lags behind its pull rate", at_least=0
+    "Pa/m", "integral gain of the driver: stress for each metre that it lags behind its pull rate", at_least=0
 )
 """Integral gain of such a driver."""
 

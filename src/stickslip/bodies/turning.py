@@ -17,7 +17,7 @@ from stickslip.foundation.show import Declared
 
 OUTER = "outer diameter of the section"
 INNER = "inner diameter of the section"
-WEIGHT_ON_BIT = Quantity("N", "force on the bit, compression positive", above=0)
+WEIGHT_ON_BIT = Quantity("N", "weight on the bit: a force, compression positive", above=0)
 BIT_RADIUS = Quantity("m", "effective radius of the bit: 2/3 of its own if the weight is spread evenly", above=0)
 NORMAL_TORQUE = Quantity("N m", "torque of the bit if mu is 1, in place of weight and radius", above=0)
 DRIVE = Quantity(
@@ -25,7 +25,7 @@ DRIVE = Quantity(
 )
 DRIVE_INERTIA = Quantity("kg m^2", "moment of inertia of the drive: inf for a stiff drive", at_least=0, infinite=True, word="rigid")
 DRIVE_INTEGRAL_GAIN = Quantity(
-    "N m/rad", "torque with which the drive makes up for each radian that it lags behind its pull rate", at_least=0
+    "N m/rad", "integral gain of the drive: torque for each radian that it lags behind its pull rate", at_least=0
 )
 LOADED_BY = "give either normal_torque, or weight_on_bit and bit_radius"
 """How a string is pressed onto its contact."""

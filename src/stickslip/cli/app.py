@@ -1,4 +1,4 @@
-"""The subcommands of `stickslip` in groups, their help, and one line on what was mistyped."""
+"""The subcommands of `stickslip` in groups, and their help."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from stickslip.cli.commands.schemes import schemes
 from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
 from stickslip.cli.expand import expanded
-from stickslip.cli.extra_words import about_extra
+from stickslip.cli.mistyped import unknown_command
 from stickslip.cli.options import CHOICES
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError
 
 try:  # all names of typer that it does not document
     from typer.core import TyperArgument, TyperCommand, TyperGroup
@@ -136,7 +136,7 @@ class Commands(TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the command that is meant. Raises InputError for an unknown one, but not while the shell completes words."""
         if args[0] not in COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
-            raise InputError(_unknown(args[0]))
+            raise InputError(unknown_command(args[0], COMMANDS))
         return super().resolve_command(ctx, args)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
@@ -152,15 +152,6 @@ def _built(name: str) -> Any:
     alone = typer.Typer(add_completion=False, **STYLE)
     alone.command(name, cls=Command, help=prose_of(COMMANDS[name]))(expanded(COMMANDS[name]))
     return typer.main.get_command(alone)
-
-
-def _unknown(name: str) -> str:
-    from stickslip.scenarios import library
-
-    shown = name if name.isprintable() else ascii(name)
-    if name in library.names() or name.endswith(".toml"):
-        return f"'{shown}' is a scenario, not a command: did you mean `stickslip run {shown}` or `stickslip check {shown}`?"
-    return f"there is no command '{shown}'; {nearest(name, COMMANDS)}"
 
 
 app = typer.Typer(name="stickslip", cls=Commands, help=_HELP, invoke_without_command=True, **STYLE)
@@ -184,55 +175,3 @@ def start(
     """Show the help if no command is given."""
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())
-
-
-_KINDS = {"int": "a whole number", "float": "a number"}
-"""What a value must be, by the type of its parameter."""
-
-
-def explain(error: Any) -> str:
-    """Return the message for an error of the parser of the command line."""
-    context = getattr(error, "ctx", None)
-    if context is None:  # of an option without its value, or with one that it does not take
-        return str(error.format_message()).replace("requires an argument", "needs a value").rstrip(".")
-    command = f"{context.info_name}: " if context.parent else ""
-    options = [name for one in context.command.get_params(context) for name in one.opts if name.startswith("--")]
-    teach = f"`{context.command_path} --help` {'explains it, with examples' if context.parent else 'shows all'}"
-    said = {
-        "MissingParameter": lambda: f"{_name(error.param)} is missing; {teach}",
-        "NoSuchOption": lambda: f"there is no option {error.option_name}; {_hint(error.option_name, options)}{teach}",
-        "BadParameter": lambda: _bad_value(error),
-        "UsageError": lambda: _too_many(error.format_message(), context, teach),
-    }.get(type(error).__name__)
-    return f"{command}{said()}" if said else str(error.format_message())
-
-
-def _name(parameter: Any) -> str:
-    longest = max(parameter.opts, key=len)
-    return str(longest if longest.startswith("-") else longest.upper())
-
-
-def _hint(name: str, options: list[str]) -> str:
-    hint = nearest(name, options)
-    return f"{hint} " if hint.startswith("did") else ""
-
-
-def _bad_value(error: Any) -> str:
-    """Return what a value must be and what was given, if both are known."""
-    from stickslip.foundation.meant import decimal_point
-
-    described = getattr(error.param, "type_descriptor", None)  # private to typer
-    kind = _KINDS.get(getattr(getattr(described, "annotation", None), "__name__", ""))
-    faults = error.__cause__.errors() if hasattr(error.__cause__, "errors") else []
-    if kind is None or not faults:
-        return " ".join(str(error.format_message()).split())
-    least = getattr(error.param, "min", None)
-    bound = "" if least is None else f", at least {least}"
-    given = str(faults[0]["input"])
-    point = decimal_point(given)
-    return f"{_name(error.param)} must be {kind}{bound}, got {given[:60]!a}" + (f": write {point}" if point else "")
-
-
-def _too_many(message: str, context: Any, teach: str) -> str:
-    found = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
-    return about_extra(found[1], context, teach) if found else message

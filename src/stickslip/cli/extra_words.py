@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from stickslip.cli.options import is_data
+
 QUOTES = 'put a text with spaces in quotes, as "480 years"'
 
 
@@ -28,4 +30,7 @@ def _cure(words: str, context: Any) -> str:
         return f'a duration is given as --duration "{words}"'
     if words in library.names() or words.endswith(".toml"):
         return "one scenario at a time; `stickslip compare ONE OTHER` compares two"
+    if is_data(words):
+        first = next((str(one) for one in context.params.values() if isinstance(one, str)), "SCENARIO")
+        return f"to follow a record: `stickslip infer {first} {words} --free NAMES`"
     return QUOTES

@@ -40,6 +40,7 @@ class Request:
     max_pieces: int | None
     out: Path | None
     catalogue: Path | None
+    csv: Path | None
     energy: bool
     pictures: Pictures
 
@@ -56,7 +57,8 @@ class Request:
                 f"--out {self.out}: exists: --resume {self.out} continues the run in it; choose another name, or remove it"
             )
         results = Target("--out", self.out, (".zarr",) if self.has_contact else (".nc",))
-        check_targets(results, Target("--catalogue", self.catalogue, CATALOGUES), *self.pictures.targets())
+        tables = Target("--catalogue", self.catalogue, CATALOGUES), Target("--csv", self.csv, (".csv",))
+        check_targets(results, *tables, *self.pictures.targets())
         self.pictures.check()
         as_begun = [self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")]
         if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
@@ -65,8 +67,9 @@ class Request:
         if self.has_contact:
             self._check_contact()
         if self.keeps_events_only:
-            if self.out is not None:
-                raise InputError("run: a catalogue keeps slip events only, no history: leave out --out")
+            for name, file in (("--out", self.out), ("--csv", self.csv)):
+                if file is not None:
+                    raise InputError(f"run: a catalogue keeps slip events only, no history: leave out {name}")
             self.pictures.check_events("run")
         if self.energy and self.catalogue is None:
             raise InputError("run: --energy belongs to --catalogue FILE")

@@ -127,7 +127,8 @@ def _code(arguments: Sequence[str] | None) -> int:
     """Run the command line, and return the exit code."""
     from typer import Abort
 
-    from stickslip.cli.app import TyperException, app, explain
+    from stickslip.cli.app import TyperException, app
+    from stickslip.cli.mistyped import explain
     from stickslip.foundation.errors import InputError, InputWarning
 
     try:

@@ -74,6 +74,12 @@ TABLES = (".csv", ".txt", ".tsv", ".dat")
 """How the names of tables of numbers end."""
 
 
+def is_data(name: str) -> bool:
+    """Return True if a file of this name holds measured data, by the end of its name: neither a scenario nor results."""
+    suffix = Path(name).suffix.lower()
+    return suffix[1:2].isalpha() and " " not in suffix and suffix not in (".toml", ".nc", ".zarr")
+
+
 def complete_table(incomplete: str) -> list[str]:
     """Return the CSV files and folders that begin with what is typed."""
     return _files(incomplete, TABLES)

@@ -73,6 +73,11 @@ def steady_traction(problem: Problem, rates: Floats) -> Floats:
     return np.array([steady.traction(rate) for rate in rates.tolist()])
 
 
+def slip_rate_at(problem: Problem, pull_rate: float) -> float | None:
+    """Return the fastest slip rate (m/s, without its sign) of steady sliding at another pull rate (m/s); None if there is none."""
+    return max(_Steady(replace(problem, pull_rate=pull_rate)).rates(), default=None)
+
+
 @dataclass(frozen=True)
 class _Steady:
     """The search for steady sliding of one problem; slip rates in it are magnitudes, in the direction of the drive."""

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from stickslip.foundation.names import GREEK
 
 _SYMBOL = re.compile(rf"(?P<letter>{'|'.join(GREEK)}|[A-Z]|[b-df-z](?!\w)|[a-z](?=\d|_))_?(?P<index>\d|(?<=_)[a-z]|(?<!_)[A-Zcd]|)")
+_USERS = re.compile(rf"(?P<letter>{'|'.join(sorted(GREEK, key=len, reverse=True))}|[A-Za-z])_?(?P<index>[0-9]*|[A-Za-z])")
+"""A name of a number in a formula that is a symbol, as users write them: vw, mu0, tau_c. Any other name is a word."""
 _CONNECTED = ("of", "in", "per", "at", "that")
 """Words before a symbol that is not the parameter's own, as in "exponent of v"."""
 _FORMULA = ".parameters."
@@ -24,12 +26,13 @@ def parameter_name(name: str, meaning: str) -> str:
 
     `name` is its place in a scenario. Of its declared meaning, what follows a comma, a colon, a semicolon or a bracket is left out.
     """
-    return _typeset(_words(name, meaning), lambda letter, index: f"${_tex(letter)}{f'_{{{index}}}' if index else ''}$")
+    words, is_users = _words(name, meaning), _FORMULA in name
+    return _typeset(words, lambda letter, index: f"${_tex(letter)}{f'_{{{index}}}' if index else ''}$", is_users)
 
 
 def plain_name(name: str, meaning: str) -> str:
     """Return the name of a parameter as plain text, such as "density ρ"."""
-    return _typeset(_words(name, meaning), lambda letter, index: GREEK.get(letter, letter) + index)
+    return _typeset(_words(name, meaning), lambda letter, index: GREEK.get(letter, letter) + index, _FORMULA in name)
 
 
 def symbol(name: str, meaning: str) -> str:
@@ -52,8 +55,14 @@ def _words(name: str, meaning: str) -> str:
     return re.split(r"\s*[,;:(]", meaning, maxsplit=1)[0].replace("`", "") + (f" {index}" if index else "")
 
 
-def _typeset(text: str, show: Callable[[str, str], str]) -> str:
-    """Return a text in which the words that are symbols are replaced by what `show` makes of their letter and index."""
+def _typeset(text: str, show: Callable[[str, str], str], is_users: bool) -> str:
+    """Return a text in which the words that are symbols are replaced by what `show` makes of their letter and index.
+
+    The name of a number in a formula (`is_users`) is one word.
+    """
+    if is_users:
+        found = _USERS.fullmatch(text)
+        return show(found["letter"], found["index"]) if found else text.replace("_", " ")
     words = text.split()
     for place, word in enumerate(words):
         found = _SYMBOL.fullmatch(word)

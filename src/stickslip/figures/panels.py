@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import PALE, Numbers, label, shown
+from stickslip.figures.style import PALE, Numbers, folded, label, shown
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
@@ -133,7 +133,7 @@ def parameter_numbers(problem: Problem, **axes: Axis) -> dict[str, Numbers]:
 
 def draw_parameters(axes: Axes, dataset: Mapping[Any, Any]) -> None:
     """Set labels and scales of a map over the two parameters `x` and `y` of a dataset or of `parameter_numbers`."""
-    axes.set(xlabel=label(dataset["x"]), ylabel=label(dataset["y"]))
+    axes.set(xlabel=folded(label(dataset["x"])), ylabel=folded(label(dataset["y"])))
     for name in ("x", "y"):
         set_scale(axes, name, bool(dataset[name].attrs["log"]))
         if dataset[name].attrs["log"]:

@@ -24,6 +24,7 @@ Rules that all figures follow:
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
@@ -33,7 +34,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
+from stickslip.foundation.names import QUANTITIES, for_readers, name_of, readable_unit, si_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,6 +93,10 @@ WIDE = 100.0
 """Positive values that span more than this factor, and counts above this number, are drawn on a logarithmic axis."""
 
 
+ROOM = 42
+"""Number of letters in a line of the name of an axis, a key or a scale."""
+
+
 def styled(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a drawing function so that it runs under the package's style and leaves the user's settings unchanged."""
 
@@ -144,7 +149,7 @@ def shown(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = Non
 def axis_text(name: str, symbol: str, unit: str) -> str:
     """Return the text of an axis from a name, a symbol and a unit, as in "slip rate v (m/s)"."""
     text = f"{name} ${symbol}$" if symbol else name
-    return text if unit == "1" else f"{text} ({unit})"
+    return text if unit == "1" else f"{text} ({for_readers(unit)})"
 
 
 def label(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = None) -> str:
@@ -155,6 +160,12 @@ def label(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = Non
 def curve_label(curve: str, unit: str = "", load_unit: str = "Pa") -> str:
     """Return the axis label of one of `foundation.names.QUANTITIES`, in its SI unit or in the unit given."""
     return axis_text(name_of(curve, load_unit), QUANTITIES[curve].symbol, unit or si_unit(curve, load_unit))
+
+
+def folded(text: str, room: int = ROOM) -> str:
+    """Return a text in lines of up to `room` letters; a symbol and the unit stay with the last word."""
+    whole = text.replace(" $", "\0$").replace(" (", "\0(")
+    return textwrap.fill(whole, room, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
 
 
 def narrow(text: str) -> str:

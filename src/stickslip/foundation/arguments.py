@@ -125,7 +125,8 @@ def check_names(who: str, taken: Sequence[inspect.Parameter], given: Sequence[An
     by_place = [one.name for one in taken if one.kind is not one.KEYWORD_ONLY]
     wrong = None if any_name else next((name for name in named if name not in names), None)
     if wrong is not None:
-        raise ArgumentError(f"{who}: unknown argument '{wrong}'; {nearest(wrong, names)}")
+        hint = nearest(wrong, names, listed=f"help({who}) lists all")
+        raise ArgumentError(f"{who}: unknown argument '{wrong}'; {hint}")
     if len(given) > len(by_place) and not any_number:
         named_only = f" and by name {', '.join(names[len(by_place) :])}" if len(by_place) < len(names) else ""
         most = f"takes at most {len(by_place)} arguments, {', '.join(by_place)}{named_only}" if names else "takes no arguments"

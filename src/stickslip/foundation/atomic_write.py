@@ -256,7 +256,11 @@ class SafeSink(io.FileIO):
             raise self.error
 
 
-OWN = re.compile(rb"^# (written by |code=)?stickslip\b|^start,end,duration,recurrence,", re.MULTILINE)
+OWN = re.compile(
+    rb"^# (written by |code=)?stickslip\b|^start,end,duration,recurrence,"
+    rb"|^time \(s\),slip \((?:m|rad)\),slip rate \((?:m|rad)/s\),(?:load|traction) \(",
+    re.MULTILINE,
+)
 """What stands in the text files that this package writes: a comment, or the columns of a catalogue that grows."""
 BINARY = {".nc": b"\x89HDF", ".parquet": b"PAR1"}
 """First bytes of files that name this package somewhere at their beginning or end, by suffix."""

@@ -6,9 +6,12 @@ import difflib
 import inspect
 import re
 import warnings
-from collections.abc import Collection, Iterable, Iterator
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+
+from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same
 
 
 def printable(text: str) -> str:
@@ -38,7 +41,8 @@ class UnknownAttributeError(AttributeError):
 
     def __str__(self) -> str:
         owner, attribute = self.args
-        hint = nearest(attribute, [one for one in dir(owner) if not one.startswith("_")], "it has ")
+        public = [one for one in dir(owner) if not one.startswith("_")]
+        hint = nearest(attribute, public, "it has ", "dir() of it lists all")
         return f"{type(owner).__name__} has no attribute {ascii(attribute)[:60]}; {hint}"
 
 
@@ -85,29 +89,80 @@ def never_show(message: str = "", module: str = "", category: type[Warning] = Wa
         warnings.filterwarnings("ignore", re.escape(message), category, re.escape(module))
 
 
-def nearest(word: str, allowed: Iterable[str], before: str = "allowed: ") -> str:
-    """Return a hint that names the allowed words nearest to `word`, or else all of them, to be appended to an error message.
+MOST_NAMED, FEW = 8, 6
+"""So many allowed words a hint names in full; of more it names the few that are spelled most like the word."""
+MOST_MEANT = 4
+"""A part that more of the allowed words have says nothing about which one is meant."""
+MOST_ABSENT = 2
+"""Largest number of meanings of a word that are named although none of them is allowed."""
+MISTYPED = 0.85
+"""So much (1) of a mistyped word and of the right one is the same, at least."""
+SHORT, ALIKE = 5, (0.65, 0.6)
+"""Longest word that counts as short, and how much (1) of a short word, and of a longer one, is the same in one spelled alike."""
 
-    Nearest are words of which it is a part, as slab of elastic-slab, and otherwise the one that is spelt most alike.
+
+def nearest(word: str, allowed: Iterable[str], before: str = "allowed: ", listed: str = "") -> str:
+    """Return a hint that names the allowed words nearest to `word`, to be appended to an error message.
+
+    Those are words that mean the same or contain it, or the one that is spelled most alike. If there is none, the hint names all,
+    or of many a few and where all are `listed`.
     """
     allowed = list(allowed)
-    close = [name for name in allowed if word in name.split("-")] or difflib.get_close_matches(word, allowed, n=1)
-    if close:
-        return f"did you mean {' or '.join(map(repr, close))}?"
-    return f"{before}{', '.join(sorted(allowed)) or NONE}"
+    if close := meant(word, allowed):
+        return did_you_mean(close)
+    return before + some_of(allowed, word, listed)
 
 
-def nearest_and_all(word: str, allowed: Iterable[str]) -> str:
-    """Return a hint that names the allowed word nearest to `word`, if one is near, and all of them in the order given."""
-    allowed = list(allowed)
-    close = difflib.get_close_matches(word, allowed, n=1)
-    return f"{f'did you mean {close[0]!r}? ' if close else ''}allowed: {', '.join(allowed) or NONE}"
+def _elsewhere(word: str) -> str:
+    """Return what a word of the trades means where that is not allowed, if it means little else."""
+    known = meanings(word)
+    if not 0 < len(known) <= MOST_ABSENT:
+        return ""
+    return f"it may stand for {' or '.join(known)}, which {'is' if len(known) == 1 else 'are'} not here; "
 
 
-def full_name(name: str, known: Collection[str], before: str, unknown: str) -> str:
+def did_you_mean(close: Iterable[str]) -> str:
+    """Return a hint that asks for one of some words."""
+    return f"did you mean {' or '.join(map(repr, close))}?"
+
+
+def some_of(allowed: Iterable[str], word: str = "", listed: str = "") -> str:
+    """Return the allowed words, or of many those spelled most like a word, the number of the others, and where all are listed."""
+    allowed = sorted(allowed)
+    if len(allowed) <= MOST_NAMED:
+        return ", ".join(allowed) or NONE
+    few = sorted(sorted(allowed, key=lambda one: -_likeness(word, one))[:FEW])
+    return f"{', '.join(few)} and {len(allowed) - FEW} more{f': {listed}' if listed else ''}"
+
+
+def meant(word: str, allowed: Collection[str]) -> list[str]:
+    """Return the allowed words that `word` may stand for; none if nothing is near.
+
+    They are those with the same meaning (`synonyms.same`); else one that differs by a slip of the pen; else those of which it is a
+    part, as slab of elastic-slab, or the beginning; else the one that is spelled most alike.
+    """
+    found, best = same(word, allowed), max(allowed, key=lambda one: _likeness(word, one), default="")
+    if not found and _likeness(word, best) >= MISTYPED:
+        return [best]
+    if not found:
+        found = [one for one in allowed if word.casefold() in parts_of(one)]
+        found = found or [one for one in allowed if len(word) > 2 and plain(one).startswith(plain(word) or "-")]
+        found = found if len(found) <= MOST_MEANT else []
+    if found or meanings(word):  # a word that is known is not a misspelt one
+        return found[:MOST_MEANT]
+    return [best] if _likeness(word, best) >= ALIKE[len(word) > SHORT] else []
+
+
+def _likeness(word: str, other: str) -> float:
+    """Return how much of two words is the same (1), in capitals or not; dashes before an option do not count."""
+    return difflib.SequenceMatcher(None, other.lstrip("-").casefold(), word.lstrip("-").casefold()).ratio()
+
+
+def full_name(name: str, known: Collection[str], before: str, unknown: str, listed: str = "") -> str:
     """Return the known name that is the given one, or the only one that ends with it: "friction.alpha" for "alpha".
 
-    Raises InputError, whose message begins with `before`, if several names fit, and with the text `unknown` if none does.
+    Raises InputError, whose message begins with `before`, if several names fit, and with the text `unknown` if none does; `listed`
+    says where all names are.
     """
     if name in known:
         return name
@@ -115,11 +170,18 @@ def full_name(name: str, known: Collection[str], before: str, unknown: str) -> s
     if len(fitting) > 1:
         raise InputError(f"{before}'{name}' is ambiguous: give one of {', '.join(fitting)}")
     if not fitting:
-        entries = [full for full in known if full.partition("[")[0].endswith(f".{name.rpartition('.')[2]}") and "[" in full]
+        entries = [full for full in known if full.partition("[")[0].endswith(f".{last(name)}") and "[" in full]
         if entries:
             raise InputError(f"{before}{ascii(name)[:60]} {unknown}; it is a list: name one of its entries, such as {entries[0]}")
         single = [full for full in known if "[" not in full]
-        hint = nearest(name, [full.rpartition(".")[2] for full in single])
-        hint = hint if hint.startswith("did") and "." not in name else nearest(name, single)
-        raise InputError(f"{before}{ascii(name)[:60]} {unknown}; {hint}")
+        raise InputError(f"{before}{ascii(name)[:60]} {unknown}; {_nearest_end(name, single, listed)}")
     return fitting[0]
+
+
+def _nearest_end(name: str, known: Sequence[str], listed: str) -> str:
+    """Return a hint at the names that end like `name`: their ends, if no others end so and `name` is such an end itself."""
+    ends = Counter(map(last, known))
+    close = same(name, known) or [full for full in known if last(full) in meant(name, ends)] if "." not in name else []
+    if not close:
+        return _elsewhere(name) + nearest(name, known, listed=listed)
+    return did_you_mean(last(full) if ends[last(full)] == 1 else full for full in close[:MOST_MEANT])

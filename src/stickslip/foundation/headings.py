@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError, nearest, warn
+from stickslip.foundation.errors import InputError, meant, warn
 from stickslip.foundation.units import plain_signs, si_factor, split_quantity, tabulated
 
 
@@ -268,12 +268,11 @@ def missing(header: Sequence[str], column: str) -> str:
         return f"logarithms are not read: write the numbers themselves, as in a column {example(column)}"
     if any(map(is_number, header)):
         return f"the first line must name the columns, as {example(column)}"
-    hint = nearest(column, [cell for cell in header if cell.strip()])
-    close = hint[14:-2]
+    close = next(iter(meant(column, [cell for cell in header if cell.strip()])), column)
     for i, name in enumerate(names_of(header)):  # "lambda V", "theta v"
         if name.rpartition(" ")[2] in headings(column):
             return f"column {i + 1} is not the {column} itself, by its heading; if it is, write {example(column)} there"
-    return f"rename {quoted(close)}?" if hint.startswith("did") and close != column else f"write it as {example(column)}"
+    return f"rename {quoted(close)}?" if close != column else f"write it as {example(column)}"
 
 
 def note_units(chosen: Mapping[str, FoundColumn], columns: Mapping[str, Floats], place: str) -> None:

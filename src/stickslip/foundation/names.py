@@ -36,7 +36,14 @@ class KindOfBody:
 
 KINDS = {
     "Pa": KindOfBody("m", "J/m^2", "stress", "normal_stress", "Pa s/m"),
-    "N": KindOfBody("m", "J", "force", "normal_force", "N s/m", {"traction": "friction force", "load": "spring force"}),
+    "N": KindOfBody(
+        "m",
+        "J",
+        "force",
+        "normal_force",
+        "N s/m",
+        {"traction": "friction force", "load": "spring force", "drive_traction": "force at the driver"},
+    ),
     "N m": KindOfBody(
         "rad",
         "J",
@@ -47,6 +54,7 @@ KINDS = {
             **{"slip": "angle", "event_slip": "angle in the event", "slip_rate": "rotation rate"},
             **{"peak_rate": "peak rotation rate", "traction": "friction torque", "load": "load torque"},
             **{"displacement": "angle", "velocity": "rotation rate", "stress": "torque"},
+            **{"drive_rate": "rotation rate of the drive", "drive_traction": "surface torque"},
         },
         "turns",
     ),
@@ -76,6 +84,9 @@ QUANTITIES = {
     "slip_rate": Name("slip rate", "v", "slip_rate", "slip rate of the contact, v"),
     "traction": Name("traction", r"\tau", "load", "friction on the contact, tau"),
     "load": Name("load", r"\beta", "load", "load on the contact, beta"),
+    "drive_rate": Name("drive rate", r"v_d", "slip_rate", "rate at the driver"),
+    "drive_traction": Name("traction at the driver", r"\tau_d", "load", "load at the driver"),
+    "surface_torque": Name("surface torque", "T_d", "N m", "torque at the drive"),
     "friction": Name("friction coefficient", r"\mu", "1"),
     "state": Name("state", "", "1", "state of the friction law"),
     "second_state": Name("second state", "", "1", "second state of the friction law"),
@@ -86,14 +97,17 @@ QUANTITIES = {
     "shear_stress_peak": Name("peak stress", r"\tau_p", "Pa"),
     "shear_force_peak": Name("peak force", "F_p", "N"),
     "torque_peak": Name("peak torque", "T_p", "N m"),
+    "surface_torque_peak": Name("peak surface torque", "T_p", "N m"),
     "friction_rest": Name("friction at rest", r"\mu_r", "1"),
     "shear_stress_rest": Name("stress at rest", r"\tau_r", "Pa"),
     "shear_force_rest": Name("force at rest", "F_r", "N"),
     "torque_rest": Name("torque at rest", "T_r", "N m"),
+    "surface_torque_rest": Name("surface torque at rest", "T_r", "N m"),
     "friction_drop": Name("drop of friction", r"\Delta\mu", "1"),
     "shear_stress_drop": Name("stress drop", r"\Delta\tau", "Pa"),
     "shear_force_drop": Name("drop of force", r"\Delta F", "N"),
     "torque_drop": Name("drop of torque", r"\Delta T", "N m"),
+    "surface_torque_drop": Name("drop of surface torque", r"\Delta T", "N m"),
     "recurrence": Name("recurrence", "T", "s"),
     "duration": Name("duration", r"\delta t", "s"),
     "peak_rate": Name("peak slip rate", "v_{max}", "slip_rate"),
@@ -131,6 +145,9 @@ _SHORT = {
     "rad/s": (("rpm", math.pi / 30.0),),
 }
 """Units, with their sizes in SI units, among which the shortest text of one number is looked for (`show.brief`)."""
+_FACTOR = re.compile(r"([A-Za-zµ%]+)\^?(-?[1-9]|)")
+"""A name in a unit, with its power: m, s-1 of files, s^-1."""
+_SUPERSCRIPTS = str.maketrans("123456789", "¹²³⁴⁵⁶⁷⁸⁹")
 DECADES = 1e6
 """A logarithmic axis that spans more than this factor has the SI unit: a prefix would not make its powers of ten more readable."""
 
@@ -184,10 +201,17 @@ def in_files(unit: str) -> str:
 
 
 def for_readers(unit: str) -> str:
-    """Return a unit, of a file or declared, as readers expect to see it: "m/s" for "m s-1", "kg/m³" for "kg/m^3"."""
-    known = {"m^-1 s": "s/m", "1/m": "m⁻¹"}.get(unit, unit)
-    plain = re.sub(r" ([a-z]+)-(\d)$", r"/\1^\2", known).removesuffix("^1")
-    return re.sub(r"(?<=/[ms])\^([23])$", lambda found: "²³"[int(found[1]) - 2], plain)
+    """Return a unit, of a file, declared or in powers, as readers expect to see it: "m/s" for "m s-1", "kg/m³" for "kg/m^3"."""
+    factors = [_FACTOR.fullmatch(one) for one in unit.split()]
+    if any(one and one[2].startswith("-") for one in factors) and all(factors):
+        over = [_raised(one[1], int(one[2] or 1)) for one in factors if one and not one[2].startswith("-")]
+        below = [_raised(one[1], int(one[2][1:])) for one in factors if one and one[2].startswith("-")]
+        unit = f"{' '.join(over) or '1'}/{below[0] if len(below) == 1 else '(' + ' '.join(below) + ')'}"
+    return "m⁻¹" if unit == "1/m" else re.sub(r"(?<=/[ms])\^([23])$", lambda found: _raised("", int(found[1])), unit)
+
+
+def _raised(name: str, power: int) -> str:
+    return name + ("" if power == 1 else str(power).translate(_SUPERSCRIPTS))
 
 
 def has_prefixes(unit: str) -> bool:

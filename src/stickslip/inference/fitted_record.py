@@ -19,9 +19,12 @@ from stickslip.inference.certainty.sampling import PosteriorWalk
 from stickslip.inference.fit.by_features import FeatureModel
 from stickslip.inference.fit.estimate import Estimate
 from stickslip.inference.fit.free import Free
+from stickslip.inference.fit.looks import looks_of
 from stickslip.inference.fit.memory import WHITE
 from stickslip.inference.fit.model import OF_NO_ZERO, Model
 from stickslip.inference.fit.part import Part
+from stickslip.inference.fit.pieces import pieces_of
+from stickslip.inference.fit.what_is_left import Look
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 from stickslip.study import StudyWithDataset
@@ -184,6 +187,21 @@ class FittedRecord(StudyWithDataset):
             count = sum(len(b.time) for i in range(len(self.model.parts)) for q, b in self.model.blocks(i) if q == name)
             total += 2.0 * count * math.log(size)
         return total + self.estimate.cost(self.estimate.searched) + len(self.free) * math.log(n)
+
+    @cached_property
+    def looks(self) -> dict[str, list[Look]]:
+        """What is left of each fitted quantity looks like, by its name: kinds, shares and sizes, an empty list for noise.
+
+        Beside a look the free numbers may still move, as it tells what the fit lacks.
+        """
+        if self.model.of_means:
+            return {}
+        found, slopes = {}, self.certainty.slopes
+        residual = np.zeros(self.model.samples)
+        for name, _, by, weight, _ in pieces_of(self.model, residual, slopes if len(slopes) else residual[:, None]):
+            seen = by / weight[:, None] if len(slopes) else None
+            found[name] = looks_of(self.model, self.estimate.searched, name, seen)
+        return found
 
     @cached_property
     def features(self) -> pd.DataFrame | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
@@ -21,11 +22,13 @@ from stickslip.inference.certainty.directions import IDLE
 from stickslip.inference.certainty.kept_walk import KeptWalk
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
 from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
+from stickslip.inference.fit.drifting import TRENDS, Offer, decided, offered
 from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
 from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part, first_sizes, share_of, shortened
-from stickslip.inference.fit.search import COMPETES, SearchProgress, Tell
+from stickslip.inference.fit.progress import OutOfTime, SearchProgress, Tell
+from stickslip.inference.fit.search import COMPETES
 from stickslip.inference.fit.setup import at_rests, evenly, hints_of, own_of, parts_of, rounded_times, scales_of, with_parts
 from stickslip.inference.fit.starting import with_starts
 from stickslip.inference.inference import Inference
@@ -51,6 +54,9 @@ LEAST_FITTED = 2000
 """A part with at most this many samples is fitted as it is, however many parts there are."""
 TIME = Quantity("s", "time of the record")
 WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the pull rate", at_least=0.0)
+LIMIT = Quantity("s", "processor time after which the search ends", above=0.0)
+LONGEST = 600.0
+"""Default processor time (s) of a search."""
 RTOL = 1e-8
 """Default relative tolerance of the runs: far below the noise of a laboratory."""
 
@@ -79,6 +85,8 @@ class Wishes:
     rtol: float
     normal: str
     checkpoint: Path | None
+    trend: str
+    max_time: float | str | WithUnit | None
 
     def check(self) -> None:
         """Raise InputError for options that are out of range."""
@@ -94,7 +102,10 @@ class Wishes:
             raise InputError("infer: windows are of records that are fitted as a whole: leave out parts='rests' and by='features'")
         if self.normal not in NORMALS:
             raise InputError(f"infer: normal {ascii(self.normal)[:40]} is unknown; {nearest(str(self.normal), NORMALS)}")
+        if self.trend not in TRENDS:
+            raise InputError(f"infer: trend {ascii(self.trend)[:40]} is unknown; {nearest(str(self.trend), TRENDS)}")
         WEIGHT.check("infer", "weight", self.weight)
+        self.progress(lambda text: None)
         for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
             check_whole(f"infer: {name}", getattr(self, name), least, most)
         if self.samples:
@@ -103,6 +114,10 @@ class Wishes:
             raise InputError("infer: checkpoint is of the samples that are drawn: ask for some with samples=, or leave it out")
         KeptWalk(self.checkpoint).check()
         check_rtol(self.rtol, "infer")
+
+    def progress(self, tell: Tell) -> SearchProgress:
+        """Return the progress of the search, which ends when its time is over. Raises InputError for a time that is none."""
+        return SearchProgress(tell, LONGEST if self.max_time is None else LIMIT.check("infer", "max_time", self.max_time))
 
     def alone(self) -> AbstractContextManager[None]:
         """Reserve the file of the samples against other processes. Raises InputError if another one writes into it."""
@@ -140,6 +155,8 @@ def infer(
     seed: int = 0,
     rtol: float = RTOL,
     checkpoint: str | Path | None = None,
+    trend: str = "auto",
+    max_time: float | str | WithUnit | None = None,
 ) -> Inference:
     """Fit the numbers of a problem to a laboratory record, by full runs, and find how well the record determines them.
 
@@ -151,8 +168,8 @@ def infer(
         The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
     free : list of str
         Names of the free numbers: those of `problem.parameters`, such as "friction.a" and "body.stiffness", and "initial.load",
-        "initial.state", "record.trend" (friction per metre of slip), "record.delay" (s, by which the record is late) and
-        "record.servo" (s: after a step the load point approaches its new rate as exp(-t/servo)).
+        "initial.state", "record.trend" (friction per metre of slip), "record.drift" (friction per second), "record.delay" (s, by
+        which the record is late) and "record.servo" (s: after a step the load point approaches its new rate as exp(-t/servo)).
     begin, end : float or str, optional
         The part of the record to use: times (s, as in the record, or texts with a unit).
     progress : bool or callable, optional
@@ -209,12 +226,18 @@ def infer(
     checkpoint : str or Path, optional
         File (.nc) in which the samples are kept while they are drawn. If the program is killed, the same call fits again and goes
         on with them; its result is the same, bit for bit.
+    trend : {"auto", "none"}
+        "auto" frees "record.trend" or "record.drift", too, if plateaus of friction at constant rates fall or rise with slip or
+        time, and the fit needs it: a note says so. "none" does not.
+    max_time : float or str, optional
+        Processor time (s, or a text with a unit) after which the best numbers so far are the result, with what is left and what may
+        help. Default: 10 min for the search, and as long as it takes for profiles, windows and samples.
 
     Returns
     -------
     Inference
-        The best numbers with intervals, the best problem, and what the record does not determine. After Ctrl-C it holds the best
-        numbers so far.
+        The best numbers with intervals, the best problem, and what the record does not determine. After Ctrl-C or `max_time`, it
+        holds the best numbers so far.
 
     Raises
     ------
@@ -254,7 +277,7 @@ def infer(
         by=by, observe=observe, start=start,
         sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
         bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, weight=weight, windows=windows,
-        starts=starts, seed=seed, rtol=rtol, normal=normal,
+        starts=starts, seed=seed, rtol=rtol, normal=normal, trend=trend, max_time=max_time,
         checkpoint=None if checkpoint is None else as_path("infer: checkpoint", checkpoint),
     )  # fmt: skip
     wishes.check()
@@ -278,9 +301,7 @@ def infer(
         fitted, _ = by_features(fitted, wishes.observe)
         whole, said = by_features(whole, wishes.observe)
         notes += said
-    model = _model(given, fitted, free, wishes)
-    shared, said = with_starts([one for one in model.free if one.part is None], given, recorded, wishes.begin_at or ())
-    model = model.with_(free=(*shared, *(one for one in model.free if one.part is not None)))
+    model, offer, said = _begun(given, fitted, recorded, free, wishes)
     notes += said
     notes += rounded_times(given.body, [one.name for one in model.free])
     doubts = [note for note in notes if note.endswith("?")]
@@ -288,11 +309,14 @@ def infer(
         for doubt in doubts:
             tell(doubt)
         try:
-            found = _inferred(model, tuple(whole), wishes, notes, tell)
+            found = _inferred(model, tuple(whole), wishes, tell, offer)
+        except OutOfTime as stop:
+            raise InputError(f"infer: no run has succeeded: {stop}; give other values or bounds") from None
         except InputError as error:
             raise InputError("; ".join([str(error), *doubts])) from None  # a unit or a sign may be why no run succeeds
     options = {"begin": begin, "end": end} | vars(wishes)
-    return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
+    asked = {name: value for name, value in options.items() if value not in (None, False)}
+    return replace(found, about=(*found.about, *notes), asked=asked)
 
 
 def _check_normal(problem: Problem, wishes: Wishes, free: Sequence[str] | str) -> None:
@@ -305,9 +329,14 @@ def _check_normal(problem: Problem, wishes: Wishes, free: Sequence[str] | str) -
         raise InputError(
             f"infer: {cut} begins runs later than the problem's normal_load does: give it in the record (normal='record')"
         )
-    for name in (one.strip() for one in (free.split(",") if isinstance(free, str) else free)):
+    for name in _names(free):
         if from_record and name.rpartition(".")[2] in (PRESSING, "normal_stress", "normal_force"):
             raise InputError(f"infer: {name} cannot be free where the record gives the normal load (normal='record')")
+
+
+def _names(free: Sequence[str] | str) -> list[str]:
+    """Return the names of free numbers as they were typed."""
+    return [one.strip() for one in (free.split(",") if isinstance(free, str) else free) if one.strip()]
 
 
 def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:
@@ -350,16 +379,41 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     return model
 
 
-def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
-    """Return the result with all that the user asked for; after Ctrl-C, without the parts that were not finished."""
-    tell = SearchProgress(tell)
-    found = _estimated(model.with_(ran=tell.run), wishes, tell)
+def _begun(
+    problem: Problem, parts: list[Part], recorded: list[Part], free: Sequence[str] | str, wishes: Wishes
+) -> tuple[Model, Offer | None, list[str]]:
+    """Return the model where the search begins, a free number of it that nobody asked for, and sentences on the start."""
+    model, offer, drift = _model(problem, parts, free, wishes), None, None
+    if wishes.by == "samples" and wishes.parts is None:
+        offer, drift = offered(problem, parts, model.free, wishes.trend)
+    if offer is not None:
+        model = _model(problem, parts, [*_names(free), offer.name], wishes)
+    shared = [one for one in model.free if one.part is None]
+    begun, said = with_starts(shared, problem, recorded, wishes.begin_at or (), drift)
+    return model.with_(free=(*begun, *(one for one in model.free if one.part is not None))), offer, said
+
+
+def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell, offer: Offer | None) -> Inference:
+    """Return the result with all that the user asked for; after Ctrl-C, without the parts that were not finished.
+
+    `offer` is a free number that nobody asked for, which stays if the fit needs it.
+    """
+    tell = progress = wishes.progress(tell)
+    model = model.with_(ran=progress.run, tried=progress.tried)
+    if offer is not None:
+        tell(f"{offer.text}: {offer.name} is free, too")
+    found = _estimated(model, wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
-    walk, finished = None, found.finished
+    walk, finished, ended, said = None, found.finished, found.ended, list[str]()
     try:
         tell("what the record determines")
         sure = certainty_of(found)
+        if offer is not None and finished:
+            found, said = decided(found, sure.widths.tolist(), offer, lambda end, name: _without(name, model, end, wishes, tell))
+            sure = sure if said else certainty_of(found)
         found = _idle_as_given(found, sure)
+        if wishes.max_time is None:
+            progress.limit = math.inf  # how long the rest takes is known beforehand
         if finished and wishes.windows:
             windows = windows_of(found, tell)
         if finished and wishes.profiles:
@@ -369,10 +423,19 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
             with wishes.alone():
                 walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed, keep=KeptWalk(wishes.checkpoint))
             finished = not walk.stopped
-    except KeyboardInterrupt:
-        finished = False
-    found = replace(found, finished=finished)
-    return Inference(found, sure, whole, tuple(notes), tuple(profiles), walk, windows)
+    except KeyboardInterrupt as stop:
+        finished, ended = False, str(stop)
+    found = replace(found, finished=finished, ended=ended)
+    return Inference(found, sure, whole, tuple(said), tuple(profiles), walk, windows)
+
+
+def _without(name: str, model: Model, end: Estimate, wishes: Wishes, tell: Tell) -> Estimate:
+    """Return the best fit of a model without one of its free numbers, searched from where a search with it has ended."""
+    values = dict(zip([one.label for one in end.model.free], end.model.values(end.searched), strict=True))
+    fewer = [one for one in model.free if one.name != name]
+    begun = tuple(replace(one, start=values[one.label], given=None) for one in fewer)
+    found = _estimated(model.with_(free=begun), replace(wishes, starts=1), tell)
+    return replace(found, model=found.model.with_(free=tuple(fewer)))
 
 
 def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:

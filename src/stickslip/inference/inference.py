@@ -21,10 +21,12 @@ from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
 from stickslip.friction.law import FrictionLaw
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, sample
-from stickslip.inference.fit.free import DELAY, TREND
+from stickslip.inference.fit.free import DELAY, DRIFT, TREND
+from stickslip.inference.fit.looks import cure_of
 from stickslip.inference.fit.memory import EVEN, LONGEST, WHITE
 from stickslip.inference.fit.part import first_sizes
-from stickslip.inference.fit.search import SearchProgress
+from stickslip.inference.fit.progress import SearchProgress
+from stickslip.inference.fit.what_is_left import words
 from stickslip.inference.fitted_record import FittedRecord
 from stickslip.inference.record.features import arrests_in
 from stickslip.inference.record.noise import rounding_of
@@ -192,8 +194,21 @@ def notes_of(study: FittedRecord) -> Iterator[str]:
 def warnings_of(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on doubts about the numbers as a whole."""
     if not study.estimate.finished:
-        yield "interrupted: these are the best numbers so far"
+        yield f"{study.estimate.ended or 'interrupted'}: these are the best numbers so far"
     yield from _misfit(study)
+    yield from looks_left(study)
+
+
+def looks_left(study: FittedRecord) -> Iterator[str]:
+    """Yield a sentence on each look of what is left that is no noise, with what may be done about it."""
+    if study.features is not None:
+        return
+    free = {one.name for one in study.free}
+    for name in study.model.sizes:
+        looks = study.looks[name]
+        for look in looks:
+            cure = cure_of(look, name, free)
+            yield f"what is left of {name} looks like {words([look], study.model.problem.unit_of(name))}: {cure}"
 
 
 def minima_of(study: FittedRecord) -> Iterator[str]:
@@ -218,7 +233,7 @@ def noise_of(study: FittedRecord) -> Iterator[str]:
 
 def record_of(study: FittedRecord) -> Iterator[str]:
     """Yield a sentence if some of the numbers belong to the record itself and so are in no scenario."""
-    own = [f"{name} = {study.values[name]:.4g}" for name in (TREND, DELAY) if name in study.values]
+    own = [f"{name} = {study.values[name]:.4g}" for name in (TREND, DRIFT, DELAY) if name in study.values]
     if own:
         yield f"{' and '.join(own)} belong to the record: the run of the best scenario, and the explorer, are without them"
 

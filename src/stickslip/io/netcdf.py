@@ -158,14 +158,24 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
     loading history is not registered, the file could not be read back.
     """
     file = as_path("to_netcdf: path", path)
-    time, values = solution.curves_together(solution.curves, 0.0, float(solution.breaks[-1]), DRAWN_POINTS)
-    curves = _curves(solution, time, dict(zip(solution.curves, values, strict=True)))
-    variables = history_variables(solution) | curves | _tables(solution)
+    names = [name for name in solution.curves if name not in solution.at_drive]
+    time, values = solution.curves_together(names, 0.0, float(solution.breaks[-1]), DRAWN_POINTS)
+    curves = _curves(solution, time, dict(zip(names, values, strict=True)))
+    variables = history_variables(solution) | curves | _at_drive(solution) | _tables(solution)
     try:
         return write_variables(variables, _engine(solution) | provenance(solution) | {"stickslip_format": FORMAT}, file)
     except FullDiskError as error:
         error.solution = solution
         raise
+
+
+def _at_drive(solution: Solution) -> dict[str, Variable]:
+    """Return what the drive of a string measures at evenly spaced times, which are its own: other curves have those of shocks."""
+    if not solution.at_drive:
+        return {}
+    time, about = np.linspace(*solution.history.span, DRAWN_POINTS), about_curves(solution.problem)
+    found = {name: Variable(("drive_time",), getattr(solution, name)(time), about[name]) for name in solution.at_drive}
+    return found | {"drive_time": Variable(("drive_time",), time, about["time"])}
 
 
 def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None = None) -> None:
@@ -299,6 +309,9 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
 
     Raises InputError if a part is missing, a number is out of range, or the selection rule is not registered.
     """
+    if "time" in dataset.dims and "scenario" in dataset.attrs and "history_rate" not in dataset:
+        whole = "`stickslip run --out` keeps a whole run"
+        raise InputError(f"{path}: holds curves of a run, not the run: xarray.open_dataset reads them; {whole}")
     try:
         found = _solution(dataset, path)
     except InputError:

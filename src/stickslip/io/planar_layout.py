@@ -40,6 +40,10 @@ CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
 CHANGES = ("duration", "residual", "status", "status_message", "status_ok")
 """Attributes that may change."""
+LONGEST_TITLE = 200
+"""Largest number of characters of a title that is read from a folder."""
+UNTITLED = "stickslip run: PlanarSlab"
+"""Beginning of the title in the folder of a run that has none."""
 FORMAT = FolderFormat("stickslip_planar", 1, CHANGES)
 
 
@@ -78,7 +82,7 @@ def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSol
         text = replace(scenario, contact=None).to_toml()
     about: dict[str, Any] = {
         "Conventions": "CF-1.11",
-        "title": scenario.heading or f"stickslip run: PlanarSlab, {type(slab.problem.friction).__name__}",
+        "title": scenario.heading or f"{UNTITLED}, {type(slab.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
         "scenario": text,
@@ -152,7 +156,9 @@ def open_planar(path: Path) -> PlanarSolution:
             whole_number(group.attrs, "steps_per_round_trip", path, 1),
         )
         residual = number(group.attrs, "residual", path)
-        return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status, residual)
+        title = printable(str(group.attrs["title"])[:LONGEST_TITLE])
+        fields = StoredFields(path, group, len(times))
+        return PlanarSolution(slab, times, fields, steps, status, residual, "" if title.startswith(UNTITLED) else title)
 
 
 def scenario_in(path: Path) -> Scenario:

@@ -1,28 +1,32 @@
 """Write on-fault time series as text, in the layout of the SCEC/USGS spontaneous rupture benchmarks.
 
 Comment lines begin with # and say what was run and what the columns are. Then one line names the fields, and one line follows for
-each sample. Stress is in MPa, as in the benchmarks. Source: R.A. Harris et al. 2009, Seismol. Res. Lett. 80, 119;
-scecdata.usc.edu/cvws.
+each sample. Stress is in MPa, as in the benchmarks; a block has forces, in N, unless the area of its contact is given. Source:
+R.A. Harris et al. 2009, Seismol. Res. Lett. 80, 119; scecdata.usc.edu/cvws.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Unpack
+from typing import NamedTuple, Unpack
 
 import numpy as np
 
 import stickslip
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import TURNS
-from stickslip.io.sampling import SampledRun, Sampling, sample
+from stickslip.foundation.quantities import Quantity
+from stickslip.io.sampling import SampledRun, Span, sample
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.entries import to_table
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.window import Window
+
+AREA = Quantity("m^2", "area of the contact of a block", above=0)
 
 
 def write_scec(
@@ -33,7 +37,8 @@ def write_scec(
     problem: str = "stickslip",
     station: str = "contact",
     components: bool = False,
-    **sampling: Unpack[Sampling],
+    area: float | str | WithUnit | None = None,
+    **sampling: Unpack[Span],
 ) -> Path:
     """Write time, slip, slip rate and shear stress of a run, or of a window on it, as text, and return the path.
 
@@ -41,9 +46,11 @@ def write_scec(
     given. Slip is counted from the start of the run or, in a window, of the event. `problem` and `station` are texts of one line
     for the header. With `components` there are the eight columns of the three-dimensional benchmarks: those that begin with h- hold
     the slip of this model, those with v- are zero, and the last one is the normal stress. There tension is positive, as in TPV29 to
-    TPV37, so that the normal stress is negative. The forces of a block are written as stresses on an area of 1 m^2.
+    TPV37, so that the normal stress is negative. The forces of a block are stresses (MPa) where the `area` of its contact is given
+    (m^2, or a text with a unit); otherwise they are forces (N), and their columns are named so.
 
-    Raises InputError as `sample` does, for a contact that turns, and for a header text with line breaks or control characters.
+    Raises InputError as `sample` does, for a contact that turns, for the area of a slab, whose loads are stresses already, and for
+    a header text with line breaks or control characters.
     """
     if run.problem.load_unit == TURNS:
         what = f"a contact that turns ({type(run.problem.body).__name__})"
@@ -51,8 +58,9 @@ def write_scec(
     for name, text in (("problem", problem), ("station", station)):
         if not text.isprintable():
             raise InputError(f"{name} must be one line of text, got {text!r}")
+    on = _divided_by(run.problem, area)
     series = sample(run, sampling_rate, **sampling)
-    columns = _columns(series, run.problem, components)
+    columns = _columns(run, series, on, components)
     header = [f"# {line}" for line in _about(run, series, problem, station, [meaning for _, meaning, _ in columns])]
     numbers = np.column_stack([values for _, _, values in columns])
     lines = (" ".join((f"{row[0]: .13E}", *(f"{value: .12E}" for value in row[1:]))) for row in numbers.tolist())
@@ -60,7 +68,26 @@ def write_scec(
     return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
 
 
-def _columns(series: SampledRun, problem: Problem, components: bool) -> list[tuple[str, str, Floats]]:
+class LoadsOfFile(NamedTuple):
+    """What loads are in a file: "stress" or "force", their unit there, and the factor from SI to it."""
+
+    kind: str
+    unit: str
+    factor: float
+
+
+def _divided_by(problem: Problem, area: float | str | WithUnit | None) -> LoadsOfFile:
+    """Return what the loads of a problem are in a file, given the area of the contact (m^2), if it is known."""
+    if problem.load_unit == "N" and area is None:
+        return LoadsOfFile("force", "N", 1.0)
+    if problem.load_unit == "N":
+        return LoadsOfFile("stress", "MPa", 1e-6 / AREA.check("export", "area", area))
+    if area is not None:
+        raise InputError("export: area is that of a block's contact: the loads of a slab are stresses already; leave it out")
+    return LoadsOfFile("stress", "MPa", 1e-6)
+
+
+def _columns(run: Readings, series: SampledRun, on: LoadsOfFile, components: bool) -> list[tuple[str, str, Floats]]:
     """Return the name, the meaning and the numbers of each column.
 
     The vertical components of the three-dimensional benchmarks are zero here, because slip has one direction.
@@ -69,14 +96,15 @@ def _columns(series: SampledRun, problem: Problem, components: bool) -> list[tup
     slip = [
         ("slip", "slip (m)", series.slip),
         ("slip-rate", "slip rate (m/s)", series.slip_rate),
-        ("shear-stress", "shear stress (MPa)", 1e-6 * series.traction),
+        (f"shear-{on.kind}", f"shear {on.kind} ({on.unit})", on.factor * series.traction),
     ]
     if not components:
         return [time, *slip]
     zero = np.zeros_like(series.slip)
     along = [(f"h-{name}", f"horizontal {meaning}", values) for name, meaning, values in slip]
     across = [(f"v-{name}", f"vertical {meaning}", zero) for name, meaning, _ in slip]
-    return [time, *along, *across, ("n-stress", "normal stress (MPa)", np.full_like(zero, -1e-6 * problem.normal))]
+    normal = -on.factor * run.normal_load(series.time)
+    return [time, *along, *across, (f"n-{on.kind}", f"normal {on.kind} ({on.unit})", normal)]
 
 
 def _about(run: Readings, series: SampledRun, problem: str, station: str, meanings: list[str]) -> Iterator[str]:

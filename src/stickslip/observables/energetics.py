@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from stickslip.bodies import OfLayers, as_waves
 from stickslip.foundation.arrays import Floats
@@ -41,9 +42,9 @@ ENERGETICS_COLUMNS = {
     "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
     "static_drop": EVENT_COLUMNS["static_drop"].about,
-    "dynamic_drop": ("load", "traction_before less the smallest traction while it slips"),
+    "dynamic_drop": ("load", "traction_before less the smallest traction while it slips; negative if it slips back"),
     "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
-    "apparent_stress": ("load", "waves / slip"),
+    "apparent_stress": ("load", "waves / size of slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
@@ -64,14 +65,14 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     begin, end = events.begin, events.end
     columns = {
         "start": history.seconds(*history.placed(begin)),
-        "slip": np.abs(history.slipped_within(begin, end)),
+        "slip": history.slipped_within(begin, end),
         **_energies(history, begin, end),
     }
     pulses = Pulses.of(history, events)
     columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     before, smallest = extreme_tractions(history, events, pulses)
-    columns["dynamic_drop"] = before - smallest
+    columns["dynamic_drop"] = direction(columns["slip"]) * (before - smallest) + 0.0  # no -0.0
     table = pd.DataFrame(columns | _ratios(history, columns))
     return table[list(ENERGETICS_COLUMNS)]
 
@@ -114,6 +115,11 @@ def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, F
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
+def direction(slip: ArrayLike) -> Floats:
+    """Return -1 for slip back, otherwise 1."""
+    return np.where(np.asarray(slip) < 0.0, -1.0, 1.0)
+
+
 def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> tuple[Floats, Floats]:
     """Return two tractions against the slip of each event (Pa, block: N): before it, and the smallest of its pulses."""
     smallest = np.full(len(events.pulses), np.inf)
@@ -122,12 +128,12 @@ def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> t
 
 
 def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:
-    drop, rounding = columns["dynamic_drop"], DROP_ROUNDING * history.problem.normal
+    drop, rounding = direction(columns["slip"]) * columns["dynamic_drop"], DROP_ROUNDING * history.problem.normal
     with np.errstate(invalid="ignore", divide="ignore"):
         waves = columns["waves"]
         return {
-            "overshoot": np.where(drop > rounding, columns["static_drop"] / drop - 1.0, np.nan),
-            "apparent_stress": waves / columns["slip"],
+            "overshoot": np.where(drop > rounding, columns["static_drop"] / columns["dynamic_drop"] - 1.0, np.nan),
+            "apparent_stress": waves / np.abs(columns["slip"]),
             "efficiency": waves / (waves + columns["heat"]),
             "radiation_efficiency": waves / (waves + columns["fracture"]),
         }

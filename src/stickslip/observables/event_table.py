@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 QUANTITIES = ("recurrence", "duration", "slip", "peak_rate", "traction_drop", "static_drop", "released", "trapped")
 """Columns of a catalogue whose distribution is described, if the table has them."""
 
+DIRECTED = ("slip", "static_drop")
+"""Columns that are negative for an event that slips back: statistics describe their sizes."""
+
 SAME = 1e-9
 """Relative spread below which values count as equal: the correlation of successive values then says nothing."""
 
@@ -38,7 +41,8 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     Columns: `count`; `mean`; `deviation`, the sample's standard deviation; `variation`, which is deviation / mean (of the
     recurrence times: 0 periodic, 1 as random as a Poisson process, above 1 clustered); `smallest`, `median`, `largest`; and `next`,
     the correlation of a value with the value of the next event. Values are NaN if there are too few events. An event that is cut
-    off by the end of the run counts in the recurrence only.
+    off by the end of the run counts in the recurrence only. Slips, and the drops that are the stiffness times them, count by their
+    sizes, in whichever direction.
     """
     import pandas as pd
 
@@ -51,9 +55,11 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
 def that_count(events: Mapping[Any, Any] | pd.DataFrame, name: str) -> Floats:
     """Return the values of a column that count in statistics: finite, and not of an event that the end of the run cuts off.
 
-    The recurrence of such an event does count: it ends where the event begins.
+    The recurrence of such an event does count: it ends where the event begins. What has the sign of its direction counts by its
+    size.
     """
     values = np.asarray(events[name], float)
+    values = np.abs(values) if name in DIRECTED else values
     over = np.isfinite(np.asarray(events["end"], float))
     counted: Floats = values[np.isfinite(values) & (over | (name == "recurrence"))]
     return counted
@@ -95,8 +101,8 @@ class FoundEvents:
 
     @cached_property
     def slip(self) -> Floats:
-        """The slip within each event, m."""
-        return np.abs(self.history.slipped_within(self.events.begin, self.events.end))
+        """The slip within each event, m; negative where the contact slips back."""
+        return self.history.slipped_within(self.events.begin, self.events.end)
 
     @cached_property
     def before(self) -> Floats:
@@ -158,7 +164,7 @@ EVENT_COLUMNS = {
         2,
     ),
     "recurrence": Column("s", "start - start of the previous event, without the rounding of either", FoundEvents.recurrence),
-    "slip": Column("slip", "slip within the event, positive in either direction", lambda e: e.slip, 4),
+    "slip": Column("slip", "slip within the event; negative if it slips back", lambda e: e.slip, 4),
     "peak_rate": Column("slip_rate", "largest |v|", lambda e: e.events.peak_rate, 5),
     "peak_time": Column("s", "time of the largest |v|", lambda e: e.history.seconds(*e.history.placed(e.events.peak))),
     "peak_after": Column(
@@ -215,6 +221,13 @@ def column_unit(name: str, load_unit: str) -> str:
     """Return the unit of a column of the table of slip events, as files spell it; "" for a column that is not known."""
     known = EVENT_COLUMNS | ENERGY_COLUMNS
     return in_files(si_unit(known[name].unit, load_unit)) if name in known else ""
+
+
+def with_units(table: pd.DataFrame, load_unit: str) -> pd.DataFrame:
+    """Return a table of slip events whose headings name the units of columns that are known, such as "slip (m)"."""
+    known = EVENT_COLUMNS | ENERGY_COLUMNS
+    units = {name: si_unit(one.unit, load_unit) for name, one in known.items()}
+    return table.rename(columns={name: f"{name} ({unit})" for name, unit in units.items() if unit != "1"})
 
 
 def shown_columns() -> list[str]:

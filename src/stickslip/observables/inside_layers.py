@@ -58,7 +58,7 @@ def _widths(waves: LayerWaves, side: int) -> Floats:
 
 def _field(waves: LayerWaves, slip: Floats, t: Floats, side: Side, *, cell: Integers, away: Floats) -> Floats:
     moments, which = np.unique(t, return_inverse=True)
-    trip, phase = waves.placed(_beside(waves, moments, moments, side))
+    trip, phase = waves.placed(beside(waves, moments, moments, side))
     base = np.maximum(trip - 1, -1)
     inside = _Totals(waves, base)
     now, before = inside.at(trip, phase), inside.at(*waves.earlier(trip, phase))
@@ -68,7 +68,7 @@ def _field(waves: LayerWaves, slip: Floats, t: Floats, side: Side, *, cell: Inte
     np.cumsum(strain, axis=1, out=passed[:, 1:])
     first = waves.starts[np.searchsorted(waves.starts, cell, side="right") - 1]
 
-    left, came = (waves.placed(_beside(waves, t - ago, t, side)) for ago in (away, waves.time - away))
+    left, came = (waves.placed(beside(waves, t - ago, t, side)) for ago in (away, waves.time - away))
     is_away, at = waves.is_away[cell], (np.arange(len(t)), cell)
     of_left, of_came = _Totals(waves, base, which), _Totals(waves, base, which)
     of_left.ends = of_came.ends = inside.ends
@@ -89,7 +89,7 @@ def _field(waves: LayerWaves, slip: Floats, t: Floats, side: Side, *, cell: Inte
     return np.stack([sign * (face + rise), sign * velocity, stress])
 
 
-def _beside(waves: LayerWaves, time: Floats, known: Floats, side: Side) -> Floats:
+def beside(waves: LayerWaves, time: Floats, known: Floats, side: Side) -> Floats:
     """Return times (s) moved to one side of the fronts on which they lie, by the rounding of the times `known` that are asked for.
 
     The end of the run has one side only, the left one.

@@ -59,7 +59,7 @@ class ProblemFields(CheckedArguments):
     body: BodyOnCharacteristics
     friction: Converted[FrictionLaw, FrictionLaw | Callable[..., Any] | str] = _required()  # noqa: RUF009 - makes a field
     pull_rate: Converted[float | LoadingHistory, float | str | WithUnit | LoadingHistory] = quantity(
-        "m/s", "rate V at which the driver is pulled", default=0.0
+        "m/s", "pull rate V of the driver", default=0.0
     )
     initial_slip: Number = quantity("m", "slip u0 at the start", default=0.0)
     initial_load: OptionalNumber = quantity(LOAD, "shear load on the contact at the start", default=None)

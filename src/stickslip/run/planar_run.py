@@ -132,7 +132,7 @@ def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> Plana
         raise InputError(f"simulate: the checkpoint of a PlanarSlab is a folder NAME.zarr, got {shown(str(path))}")
     solver, here, memory = begun(slab, options, 0.0)
     with ExitStack() as stack:
-        frames: Frames = Frames(slab, solver.steps)
+        frames: Frames = Frames(slab, solver.steps, title=options.title)
         if path is not None:
             from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
 

@@ -36,6 +36,10 @@ STARTERS = {
 }
 
 
+LISTED = "`stickslip new --list` lists them"
+"""Where all names are."""
+
+
 def _folder() -> Traversable:
     return resources.files("stickslip.scenarios") / "bundled"
 
@@ -53,7 +57,7 @@ def names() -> list[str]:
 def text(name: str) -> str:
     """Return the TOML text of a bundled scenario. Raises InputError for a name that is not among `names()`."""
     if name not in names():
-        raise InputError(f"no bundled scenario {ascii(name)[:60]}; {nearest(name, names())}")
+        raise InputError(f"no bundled scenario {ascii(name)[:60]}; {nearest(name, names(), listed=LISTED)}")
     return (_folder() / f"{name}.toml").read_text(encoding="utf-8")
 
 

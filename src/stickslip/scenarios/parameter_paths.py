@@ -30,6 +30,8 @@ from stickslip.scenarios.schema import quantities_in
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
+LISTED = "`stickslip check SCENARIO --parameters` lists all"
+"""Where all parameters are."""
 YES_OR_NO = Choice("true or false", ("true", "false"))
 WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
 """Parameters that count."""
@@ -92,7 +94,7 @@ def place_of(name: str, document: Any) -> tuple[Any, Any]:
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     """Return the parameter with this name, or whose name ends with it. Raises InputError if none fits, or several do."""
     found = {parameter.name: parameter for parameter in parameter_paths(scenario)}
-    return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario")]
+    return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario", LISTED)]
 
 
 Changes = Sequence[tuple[ParameterPath, Any]]

@@ -15,7 +15,7 @@ from stickslip.bodies import BODIES
 from stickslip.bodies.turning import WEIGHT_ON_BIT
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest, some_of
 from stickslip.foundation.headings import TURNED
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS, own_units
@@ -35,6 +35,8 @@ KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
 REGISTERED = KINDS | {"loading": HISTORIES}
 """Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
+LISTED, EXPLAINED = "`stickslip new --list` lists all", "`stickslip new slab`, or another starter, explains all"
+"""Where the kinds of laws and histories are, and the keys."""
 TABLES = ("body", "friction", "loading", "initial", "run")
 """The tables of a scenario."""
 CONTACT = "contact"
@@ -278,9 +280,9 @@ def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     """Return the class that `kind` names in a table. Raises InputError if it is missing or unknown."""
     kind, registered = content.get("kind"), REGISTERED[table.partition(".")[0]]
     if "kind" not in content:
-        raise InputError(f"{file}: [{table}] kind is missing; allowed: {', '.join(sorted(registered))}")
+        raise InputError(f"{file}: [{table}] kind is missing; allowed: {some_of(registered, listed=LISTED)}")
     if not isinstance(kind, str) or kind not in registered:
-        raise InputError(f"{file}: [{table}] kind {shown(kind)} is unknown; {nearest(str(kind), registered)}")
+        raise InputError(f"{file}: [{table}] kind {shown(kind)} is unknown; {nearest(str(kind), registered, listed=LISTED)}")
     return registered[kind]
 
 
@@ -292,7 +294,7 @@ def _read_keys(keys: Mapping[str, Key], raw: Mapping[str, Any], source: Source, 
     for name, value in raw.items():
         if name not in keys:
             place = f"[{table}] {_named(name)}" if table else f"[{_named(name)}]" if isinstance(value, dict) else _named(name)
-            raise InputError(f"{source.file}: {place} is unknown; {_belongs(name, table) or nearest(name, keys)}")
+            raise InputError(f"{source.file}: {place} is unknown; {_belongs(name, table) or nearest(name, keys, listed=EXPLAINED)}")
     found = {name: key.read(raw[name], DocumentPlace(source, table, name)) for name, key in keys.items() if name in raw}
     for name, key in keys.items():
         if found.setdefault(name, key.default) is MISSING:

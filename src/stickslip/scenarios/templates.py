@@ -59,7 +59,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
     if name in library.STARTERS:
         return _starter(tomllib.loads(library.text(library.STARTERS[name].example)), friction, pull)
     if name not in template_names():
-        raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
+        raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.LISTED)}")
     if friction is not None or pull is not None:
         chosen = "pull rate" if friction is None else "friction law"
         raise InputError(f"new: only {', '.join(library.STARTERS)} take a {chosen}; {name} has its own")
@@ -69,7 +69,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
 def check_takes_law(name: str) -> None:
     """Raise InputError unless `with_law` knows the name."""
     if name not in template_names():
-        raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
+        raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.LISTED)}")
     if name not in (*library.STARTERS, *library.in_1d()):
         raise InputError(f"{name} has a [contact] of many nodes, which takes no other law: name another scenario")
 

@@ -8,14 +8,17 @@ from pathlib import Path
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, did_you_mean, meant
 from stickslip.foundation.netcdf_file import MAGIC
 from stickslip.scenarios import library
 
 LARGEST_SCENARIO_FILE = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
 _SHOW = "a file of results, not a scenario: `stickslip show` summarises it, and `stickslip run --resume` continues a run"
-_TABLE = "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it"
+_TABLE = (
+    "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it; to follow a record "
+    "the scenario comes first: `stickslip infer SCENARIO DATA --free NAMES`"
+)
 _PICTURE = "a picture, not a scenario"
 _STARTS = (
     (MAGIC, _SHOW),
@@ -89,8 +92,8 @@ def _about_first_bytes(path: Path) -> str | None:
 def _hint(path: Path) -> str:
     if path.stem in library.STARTERS:
         return f"`stickslip new {path.stem} > {path.stem}.toml` writes one to start from"
-    hint = nearest(path.stem, library.names())
-    return hint if hint.startswith("did") else "`stickslip new --list` lists them"
+    close = meant(path.stem, library.names())
+    return did_you_mean(close) if close else library.LISTED
 
 
 def is_scenario_name(text: str) -> bool:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.foundation.arguments import NamesAttributes
+from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.errors import InputError
 from stickslip.solution.evaluation import Curve, Readings
 
@@ -166,6 +166,17 @@ class Exports(Readings):
 
         check_size(t, x)
         return to_dataset(self, t, x)
+
+    def to_csv(self, path: str | Path, **evenly: Any) -> Path:
+        """Write time, slip, slip rate, load, traction and states at evenly spaced times as CSV, and return the path.
+
+        The headings name the units (SI). There are 1001 times from `start` to `end` (s; by default those of a figure), unless
+        `points` or `sampling_rate` (Hz) says otherwise; with `antialias` the curves are low-passed to half that rate. A path that
+        ends in .nc makes a netCDF file. See `stickslip.io.curves.write_curves`.
+        """
+        from stickslip.io.curves import write_curves
+
+        return write_curves(self, as_path("to_csv: path", path), **evenly)
 
     def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
         """Write time, slip, slip rate and shear stress at a sampling rate (Hz) as SCEC's on-fault time series, and return the path.

@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.arguments import NamesAttributes, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.observables.at_driver import AtDriver, at_driver, fronts_at_driver
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions, Side
 from stickslip.trajectory.tables import shocks_table
@@ -23,12 +25,25 @@ if TYPE_CHECKING:
 
     from stickslip.observables.field import Field
 
-Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip"]
+Curve = Literal[
+    "slip",
+    "slip_rate",
+    "traction",
+    "load",
+    "state",
+    "second_state",
+    "event_slip",
+    "drive_rate",
+    "drive_traction",
+    "surface_torque",
+]
 LONG_HISTORY = 100_000
 """With more pieces than this, fewer values of each are evaluated for a curve."""
 TIME = Quantity("s", "time")
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Quantities that every run can draw against time."""
+AT_DRIVE: tuple[Curve, ...] = ("drive_rate", "drive_traction", "surface_torque")
+"""Quantities at the driver: rate, and load, which is called surface torque where it turns."""
 
 
 def times_of(t: ArrayLike) -> Floats:
@@ -49,8 +64,9 @@ class Readings(NamesAttributes):
     """Values of a run at given times.
 
     Slip, slip rate, traction, load and state are methods of the same form: they take times (s since `history.epoch`), a scalar or
-    an array of any shape, and the `side` of the limit at a shock, "right" or "left", and return an array of that shape. They raise
-    InputError for times outside the run.
+    an array of any shape, and the `side` of the limit at a shock, "right" or "left", and return an array of that shape. Without a
+    time they return the last value: that at the end of the run, or of what a window shows. They raise InputError for times outside
+    the run.
     """
 
     problem: Problem
@@ -63,42 +79,81 @@ class Readings(NamesAttributes):
         """The first and the last time (s) that figures show by default."""
         return self.history.span
 
-    def _at(self, t: ArrayLike, side: Side) -> tuple[Positions, tuple[int, ...]]:
-        time = times_of(t)
+    def _at(self, t: ArrayLike | None, side: Side) -> tuple[Positions, tuple[int, ...]]:
+        time = self._times(t)
         return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
 
-    def slip(self, t: ArrayLike) -> Floats:
-        """Return the slip u (m) at times t. It is absolute: it starts at the initial slip."""
+    def _times(self, t: ArrayLike | None) -> Floats:
+        """Return times in s; None is the last one that is shown."""
+        return times_of(self.shown[1] if t is None else t)
+
+    def slip(self, t: ArrayLike | None = None) -> Floats:
+        """Return the slip u (m) at times t, or the last one. It is absolute: it starts at the initial slip."""
         at, shape = self._at(t, "right")
         return (self.problem.initial_slip + self.history.slipped(at)).reshape(shape)
 
-    def slip_rate(self, t: ArrayLike, side: Side = "right") -> Floats:
+    def slip_rate(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the slip rate v (m/s) at times t."""
         at, shape = self._at(t, side)
         return self.history.rate(at).reshape(shape)
 
-    def traction(self, t: ArrayLike, side: Side = "right") -> Floats:
+    def traction(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the friction traction tau on the contact (Pa, N or N m) at times t; positive if it opposes forward slip."""
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.friction(at)).reshape(shape)
 
-    def load(self, t: ArrayLike, side: Side = "right") -> Floats:
+    def load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the load on the contact at times t: beta of eqs (12)-(13) of a slab (Pa), the spring's force of a block (N)."""
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
-    def state(self, t: ArrayLike) -> Floats:
+    def drive_rate(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
+        """Return the velocity of the face that the (first) driver holds (m/s) at times t; of a string the speed of its drive.
+
+        It is the pull rate if the driver is rigid, and the rate of the machine if it is one.
+        """
+        found, shape = self._at_driver(t, side)
+        return found.rate.reshape(shape)
+
+    def drive_traction(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
+        """Return the load at the (first) driver (Pa, N or N m) at times t, as a sensor there measures it.
+
+        It is positive if the driver pulls forwards: the stress at the far face of a slab, the force of a block's spring.
+        """
+        found, shape = self._at_driver(t, side)
+        return found.load.reshape(shape)
+
+    def surface_torque(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
+        """Return the torque at the drive of a body that turns (N m) at times t: `drive_traction`. Raises InputError for others."""
+        if self.problem.load_unit != TURNS:
+            kind = type(self.problem.body).__name__
+            raise InputError(f"surface_torque: a {kind} does not turn; the load at its driver is drive_traction")
+        return self.drive_traction(t, side)
+
+    def _at_driver(self, t: ArrayLike | None, side: Side) -> tuple[AtDriver, tuple[int, ...]]:
+        time = self._times(t)
+        return at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
+
+    def normal_load(self, t: ArrayLike | None = None) -> Floats:
+        """Return the normal load S on the contact at times t, also where it varies, in the unit of loads (Pa, N or N m)."""
+        time, history = self._times(t), self.problem.normal_load
+        if history is None:
+            return np.full(time.shape, self.problem.normal)
+        trip, offset = self.history.epoch
+        return history.at(trip * self.history.round_trip_time + offset + time)
+
+    def state(self, t: ArrayLike | None = None) -> Floats:
         """Return the state variable of the friction law, in the law's own unit (`FrictionLaw.state`), at times t.
 
         Raises InputError if the law has no state variable.
         """
         return self._state(t, 0)
 
-    def second_state(self, t: ArrayLike) -> Floats:
+    def second_state(self, t: ArrayLike | None = None) -> Floats:
         """Return the second state variable of a law with two, as `state` returns the first."""
         return self._state(t, 1)
 
-    def _state(self, t: ArrayLike, number: int) -> Floats:
+    def _state(self, t: ArrayLike | None, number: int) -> Floats:
         law = self.problem.friction
         if number >= len(law.states):
             which = "second state" if number else "state"
@@ -135,17 +190,25 @@ class Readings(NamesAttributes):
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """The names of the quantities to draw: slip, slip rate, traction, load, and the states of the law."""
-        return (*CURVES, *STATE_NAMES[: len(self.problem.friction.states)])
+        """The names of the quantities to draw: slip, slip rate, traction, load, the states of the law, and what a drive measures.
+
+        The last are the rate of the drive and the surface torque of a string; `curve` has them of other bodies, too.
+        """
+        return (*CURVES, *STATE_NAMES[: len(self.problem.friction.states)], *self.at_drive)
+
+    @property
+    def at_drive(self) -> tuple[Curve, ...]:
+        """The names of the quantities that the drive of a string measures; none for other bodies."""
+        return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and self.problem.body.has_waves else ()
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
         """Return times (s, ascending) and values of one quantity, one of `curves`, for drawing.
 
         The interval is by default that of `shown`. To so many evenly spaced `points` more are added at the breaks and between them,
-        where the solution varies. A shock appears twice, with its left limit first. Raises InputError if the name is not one of
-        `curves`.
+        where the solution varies. A shock appears twice, with its left limit first. Raises InputError if the name is neither one of
+        `curves`, nor drive_rate, drive_traction or surface_torque.
         """
-        if name not in self.curves:
+        if name not in (*self.curves, *AT_DRIVE):
             raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
         time, (values,) = self.curves_together((name,), start, end, points)
         return time, values
@@ -157,6 +220,11 @@ class Readings(NamesAttributes):
         start, end = (limit if one is None else float(times_of(one)) for one, limit in zip((start, end), self.shown, strict=True))
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points))
+        if set(names) <= set(AT_DRIVE):
+            fronts = fronts_at_driver(self.history)
+            breaks = fronts[(fronts >= start) & (fronts <= end)]
+            if not self.problem.body.is_uniform:  # each time takes a replay of all waves
+                return (time := np.linspace(start, end, points)), [getattr(self, name)(time) for name in names]
         many = len(breaks) > points
         inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < LONG_HISTORY else 3).ravel() if len(breaks) else breaks
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, inside]))

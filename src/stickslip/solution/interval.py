@@ -96,5 +96,6 @@ def choose_interval(readings: Readings, start: float | None, end: float | None) 
 
 
 def last_large_event(slips: Floats) -> int:
-    """Return the row number of the last event whose slip is at least 99 % of the largest."""
-    return int(np.flatnonzero(slips >= 0.99 * slips.max())[-1])
+    """Return the row number of the last event whose slip, in either direction, is at least 99 % of the largest."""
+    sizes = np.abs(slips)
+    return int(np.flatnonzero(sizes >= 0.99 * sizes.max())[-1])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.arguments import NamesAttributes
+from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import in_files, si_unit
@@ -81,7 +81,7 @@ class PlanarSolution(NamesAttributes):
 
     `times` are those of the frames (s), `fields` the arrays by the names in `FIELDS`, each read when it is first used. `status`
     says what ended the run, and `residual` how well the contact equation is solved: the largest |Z v + tau - load| at any node and
-    time step, as a share of the load.
+    time step, as a share of the load. `title` is that of its scenario, for figures.
     """
 
     slab: PlanarSlab
@@ -90,6 +90,7 @@ class PlanarSolution(NamesAttributes):
     steps_per_round_trip: int
     status: Status
     residual: float
+    title: str = ""
 
     def __repr__(self) -> str:
         nodes = " x ".join(str(count) for count in self.slab.shape)
@@ -264,6 +265,15 @@ class PlanarSolution(NamesAttributes):
         """The figures: `plot()` draws slip rate over the contact and time, `plot.animation(path)` writes a film."""
         return PlanarPlots(self)
 
+    def to_csv(self, path: str | Path) -> Path:
+        """Write time, slip, slip rate, traction and heat of the node in the middle at the frames as CSV, and return the path.
+
+        The headings name the units (SI). A path that ends in .nc makes a netCDF file of `dataset`, with all nodes.
+        """
+        from stickslip.io.curves import write_contact
+
+        return write_contact(self, as_path("to_csv: path", path))
+
     def dataset(self) -> xr.Dataset:
         """Return slip, slip rate, traction and heat as an xarray dataset over time, y and, for a plane, z (SI units)."""
         import xarray
@@ -292,6 +302,8 @@ class Frames:
     """Largest slip rate at any node and frame, m/s."""
     residual: float = 0.0
     """See `PlanarSolution`."""
+    title: str = field(default="", kw_only=True)
+    """See `PlanarSolution`."""
 
     def add(self, time: float, motion: PlanarMotion) -> float:
         """Keep the motion at a time (s), and return the largest slip rate in it (m/s)."""
@@ -316,4 +328,5 @@ class Frames:
     def solution(self, code: int) -> PlanarSolution:
         """Return the run, with the status that belongs to a code."""
         fields = {name: np.stack(frames) for name, frames in self.waiting.items()}
-        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, STATUSES[code], self.residual)
+        status = STATUSES[code]
+        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, status, self.residual, self.title)

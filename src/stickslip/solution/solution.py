@@ -221,7 +221,7 @@ class Solution(Exports):
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
-        most = events[["slip", "peak_rate"]].max()
+        most = events[["slip", "peak_rate"]].max() if events.empty else events.loc[events.slip.abs().idxmax()]
         slip, rate = (problem.unit_of(name) for name in ("slip", "slip_rate"))
         largest = f", largest slip {brief(most.slip, slip)}, peak rate {most.peak_rate:.6g} {rate}" if len(events) else ""
         return [

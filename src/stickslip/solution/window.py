@@ -73,8 +73,11 @@ class Window(Exports):
         """The shocks within the time that is shown: the table of `Solution.shocks`, in local time."""
         return shocks_table(self.history, *self.shown)
 
-    def event_slip(self, t: ArrayLike) -> Floats:
-        """Return the slip since the event began (m) at local times t, with full precision however large the slip before it is."""
+    def event_slip(self, t: ArrayLike | None = None) -> Floats:
+        """Return the slip since the event began (m) at local times t, or the last one.
+
+        It has full precision however large the slip before it is.
+        """
         origin, _ = self._at(0.0, "right")
         at, shape = self._at(t, "right")
         return self.history.slipped_since(origin, at).reshape(shape)

@@ -17,7 +17,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.io.netcdf import read_solution
-from stickslip.observables.energetics import extreme_tractions
+from stickslip.observables.energetics import direction, extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
@@ -213,7 +213,7 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
     }
     if events.empty:
         return row
-    n = int(events.slip.to_numpy().argmax())
+    n = int(events.slip.abs().to_numpy().argmax())
     largest, history, event_rate = events.iloc[n], solution.history, default_event_rate(problem)
     found = SlipEvents.of(history, event_rate)
     pulses = Pulses.of(history, found)
@@ -222,6 +222,6 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "pulses": int(largest.pulses),
         "slip": largest.slip,
         "static_drop": largest.static_drop,
-        "dynamic_drop": before[n] - smallest[n],
+        "dynamic_drop": float(direction(largest.slip)) * (before[n] - smallest[n]),
         "duration": events.duration.iloc[0],
     }

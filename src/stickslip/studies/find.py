@@ -12,7 +12,7 @@ from stickslip.contact.sliding import FROM_REST_WITHIN, FromRest, SteadySlidings
 from stickslip.contact.steady import steady_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError, nearest_and_all
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
 from stickslip.problem.fields import INITIAL_STATES, STEADY
@@ -163,7 +163,7 @@ def find(
     (True, False)
     """
     if isinstance(what, str) and what not in WHAT:
-        raise InputError(f"find: what: {ascii(what)[:60]} is unknown; {nearest_and_all(what, WHAT)}, or a function of a solution")
+        raise InputError(f"find: what: {ascii(what)[:60]} is unknown; {nearest(what, WHAT)}, or a function of a solution")
     if not 0.0 < within < 1.0:
         raise InputError(f"find: within must lie between 0 and 1, got {within!r}")
     found = read_source("find", problem)

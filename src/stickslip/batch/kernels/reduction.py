@@ -275,7 +275,7 @@ def fold_first(run: Run, found: FoundEventsInMemory, excess: float, out: Reduced
     if end.kind == -1:
         out.first_end = time_at(history, round_trip_time, last, last_xi)
         out.first_duration = time_between(history, round_trip_time, (piece, xi), (last, last_xi))
-    out.first_slip = abs(slipped_between(history, found.known, (piece, xi), (last, last_xi)))
+    out.first_slip = slipped_between(history, found.known, (piece, xi), (last, last_xi))
     out.first_traction_drop = friction_before(run, piece, xi, excess) - friction_after(run, last, last_xi)
 
 

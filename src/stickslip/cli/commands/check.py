@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from stickslip.scenarios.examine import Examination
     from stickslip.scenarios.scenario import Scenario
 
+PARAMETERS = "List the names, units and meanings of all numbers that --set, --vary and --free take, and stop."
 RUNS = "Make a dozen short exact runs from rest, where steady sliding becomes stable at a critical rate."
 MOST_UNDECIDED = 10
 """Largest number of intervals of slip rates that are listed as undecided, because they may or may not hold a fold."""
@@ -40,6 +41,7 @@ def check(
     look: FigureLook,
     map_axes: Annotated[list[str] | None, axes_of("a regime map")] = None,
     runs: Annotated[bool, typer.Option("--runs/--no-runs", help=RUNS)] = True,
+    parameters: Annotated[bool, typer.Option("--parameters", help=PARAMETERS)] = False,
 ) -> None:
     r"""Check a scenario before it is run.
 
@@ -70,6 +72,9 @@ def check(
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*the points look noisy", InputWarning)  # the examination says so
         loaded = load(scenario, "check", changes, contact=True)
+    if parameters:
+        _show_parameters(loaded)
+        return
     if loaded.contact is not None:
         _show_contact(loaded, figure or map_axes or steady_figure)
         return
@@ -82,7 +87,16 @@ def check(
         steady.check_drawn("check: --steady-figure")
     show_examination(loaded, replace(examine(loaded), steady=steady))
     files = [(figure, drawing(drawn, look))] if drawn is not None else []
-    announce(*write_files(*files, (steady_figure, drawing(steady.plot, look))))
+    steadily = None if steady_figure is None else _sliding(steady, loaded.heading)
+    announce(*write_files(*files, *([(steady_figure, drawing(steadily, look))] if steadily is not None else [])))
+
+
+def _show_parameters(loaded: Scenario) -> None:
+    """Print the names of all parameters of a scenario with their units and meanings."""
+    from stickslip.scenarios.parameter_paths import parameter_paths
+
+    rows = [(one.name, "" if one.unit == "1" else one.unit, one.declared.meaning) for one in parameter_paths(loaded)]
+    print_words(titled(loaded), ("name", "unit", "meaning"), rows)
 
 
 def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
@@ -112,6 +126,13 @@ def _set(loaded: Scenario) -> Callable[..., object]:
     from stickslip.figures.contact import admissible
 
     return partial(admissible.draw, admissible.data(loaded.problem, title=loaded.heading))
+
+
+def _sliding(found: SteadySlidings, title: str) -> Callable[..., object]:
+    """Return the function that draws steady sliding."""
+    from stickslip.figures.contact import steady
+
+    return partial(steady.draw, steady.data(found, title))
 
 
 def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:

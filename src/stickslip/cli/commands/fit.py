@@ -77,7 +77,8 @@ def fit(
     from stickslip.scenarios.text_of_files import is_scenario_name
 
     if is_scenario_name(data):
-        raise InputError(f"fit: DATA is a file of measured points, got the scenario {ascii(data)[:60]}; it may be that of --body")
+        cure = "`stickslip infer SCENARIO DATA --free NAMES` follows a record with runs of a scenario"
+        raise InputError(f"fit: {data} is a scenario, and points come first here: `stickslip fit DATA`; {cure}")
     check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})

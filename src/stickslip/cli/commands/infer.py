@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import ACCURACY, RESULTS, TABLES, Changes, FigureFile, ScenarioName, complete_table, option
+from stickslip.cli.options import ACCURACY, RESULTS, Changes, FigureFile, ScenarioName, complete_table, is_data, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_folder, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -121,8 +121,9 @@ def infer(
     options |= {"checkpoint": checkpoint}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
     options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
-    if scenario.lower().endswith(TABLES) and data[0].lower().endswith(".toml"):
-        raise InputError(f"infer: the scenario comes first, and then the data: stickslip infer {data[0]} {scenario} ...")
+    if is_data(scenario):
+        words = ["SCENARIO", scenario, *data] if is_data(data[0]) else [data[0], scenario, *data[1:]]
+        raise InputError(f"infer: the scenario comes first, and then the data: `stickslip infer {' '.join(words)} --free {free}`")
     if compare and held_out is None:
         raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
     chosen = load(scenario, "infer", changes)

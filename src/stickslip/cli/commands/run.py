@@ -18,7 +18,7 @@ from stickslip.cli.options import (
     complete_scenario,
     option,
 )
-from stickslip.cli.output.files import announce
+from stickslip.cli.output.files import announce, write_files
 from stickslip.cli.output.pictures import Pictures
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ MAX_PIECES = (
 )
 OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] a new folder (.zarr)."
 CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
+CSV = "Save the curves at 1001 evenly spaced times; `stickslip export` has other times and formats (.csv)."
 RESUME = "Resume the run in a file or folder of --out, or a checkpoint of --catalogue."
 ENERGY = "Add the energy of each event to --catalogue (slow)."
 RULE = "Override the selection rule."
@@ -54,6 +55,7 @@ def run(
     resume: Annotated[Path | None, option(RESUME)] = None,
     out: Annotated[Path | None, option(OUT, "--out", "-o", panel=RESULTS)] = None,
     catalogue: Annotated[Path | None, option(CATALOGUE, panel=RESULTS)] = None,
+    csv: Annotated[Path | None, option(CSV, "--csv", panel=RESULTS)] = None,
     energy: Annotated[bool, typer.Option("--energy", help=ENERGY, rich_help_panel=RESULTS)] = False,
     pictures: Pictures,
     rtol: Annotated[float | None, option("Override the relative tolerance.", panel=ACCURACY)] = None,
@@ -70,6 +72,7 @@ def run(
     \b
       stickslip run fig6-slab
       stickslip run mine.toml --out mine.nc --figure mine.png
+      stickslip run mine.toml --csv curves.csv
       stickslip run fig6-slab --duration "480 years" --selection maxwell
       stickslip run fig6-slab --set friction.alpha=0.1 --set "body.thickness=5 km"
       stickslip run fig6-slab --space-time waves.png --animation slab.gif
@@ -98,6 +101,7 @@ def run(
         max_pieces=max_pieces,
         out=out,
         catalogue=catalogue,
+        csv=csv,
         energy=energy,
         pictures=pictures,
     )
@@ -105,7 +109,7 @@ def run(
     if request.has_contact:
         run = solve_contact(request)
         show_run(run)
-        announce(out or resume, *pictures.draw_contact(run))
+        announce(out or resume, *write_files((csv, run.to_csv)), *pictures.draw_contact(run))
         _leave(run.status)
     if request.keeps_events_only:
         chosen, found = list_events(request)
@@ -116,7 +120,7 @@ def run(
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
-    announce(request.file, *pictures.draw(solution))
+    announce(request.file, *write_files((csv, solution.to_csv)), *pictures.draw(solution))
     _say_how_to_go_on(solution.status, request.file, len(solution.history))
     _leave(solution.status)
 

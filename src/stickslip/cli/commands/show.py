@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import (
-    complete_quantity,
-    complete_result,
-)
-from stickslip.cli.output.files import announce, check_targets, drawing
+from stickslip.cli.options import RESULTS, complete_quantity, complete_result, option
+from stickslip.cli.output.files import Target, announce, check_targets, drawing
 from stickslip.cli.output.pictures import Pictures
 from stickslip.cli.output.show import console, say
 from stickslip.foundation.errors import InputError
@@ -32,6 +29,7 @@ if TYPE_CHECKING:
 
 RESULT = "A file or folder of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
 QUANTITY = "Of a sweep, draw this quantity: by default the first."
+CSV = "Save as CSV: the curves of a run at 1001 times, the slip events of a catalogue, or the members of a sweep (.csv)."
 SCENARIO_ONLY = "Print the scenario of the results instead, as TOML with every value in SI."
 
 
@@ -40,6 +38,7 @@ def show(
     *,
     scenario: Annotated[bool, typer.Option("--scenario", help=SCENARIO_ONLY)] = False,
     quantity: Annotated[str | None, typer.Option("--quantity", "-q", help=QUANTITY, autocompletion=complete_quantity)] = None,
+    csv: Annotated[Path | None, option(CSV, "--csv", panel=RESULTS)] = None,
     pictures: Pictures,
 ) -> None:
     r"""Show what is in a file of results, as after the run, and draw figures from it without running it again.
@@ -51,6 +50,7 @@ def show(
     \b
       stickslip show mine.nc
       stickslip show mine.nc --figure mine.png --space-time waves.png
+      stickslip show mine.nc --csv curves.csv
       stickslip show mine.nc --scenario > again.toml
       stickslip show events.csv
       stickslip show events.csv --catalogue-figure events.png
@@ -59,7 +59,7 @@ def show(
 
     Exit code: 0 done, 2 unusable input.
     """
-    check_targets(*pictures.targets())
+    check_targets(*pictures.targets(), Target("--csv", csv, (".csv",)))
     pictures.check()
     found = stored(result, quantity)
     if scenario:
@@ -68,6 +68,8 @@ def show(
     found.check(pictures)
     found.summarise()
     found.draw(pictures)
+    if csv is not None:
+        announce(found.to_csv(csv))
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,10 @@ class Stored(ABC):
     @abstractmethod
     def summarise(self) -> None:
         """Print the summary on standard output."""
+
+    @abstractmethod
+    def to_csv(self, path: Path) -> Path:
+        """Write the numbers as CSV, with a unit in each heading, and return the path."""
 
     def draw(self, pictures: Pictures) -> None:
         """Draw the pictures and say which files were written."""
@@ -123,6 +129,10 @@ class StoredRun(Stored):
         """Draw the pictures and say which files were written."""
         announce(*pictures.draw(self.solution))
 
+    def to_csv(self, path: Path) -> Path:
+        """Write the curves at evenly spaced times, and return the path."""
+        return self.solution.to_csv(path)
+
 
 @dataclass(frozen=True)
 class StoredContact(Stored):
@@ -150,6 +160,10 @@ class StoredContact(Stored):
     def draw(self, pictures: Pictures) -> None:
         """Draw the pictures and say which files were written."""
         announce(*pictures.draw_contact(self.solution))
+
+    def to_csv(self, path: Path) -> Path:
+        """Write the motion of the node in the middle at the frames, and return the path."""
+        return self.solution.to_csv(path)
 
 
 @dataclass(frozen=True)
@@ -179,6 +193,15 @@ class StoredEvents(Stored):
     def draw(self, pictures: Pictures) -> None:
         """Draw the pictures and say which files were written."""
         announce(*pictures.draw_events(self.table, self.path.stem, "Pa" if self.problem is None else self.problem.load_unit))
+
+    def to_csv(self, path: Path) -> Path:
+        """Write the slip events with the units of their columns, and return the path. Raises InputError if these are not known."""
+        from stickslip.foundation.atomic_write import write_table
+        from stickslip.observables.event_table import with_units
+
+        if self.problem is None:
+            raise InputError(f"{self.path}: does not say of what body it is, so that its units are not known: leave out --csv")
+        return write_table(path, with_units(self.table, self.problem.load_unit), [made_by(self.about)])
 
 
 @dataclass(frozen=True)
@@ -212,6 +235,18 @@ class StoredSweep(Stored):
 
             drawing(partial(plot_sweep, self.dataset, self.quantity), pictures.look)(pictures.figure)
         super().draw(pictures)
+
+    def to_csv(self, path: Path) -> Path:
+        """Write a row for each member, with the units of the columns, and return the path."""
+        from stickslip.foundation.atomic_write import write_table
+        from stickslip.sweeps.results.layout import table_of
+
+        return write_table(path, table_of(self.dataset), [made_by(self.about)])
+
+
+def made_by(about: Mapping[str, Any]) -> str:
+    """Return the version that made results, as the comment of a file says it."""
+    return clean(str(about.get("source", "written by stickslip")))
 
 
 def stored(path: Path, quantity: str | None = None) -> Stored:

@@ -125,7 +125,8 @@ def statistics(events: Mapping[Any, Any], slip: str = "m") -> list[str]:
         values = that_count(events, name)
         if len(values) > 2:
             mean, scatter = float(values.mean()), float(values.std(ddof=1))
-            lines.append(f"{name}: mean {with_unit(mean, unit)}, standard deviation {100.0 * scatter / mean:.2g} % of it")
+            of = "size of slip" if name == "slip" and (np.asarray(events["slip"], float) < 0.0).any() else name
+            lines.append(f"{of}: mean {with_unit(mean, unit)}, standard deviation {100.0 * scatter / mean:.2g} % of it")
     if lines and np.isnan(np.asarray(events["end"], float)).any():
         lines[-1] += ", without the event that the end of the run cuts off"
     return [f"{'; '.join(lines)}\n"] if lines else []

@@ -74,12 +74,22 @@ def marks_of(found: Findings, motion: BodyCurves) -> tuple[Mark, ...]:
     return tuple(sorted(marks, key=lambda mark: mark.time))
 
 
+def largest_first(table: pd.DataFrame) -> pd.DataFrame:
+    """Return events or pulses, the one with the largest slip in either direction first."""
+    return table.iloc[np.argsort(-table.slip.abs().to_numpy(float), kind="stable")]
+
+
+def of_slip(slip: float, unit: str) -> str:
+    """Return a slip in words, with its direction if it goes back: "10.9 m of slip back"."""
+    return f"{short(abs(slip), unit)} of slip{' back' if slip < 0.0 else ''}"
+
+
 def _events(found: Findings) -> list[Mark]:
     marks, length = [], found.units[0]
-    for _, event in found.events.nlargest(MOST_MARKS // 4, "slip").iterrows():
+    for _, event in largest_first(found.events).head(MOST_MARKS // 4).iterrows():
         marks.append(Mark(float(event.start), "start", f"a slip event begins at {short(event.start, 's')}"))
         if not np.isnan(event.end):
-            text = f"arrest at {short(event.end, 's')}, after {short(event.slip, length)} of slip"
+            text = f"arrest at {short(event.end, 's')}, after {of_slip(event.slip, length)}"
             marks.append(Mark(float(event.end), "arrest", text))
     return marks
 
@@ -87,11 +97,11 @@ def _events(found: Findings) -> list[Mark]:
 def _pulses(found: Findings, motion: BodyCurves) -> list[Mark]:
     """Return a mark for each pulse, where its slip rate is largest on the curve."""
     marks, (length, rate) = [], found.units
-    for _, pulse in found.pulses.nlargest(MOST_MARKS // 4, "slip").iterrows():
+    for _, pulse in largest_first(found.pulses).head(MOST_MARKS // 4).iterrows():
         inside = np.flatnonzero((motion.time >= pulse.start) & (motion.time <= pulse.start + pulse.duration))
         if len(inside):
             peak = float(motion.time[inside[np.argmax(np.abs(motion.slip_rate[inside]))]])
-            text = f"pulse of {short(pulse.slip, length)}, fastest with {short(pulse.peak_rate, rate)} at {short(peak, 's')}"
+            text = f"pulse of {of_slip(pulse.slip, length)}, fastest with {short(pulse.peak_rate, rate)} at {short(peak, 's')}"
             marks.append(Mark(peak, "pulse", text))
     return marks
 
@@ -194,7 +204,8 @@ def _motion(found: Findings) -> str:
         return f"it slips {short(moved, length)} in {lasts}, too slowly for a slip event" if moved else f"nothing slips in {lasts}"
     number = len(found.events)
     head = f"{several(number, 'slip event')}{', the largest' if number > 1 else ''} of"
-    text = f"{head} {short(event.slip, length)} in {several(int(event.pulses), 'pulse')}, at up to {short(event.peak_rate, rate)}"
+    slipped = f"{short(abs(event.slip), length)}{' back' if event.slip < 0.0 else ''}"
+    text = f"{head} {slipped} in {several(int(event.pulses), 'pulse')}, at up to {short(event.peak_rate, rate)}"
     if np.isnan(event.end):
         return f"{text}, which goes on at the end of the run"
     return f"{text}, {'arrested at ' + short(event.end, 's') if number == 1 else 'lasting ' + short(event.duration, 's')}"

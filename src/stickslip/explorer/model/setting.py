@@ -256,7 +256,7 @@ def setting_of(parameters: Mapping[str, str]) -> Setting:
 
 def _changed(name: str, parameters: Mapping[str, str]) -> Setting:
     if name not in library.names():
-        raise InputError(f"link: no bundled scenario {ascii(name)[:60]}; {nearest(name, library.names())}")
+        raise InputError(f"link: no bundled scenario {ascii(name)[:60]}; {nearest(name, library.names(), listed=library.LISTED)}")
     leaves = leaves_of(Setting.bundled(name).document)
     changes = {path: text for path, text in parameters.items() if path not in ("scenario", "v")}
     for path, text in changes.items():

@@ -194,6 +194,9 @@ def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
     point: Any = {"linestyle": "none", "marker": "o"}
     event = "(a) slip event" if len(letters) > 1 else "slip event"  # one panel has no letter
     marks: list[Artist] = [Line2D([], [], color=BLUE, markersize=3, label=event, **point)]
+    if (dataset["slip"].values < 0.0).any():
+        back = {"markersize": 3, "markerfacecolor": "white", "color": BLUE}
+        marks.append(Line2D([], [], label=event.replace("slip event", "event that slips back"), **point | back))
     closer = ", ".join(f"({letters[name]})" for name in "CD" if name in letters)
     if closer:
         ring = {"color": VERMILLION, "markersize": 6, "markerfacecolor": "none"}
@@ -210,7 +213,9 @@ def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
 
 
 def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
-    slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
+    signed = dataset["slip"].values
+    wide, back = spans_decades(np.abs(signed)), signed < 0.0
+    slip = np.abs(signed) if wide else signed  # a logarithmic axis has no place for a sign: open circles tell it
     last = float(dataset["run_time"].values[-1]) if "run_time" in dataset else float(dataset["start"].values[-1])
     unit, size = time_unit(last)
     length, metres = readable_unit(dataset["slip"].attrs["units"], slip, log=wide)
@@ -218,6 +223,8 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
     low = 0.5 * slip.min() / metres if wide else 0.0
     axes.vlines(start, low, slip / metres, color=BLUE, linewidth=0.9)
     axes.plot(start, slip / metres, "o", color=BLUE, markersize=3)
+    if back.any():
+        axes.plot(start[back], slip[back] / metres, "o", color=BLUE, markersize=3, markerfacecolor="white")
     if "chosen" in dataset:
         chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
         if ring:
@@ -226,7 +233,10 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
             axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
     set_scale(axes, "y", wide)
     axes.margins(y=0.12)  # no point is cut by the upper edge of a low panel
-    axes.set_ylim(bottom=low)
+    if wide or not back.any():
+        axes.set_ylim(bottom=low)
+    else:
+        zero_line(axes)
     if end > 0.0:  # else one event at 0 s is all there is
         axes.set_xlim(-0.02 * end, 1.02 * end)
     axes.set(xlabel=curve_label("time", unit), ylabel=f"{name_of('slip', dataset.attrs['load_unit'])} ({length})")
@@ -251,7 +261,7 @@ def _draw_distribution(axes: Axes, slips: xr.DataArray, name: str) -> None:
     slip = slips.values
     many, wide = len(slip) > WIDE, spans_decades(slip)
     unit, size = readable_unit(slips.attrs["units"], slip, log=wide)
-    ordered = np.sort(slip) / size
+    ordered = np.sort(slip) / size  # sizes, in either direction
     smallest = ordered[0] if wide else 0.0
     axes.step([smallest, *ordered, ordered[-1]], [len(slip), *range(len(slip), 0, -1), 1 if many else 0], where="pre", color=BLUE)
     set_scale(axes, "x", wide)

@@ -30,7 +30,7 @@ from stickslip.figures.style import (
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.names import name_of, readable_unit
+from stickslip.foundation.names import TURNS, name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
@@ -48,16 +48,25 @@ COLOURS: dict[str, str] = {
     "state": PURPLE,
     "second_state": PURPLE,
     "friction": VERMILLION,
+    "drive_rate": PURPLE,
+    "drive_traction": PURPLE,
+    "surface_torque": PURPLE,
 }
 """Colour of each curve, the same in all figures."""
+DASHES: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--", "zorder": 2.1}
+"""Look of the load: above the line of friction, which it coincides with at rest, so that both are seen."""
 MOST_SHOCKS = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
-CYCLES, PACKED, SWING = 60, 30, 0.05
-"""Where more than CYCLES swings to and fro follow each other, each shorter than the time that is shown over PACKED, single ones
-could not be seen, and a line through them would show teeth of its own: their range is drawn. A swing has at least the share SWING
-of the range of all values."""
-RANGE = "range of swings too close together to draw"
-"""What a key says of this range."""
+MANY, CYCLES, PACKED, SWING = 60, 250, 30, 0.05
+"""Where more than MANY swings to and fro follow each other, each shorter than the time that is shown over PACKED, the line is thin.
+More than CYCLES of them could not be seen singly, and a line through them would show teeth of its own: their range is drawn, or
+their peaks. A swing has at least the share SWING of the range of all values."""
+THIN = 0.7
+"""Width (points) of such a thin line."""
+RANGE, PEAKS = "range of swings too close together to draw", "peaks of bursts too close together to draw"
+"""What a key says of this range, and of such peaks."""
+BURSTS = 0.1
+"""Swings that spend less than this share of the time in their upper half are bursts, as slip events are between long rests."""
 BRIEF = 0.01
 """The start from rest is left out if it takes less than this share of the time that is shown."""
 Span = tuple[float, float]
@@ -79,6 +88,9 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
     """Draw one curve against time, with its label; the slip rate on a logarithmic axis if the contact creeps at rest."""
     time, values = readings.curve(name, *span)
     settled = after_start(readings, time, span)
+    change = name == "slip" and nearly_flat(values) and np.ptp(values) > 0.0
+    if change:
+        values = values - values[0]
     log = name == "slip_rate" and readings.problem.friction.creeps
     if log:
         values = np.where((values != 0.0) & settled, np.abs(values), np.nan)
@@ -91,13 +103,22 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
         unit, size = readable_unit(readings.problem.unit_of(name), values, log=log)
         text = curve_label(name, unit, readings.problem.load_unit)
     draw_line(axes, time / time_unit(span[1] - span[0])[1], values / size, log=log, color=COLOURS[name])
-    axes.set_ylabel(text)
+    axes.set_ylabel(f"change of {text}" if change else text)
     if log:
         axes.set_yscale("log")
         fit_height(axes, [values / size])
         set_log_ticks(axes, "y")
     elif name in ("slip", "event_slip", "slip_rate"):
         zero_line(axes)
+
+
+def draw_drive_rate(axes: Axes, readings: Readings, span: Span) -> None:
+    """Draw the rate of the drive beside that of the contact, in the unit of the latter, with an entry for a key."""
+    _, values = readings.curve("slip_rate", *span)
+    time, drive = readings.curve("drive_rate", *span)
+    size = readable_unit(readings.problem.unit_of("slip_rate"), values, log=readings.problem.friction.creeps)[1]
+    look: dict[str, Any] = {"color": PURPLE, "linewidth": 1.0, "linestyle": "--", "label": name_of("drive_rate", TURNS)}
+    draw_line(axes, time / time_unit(span[1] - span[0])[1], drive / size, **look)
 
 
 def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
@@ -137,18 +158,37 @@ def draw_line(axes: Axes, across: Floats, values: Floats, *, log: bool = False, 
     """
     known = np.isfinite(values)
     place, height = across[known], np.log(values[known]) if log else values[known]
+    longest = (float(np.ptp(place)) if place.size else 0.0) / PACKED
     turns = _turns(height, SWING * float(np.ptp(height))) if height.size else np.zeros(0, int)
     rest = np.array(values, float)
-    for first, last in _packed(place[turns], (float(np.ptp(place)) if place.size else 0.0) / PACKED):
-        part = turns[first : last + 1]
-        edges = [np.interp(place[part], place[some], height[some]) for some in (part[::2], part[1::2])]
-        edges = [np.exp(edge) if log else edge for edge in edges]
-        if "linestyle" not in look:  # of two ranges in one panel one is filled
-            axes.fill_between(place[part], *edges, color=look["color"], alpha=0.3, linewidth=0.0, label=RANGE)
-        for edge in edges:
-            axes.plot(place[part], edge, **(look | {"linewidth": 0.8, "label": None}))
-        rest[(across > place[part[0]]) & (across < place[part[-1]])] = np.nan
+    for first, last in _packed(place[turns], longest):
+        if last - first <= 2 * CYCLES:
+            look = look | {"linewidth": THIN} | ({"zorder": 1.9} if "linestyle" in look else {})  # dashes on top would flicker
+            continue
+        begin, end = turns[first], turns[last]
+        # What is left at the ends of the curve is a part of a swing.
+        begin = 0 if place[begin] - place[0] < longest else begin
+        end = len(place) - 1 if place[-1] - place[end] < longest else end
+        _draw_packed(axes, place[begin : end + 1], height[begin : end + 1], turns[first : last + 1] - begin, look, log=log)
+        rest[(across > place[begin]) & (across < place[end])] = np.nan
     axes.plot(across, rest, **look)
+
+
+def _draw_packed(axes: Axes, place: Floats, height: Floats, turns: NDArray[np.intp], look: dict[str, Any], *, log: bool) -> None:
+    """Draw the range between the turns of a part of a curve, or their peaks if they are bursts; `height` is that on the axis."""
+    corners = np.unique(np.concatenate(([0], turns, [len(place) - 1])))
+    lower, upper = sorted((turns[::2], turns[1::2]), key=lambda some: float(height[some].mean()))
+    edges = [np.interp(place[corners], place[some], height[some]) for some in (lower, upper)]
+    shown = [np.exp(edge) if log else edge for edge in edges]
+    above = height > np.interp(place, place[corners], 0.5 * (edges[0] + edges[1]))
+    if np.diff(place)[above[1:] & above[:-1]].sum() < BURSTS * np.ptp(place) and "linestyle" not in look:
+        peaks = np.exp(height[upper]) if log else height[upper]
+        axes.plot(place[upper], peaks, **(look | {"linestyle": "none", "marker": ".", "markersize": 2.0, "label": PEAKS}))
+        return
+    if "linestyle" not in look:  # of two ranges in one panel one is filled
+        axes.fill_between(place[corners], *shown, color=look["color"], alpha=0.3, linewidth=0.0, label=RANGE)
+    for edge in shown:
+        axes.plot(place[corners], edge, **(look | {"linewidth": 0.8, "label": None}))
 
 
 def marks_in(*panels: Axes) -> list[Artist]:
@@ -175,10 +215,10 @@ def _turns(values: Floats, least: float) -> NDArray[np.intp]:
 
 
 def _packed(times: Floats, longest: float) -> Iterator[tuple[int, int]]:
-    """Yield the first and the last place of each stretch of turns with more than CYCLES swings to and fro, none of them longer."""
+    """Yield the first and the last place of each stretch of turns with more than MANY swings to and fro, none of them longer."""
     breaks = np.flatnonzero(np.diff(times) > longest)
     edges = zip([0, *(breaks + 1).tolist()], [*breaks.tolist(), len(times) - 1], strict=True)
-    return ((first, last) for first, last in edges if last - first > 2 * CYCLES)
+    return ((first, last) for first, last in edges if last - first > 2 * MANY)
 
 
 def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
@@ -190,12 +230,12 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
     offset = readings.problem.load if change else 0.0
     unit, size = readable_unit(units, load - offset, traction - offset)
     seconds = time_unit(span[1] - span[0])[1]
-    dashes: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
-    draw_line(axes, time / seconds, (load - offset) / size, label=rf"{names[1]} $\beta$", **dashes)
+    draw_line(axes, time / seconds, (load - offset) / size, label=rf"{names[1]} $\beta$", **DASHES)
     draw_line(axes, time / seconds, (traction - offset) / size, label=rf"{names[0]} $\tau$", color=VERMILLION)
     shared = " " + names[1].rpartition(" ")[2]
     text = f"{names[0].removesuffix(shared)} and\n{names[1]}" if names[0].endswith(shared) else ", ".join(names)
-    axes.set_ylabel(f"change of\n{text.replace(chr(10), ' ')} ({unit})" if change else f"{text} ({unit})")
+    before = "change of" + ("\n" if "," in text else " ")
+    axes.set_ylabel(f"{before if change else ''}{text} ({unit})")
     if change or min(load.min(), traction.min()) < 0.5 * max(load.max(), traction.max()):
         zero_line(axes)
     else:
@@ -214,12 +254,10 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
         unit, size = readable_unit(readings.problem.unit_of(moving), moved)
         across = moved / size
         axes.set_xlabel(curve_label(moving, unit, readings.problem.load_unit))
-    else:
-        name = name_of("load", readings.problem.load_unit)
-        dashes: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
-        draw_line(axes, across, load / normal, label=rf"{name} over normal load, $\beta/S$", **dashes)
     look: dict[str, Any] = {"color": VERMILLION, "label": r"friction coefficient $\mu=\tau/S$"}
     if against == "time":
+        name = name_of("load", readings.problem.load_unit)
+        draw_line(axes, across, load / normal, label=rf"{name} over normal load, $\beta/S$", **DASHES)
         draw_line(axes, across, traction / normal, **look)
     else:
         axes.plot(across, traction / normal, **look)

@@ -10,8 +10,9 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize
 from numpy.typing import NDArray
 
-from stickslip.figures.panels import letter_panels, zero_line
+from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.runs.animation import FRAMES, Stage, Told, film
+from stickslip.figures.runs.curves import marks_in
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, axis_text, styled
 from stickslip.foundation.errors import InputError
@@ -62,6 +63,8 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
         _mark_echoes(axis, solution, time_size)
     axes[-1].set_xlabel(axis_text("time", "t", time_name))
     letter_panels(axes)
+    add_legend(axes[-1], marks_in(axes[-1]))
+    set_title(figure, solution.title)
     return figure
 
 
@@ -69,7 +72,8 @@ def _mark_echoes(axis: Any, solution: PlanarSolution, size: float) -> None:
     """Draw a thin line at each whole two-way travel time."""
     trip = solution.slab.body.two_way_time
     for n in range(1, int(solution.times[-1] / trip) + 1):
-        axis.axvline(n * trip / size, color="0.6", linewidth=0.6, linestyle=":")
+        name = "waves from the contact are back from the driver (every two-way travel time)" if n == 1 else None
+        axis.axvline(n * trip / size, color="0.6", linewidth=0.6, linestyle=":", label=name)
 
 
 def animate(
@@ -101,6 +105,7 @@ def stage(solution: PlanarSolution, shown: NDArray[np.intp]) -> Stage:
 
     def draw_stage(figure: Figure) -> tuple[Callable[[int], None], list[Artist]]:
         axes: Any = figure.subplots(*((1, 2) if plane else (2, 1)), sharex=True, sharey=plane)
+        set_title(figure, solution.title)
         show, moving = (_draw_maps if plane else _draw_profiles)(figure, axes, solution, shown)
         clock = axes[0].set_title(" ", loc="left")
 

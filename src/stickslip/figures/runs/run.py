@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from stickslip.figures.panels import add_legend, letter_panels, set_scale, set_title, zero_line
 from stickslip.figures.runs.curves import (
     draw_curve,
+    draw_drive_rate,
     draw_friction,
     draw_stress,
     fit_height,
@@ -35,8 +36,8 @@ if TYPE_CHECKING:
 
 WIDTH = 6.4
 """Usual width of the figure, inches."""
-HEIGHTS = {"curve": 1.75, "loading": 1.25, "slip": 2.0}
-"""Usual heights (inches) of a panel with a curve, of that of the loading, and of that with friction against slip."""
+HEIGHTS = {"curves": 1.75, "drive": 1.5, "loading": 1.25, "slip": 2.0}
+"""Usual heights (inches) of a panel with a curve, with what a drive measures, with the loading, and with friction against slip."""
 PERIODS = 60.0
 """A tone with more periods than this is drawn as a band of its amplitude: single periods could not be seen."""
 POINTS = 32
@@ -63,6 +64,9 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
         draw_friction(stress, readings, span)
     mark_shocks([*curves, stress], readings, span)
     last = stress
+    for last in panels["drive"]:
+        draw_curve(last, readings, "surface_torque", span)
+        draw_drive_rate(curves[1], readings, span)
     for field, last in zip(_varying(readings.problem), panels["loading"], strict=True):
         _draw_loading(last, readings, field, *span)
     set_time(last, readings, span)
@@ -76,9 +80,13 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
 
 
 def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[Any]]]:
-    """Return the figure and its panels in one column: three curves, the loading if it varies, and friction against slip."""
-    groups = {"curves": 3, "loading": len(_varying(readings.problem)), "slip": int(not readings.problem.friction.sticks)}
-    heights = [HEIGHTS["curve"]] * 3 + [HEIGHTS["loading"]] * groups["loading"] + [HEIGHTS["slip"]] * groups["slip"]
+    """Return the figure and its panels in one column.
+
+    They are three curves, what the drive of a string measures, the loading if it varies, and friction against slip.
+    """
+    groups = {"curves": 3, "drive": int(bool(readings.at_drive)), "loading": len(_varying(readings.problem))}
+    groups |= {"slip": int(not readings.problem.friction.sticks)}
+    heights = [HEIGHTS[name] for name, count in groups.items() for _ in range(count)]
     figure = sheet((WIDTH, 0.35 + sum(heights)), **place)
     grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
     found: dict[str, list[Any]] = {name: [] for name in groups}
@@ -87,7 +95,7 @@ def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[An
         panel = figure.add_subplot(grid[k], sharex=first if name != "slip" else None)
         first = first or panel
         found[name].append(panel)
-    timed = [*found["curves"], *found["loading"]]
+    timed = [*found["curves"], *found["drive"], *found["loading"]]
     for panel in timed[:-1]:
         panel.tick_params(labelbottom=False)
     return figure, found

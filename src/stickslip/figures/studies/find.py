@@ -12,7 +12,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, MaxNLocator
 from stickslip.figures.names import parameter_name
 from stickslip.figures.panels import add_legend, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import BLUE, ORANGE, label, quantity, shown, styled, unit_shown
+from stickslip.figures.style import BLUE, ORANGE, folded, label, quantity, shown, styled, unit_shown
 from stickslip.foundation.place import Place
 from stickslip.studies.find import Edge
 
@@ -42,7 +42,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     values, low_high = shown(dataset["parameter"], unit), shown(dataset["bracket"], unit)
     axes.axvspan(*low_high, color=ORANGE, zorder=0, label="last bracket")
     axes.plot(values, dataset["given"].values, "o", color=BLUE, label=f"{len(values)} exact runs")
-    axes.set(xlabel=label(dataset["parameter"], unit), ylabel=dataset["given"].attrs["long_name"])
+    axes.set(xlabel=folded(label(dataset["parameter"], unit)), ylabel=dataset["given"].attrs["long_name"])
     if dataset["given"].attrs["yes_no"]:
         axes.yaxis.set_major_locator(FixedLocator([0.0, 1.0]))
         axes.yaxis.set_major_formatter(FixedFormatter(["no", "yes"]))

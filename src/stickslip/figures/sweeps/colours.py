@@ -16,8 +16,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.panels import add_legend, set_log_ticks
-from stickslip.figures.style import GREY, PALE, TWO
-from stickslip.figures.sweeps.varied import ROOM, ShownQuantity, folded
+from stickslip.figures.style import GREY, PALE, ROOM, TWO, folded
+from stickslip.figures.sweeps.varied import ShownQuantity
 from stickslip.foundation.arrays import Floats
 
 FEW = 10

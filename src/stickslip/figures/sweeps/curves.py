@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from stickslip.figures.panels import add_legend, count_ticks, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import BLUE, GREY, LINE_COLOURS
-from stickslip.figures.sweeps.varied import ScaledNumbers, ShownQuantity, folded, names_of, scaled, shown
+from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, folded
+from stickslip.figures.sweeps.varied import ScaledNumbers, ShownQuantity, names_of, scaled, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 

@@ -17,10 +17,10 @@ from matplotlib.lines import Line2D
 
 from stickslip.figures.panels import add_legend, finish, letter_panels, panels, set_title
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import BLUE, GREY, INK, PALE
+from stickslip.figures.style import BLUE, GREY, INK, PALE, ROOM
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
-from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, ScaledNumbers, ShownQuantity, names_of, scaled, shown
+from stickslip.figures.sweeps.varied import LITTLE, Names, ScaledNumbers, ShownQuantity, names_of, scaled, shown
 from stickslip.foundation.place import Place
 from stickslip.sweeps.results.layout import read_design
 

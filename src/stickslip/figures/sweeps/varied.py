@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,14 +10,12 @@ from matplotlib.axes import Axes
 
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import cell_edges, set_log_ticks
-from stickslip.figures.style import axis_text
+from stickslip.figures.style import ROOM, axis_text, folded
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import readable_unit
 
 SPREAD = 3.0
 """Values that span less than this factor are drawn on a linear axis: the two spreads could not be told apart."""
-ROOM = 42
-"""Number of letters in a line of the name of an axis, a key or a scale."""
 LITTLE = 26
 """The same for one of several panels side by side."""
 WIDE = 100.0
@@ -73,12 +70,6 @@ def scaled(variable: xr.DataArray) -> ScaledNumbers:
     log = bool(variable.attrs.get("log")) or is_logarithmic(values)
     unit, size = readable_unit(variable.attrs.get("units", "1"), values, log=log)
     return ScaledNumbers(values / size, axis_text(name, "", unit), size, log)
-
-
-def folded(text: str, room: int = ROOM) -> str:
-    """Return a text in lines of up to `room` letters; a symbol and the unit stay with the last word."""
-    whole = text.replace(" $", "\0$").replace(" (", "\0(")
-    return textwrap.fill(whole, room, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
 
 
 def is_logarithmic(values: Floats) -> bool:

@@ -58,7 +58,8 @@ def template(law: Any) -> FrictionLaw:
                 slip, rate = (template(one.strip()) for one in law.split(mark, 1))
                 return join(*((rate, slip) if rate.depends_on_slip else (slip, rate)))
         if law not in LAWS:
-            raise InputError(f"fit: law {ascii(law)[:60]} is unknown; {nearest(law, LAWS)}")
+            hint = nearest(law, LAWS, listed="`stickslip new --list` lists all")
+            raise InputError(f"fit: law {ascii(law)[:60]} is unknown; {hint}")
         law = LAWS[law]
     is_class = isinstance(law, type) and issubclass(law, FrictionLaw)
     if not is_class and not isinstance(law, FrictionLaw):

@@ -107,7 +107,7 @@ class RateAndState(DirectEffect):
     evolution: str = declare(Choice("how the state changes", ("ageing", "slip", "prz")), "ageing")
     normal_stress_coupling: float = quantity(
         "1",
-        "alpha: friction falls by alpha as the normal load grows by a factor e at once, and recovers with slip",
+        "coupling alpha to the normal load: friction falls by alpha as that grows by a factor e at once, and recovers with slip",
         at_least=0,
         default=0.0,
     )
@@ -303,7 +303,7 @@ class FlashHeating(DirectEffect):
     reference: float = quantity("1", "friction coefficient of steady sliding at `rate`, far below the weakening rate", above=0)
     b: float = quantity("1", "evolution effect b: decrease of friction as slip renews the contact, per factor e", at_least=0)
     distance: Number = quantity("m", "slip over which the state renews itself (L)", above=0)
-    weakened: float = quantity("1", "friction coefficient of steady sliding far above the weakening rate", above=0)
+    weakened: float = quantity("1", "friction coefficient far above the weakening rate", above=0)
     weakening_rate: Number = quantity("m/s", "slip rate above which asperities melt", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
 

@@ -14,11 +14,12 @@ from stickslip.foundation.determined import UNSEEN as DETERMINED
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.show import brief
 from stickslip.inference.certainty.directions import IDLE, better_known, null_directions, told, without
-from stickslip.inference.fit.estimate import Estimate, pieces_of
+from stickslip.inference.fit.estimate import Estimate
 from stickslip.inference.fit.free import Free
 from stickslip.inference.fit.memory import WHITE, Unevenness, spread_by, spreads_of, unevenness
 from stickslip.inference.fit.model import FAILED, Model
-from stickslip.inference.fit.search import Tell
+from stickslip.inference.fit.pieces import pieces_of
+from stickslip.inference.fit.progress import Tell
 from stickslip.inference.record.noise import cost_of, weights
 
 EXACT = 1e-10

@@ -15,7 +15,7 @@ from stickslip.inference.certainty.certainty import Certainty
 from stickslip.inference.certainty.kept_walk import NOT_KEPT, KeptWalk
 from stickslip.inference.fit.estimate import Estimate
 from stickslip.inference.fit.model import FAILED
-from stickslip.inference.fit.search import Tell
+from stickslip.inference.fit.progress import Tell
 from stickslip.inference.record.noise import cost_of
 from stickslip.trajectory.status import engine
 

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.memory import Memory, ResidualBlock, memory_of
+from stickslip.inference.fit.memory import Memory, memory_of
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
+from stickslip.inference.fit.pieces import pieces_of
+from stickslip.inference.fit.progress import Tell
 from stickslip.inference.fit.search import (
     COMPETES,
     Best,
-    Tell,
     is_far,
     is_rough,
+    is_told,
     light,
     polished,
     searched_minima,
@@ -47,8 +47,8 @@ APART = 5.0
 class Estimate:
     """The result of a search: the model with the estimated size and memory of the noise, and the best fit.
 
-    `others` are the searched numbers at competing minima; `finished` is False after Ctrl-C; `loss` is the function of squared
-    residuals that is summed.
+    `others` are the searched numbers at competing minima; `finished` is False after Ctrl-C, and after the end of the time, which
+    `ended` then tells; `loss` is the function of squared residuals that is summed.
     """
 
     model: Model
@@ -56,6 +56,7 @@ class Estimate:
     others: tuple[Floats, ...] = ()
     finished: bool = True
     loss: str = "linear"
+    ended: str = ""
 
     def cost(self, searched: Floats) -> float:
         """Return the sum that the search minimises: minus twice the logarithm of the posterior, up to a constant."""
@@ -72,16 +73,16 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
         best.cost, best.searched = np.inf, searched
         found = _with_noise(model, searched, loss, tell, best)
         misses = any(size > ROUGH * model.sizes[name] for name, size in found.model.sizes.items())
-        if starts > 1 and misses and is_rough(found.model, found.searched):
+        if starts > 1 and misses and is_rough(found.model, found.searched) and not is_told(found.model, found.searched):
             tell("polishing without derivatives")
             better = polished(found.model, found.searched, loss)
             if found.cost(better) < found.cost(found.searched) - COMPETES:
                 found = _with_noise(model, better, loss, tell, best)
         return replace(found, others=_competing(found.model, found.searched, [x for _, x in minima[1:]], thin.every))
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         if not len(best.searched):
             raise
-        return Estimate(found.model.with_(every=model.every), best.searched, finished=False, loss=loss)
+        return Estimate(found.model.with_(every=model.every), best.searched, finished=False, loss=loss, ended=str(stop))
 
 
 def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floats:
@@ -137,34 +138,6 @@ def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
         sizes[name] = model.sizes[name] * size
         memory[name] = Memory(found.time, found.size / size, found.white / size)
     return model.with_(sizes=sizes, memory=memory)
-
-
-class QuantityPiece(NamedTuple):
-    """One quantity in all parts: residuals, rows of a matrix, weights of the samples, and blocks of neighbouring samples."""
-
-    name: str
-    residual: Floats
-    rows: Floats
-    weight: Floats
-    blocks: list[ResidualBlock]
-
-
-def pieces_of(model: Model, residual: Floats, matrix: Floats) -> Iterator[QuantityPiece]:
-    """Yield the residuals of each quantity with the rows of a matrix that belong to them."""
-    blocks_of = [model.blocks(i) for i in range(len(model.parts))]
-    begins = np.append(0, np.cumsum([blocks[-1][1].rows.stop for blocks in blocks_of]))
-    for name in model.sizes:
-        blocks, places, weights, count = list[ResidualBlock](), list[Floats](), list[Floats](), 0
-        for i, part in enumerate(model.parts):
-            for quantity, block in blocks_of[i]:
-                if quantity == name:
-                    length = block.rows.stop - block.rows.start
-                    places.append(begins[i] + np.arange(block.rows.start, block.rows.stop))
-                    weights.append(model.weights(i)[np.isfinite(part.record.measured[name][:: model.every])])
-                    blocks.append(ResidualBlock(slice(count, count + length), block.time))
-                    count += length
-        rows = np.concatenate(places)
-        yield QuantityPiece(name, residual[rows], matrix[rows], np.concatenate(weights), blocks)
 
 
 def _widths(by: Floats) -> Floats:

@@ -11,9 +11,10 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free
+from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
 from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
 from stickslip.inference.fit.part import Part, approached, changed, not_begun
+from stickslip.inference.fit.turns import felt, moving
 from stickslip.inference.record.record import SHEAR
 from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.problem.problem import Problem
@@ -49,7 +50,8 @@ class Model:
     for all, or one each. Residuals are averaged over the share `smooth` of the samples, so that an event at a wrong time is felt
     from afar. A run that needs more than `max_pieces` has failed. A jump of a run is spread over `blur` samples. `unsure` is the
     standard deviation (SI) that the unknown time of a nearby jump gives each used sample, by part and quantity. `weight` is the
-    exponent of the weight of samples after a change of the pull rate. `ran` is called after each run. `of_means` is True if
+    exponent of the weight of samples after a change of the pull rate. `ran` is called after each run, and `tried`
+    with the model, searched numbers and residuals after each trial. `of_means` is True if
     residuals are few means whose errors are known.
     """
 
@@ -67,6 +69,7 @@ class Model:
     unsure: dict[tuple[int, str], Floats] = field(default_factory=dict)
     weight: float = 0.0
     ran: Callable[[], object] = lambda: None
+    tried: Callable[[Any, Floats, Floats], object] = lambda model, searched, residual: None
     _last: dict[int, tuple[bytes, Floats]] = field(default_factory=dict)
     of_means: ClassVar[bool] = False
 
@@ -103,10 +106,10 @@ class Model:
         """Return the values that would be measured in a run at each sample, by the name of the quantity (SI)."""
         this, own = self.parts[part], self._own(searched, part)
         time = np.clip(this.record.clock[::every] - own.get(DELAY, 0.0), 0.0, run.history.span[1])
-        found, shift = {}, 0.0
+        found, shift = {}, own.get(DRIFT, 0.0) * this.record.clock[::every]
         if TREND in own:
             slip = run.slip(time)
-            shift = own[TREND] * (slip - slip[0])
+            shift = shift + own[TREND] * (slip - slip[0])
         for name in this.observed:
             values = measured(run, name, this.sensor, time)
             if name in JUMPING:
@@ -121,7 +124,8 @@ class Model:
     def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
         this, least = self.parts[part], SEEN * self.sizes.get(name, 0.0)
         step = self.every * this.record.clock[-1] / max(len(this.record) - 1, 1)
-        return jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
+        found = jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
+        return moving(found, felt(run.problem, this.duration, step), step)
 
     def with_jumps(self, searched: Floats) -> Model:
         """Return the model with added uncertainty for samples beside a jump, whose time lies somewhere between two samples."""
@@ -204,8 +208,9 @@ class Model:
 
     def residual(self, searched: Floats) -> Floats:
         """Return all residuals, those of the priors last."""
-        parts = [self.part_residual(searched, i) for i in range(len(self.parts))]
-        return np.concatenate([*parts, self.priors(searched)])
+        rest = np.concatenate([self.part_residual(searched, i) for i in range(len(self.parts))])
+        self.tried(self, searched, rest)
+        return np.concatenate([rest, self.priors(searched)])
 
     def jacobian(self, searched: Floats, *, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
         """Return the derivatives of all residuals with respect to the searched numbers, by differences.

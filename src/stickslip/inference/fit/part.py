@@ -14,6 +14,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity
+from stickslip.inference.fit.turns import changes_of
 from stickslip.inference.record.loading import later, loading_of
 from stickslip.inference.record.noise import first_value, noise_of
 from stickslip.inference.record.record import Record
@@ -23,10 +24,6 @@ from stickslip.problem.problem import Problem
 
 SMALLEST_NOISE = 1e-9
 """Smallest noise, as a share of the range of a quantity: even a record without noise is rounded."""
-
-
-CHANGES = 0.1
-"""A change of the pull rate counts if it is at least this share of the rate's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +66,7 @@ class Part:
         pull = problem.pull_rate if self.loading is None else self.loading
         if not isinstance(pull, LoadingHistory):
             return np.zeros(0)
-        segments = [one for one in pull.segments if one.start < self.duration]
-        ends = [*(one.start for one in segments[1:]), self.duration]
-        after = np.array([one.at(end) for one, end in zip(segments, ends, strict=True)])
-        jumped = np.array([one.value for one in segments]) - np.append(segments[0].value, after[:-1])
-        changed = np.abs(jumped) + np.abs(after - [one.value for one in segments])
-        least = CHANGES * float(np.ptp(np.append(after, [one.value for one in segments])))
-        return np.array([one.start for one, by in zip(segments, changed, strict=True) if by > least])
+        return changes_of(pull, self.duration)
 
     def weights(self, problem: Problem, exponent: float) -> Floats:
         """Return the weight of each sample: (n/j)**exponent for the j-th of n samples after each change of the pull rate.

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.inference.fit.looks import looks_of
 from stickslip.inference.fit.model import FAILED, Model
+from stickslip.inference.fit.pieces import pieces_of
+from stickslip.inference.fit.progress import Tell
+from stickslip.inference.fit.starting import slides
 from stickslip.inference.record.noise import OUTLYING, cost_of
 from stickslip.inference.record.resample import RAMP
-
-Tell = Callable[[str], Any]
 
 COMPETES = 20.0
 """Another minimum competes with the best one if twice the log-likelihoods differ by less than this."""
@@ -33,25 +34,6 @@ GENERATIONS = 60
 """Largest number of generations of such a search."""
 LIGHT = 2000
 """Largest number of pieces of a run while starts are compared; three times the pieces of the first start's run, if that is more."""
-
-
-@dataclass
-class SearchProgress:
-    """The progress of a search: its phase and the number of runs so far, as a line of text after each run."""
-
-    tell: Callable[[str], Any]
-    phase: str = ""
-    runs: int = 0
-
-    def __call__(self, phase: str) -> None:
-        """Report that a new phase begins."""
-        self.phase = phase
-        self.tell(f"{phase}, {self.runs} runs so far" if self.runs else phase)
-
-    def run(self) -> None:
-        """Report that a run is done."""
-        self.runs += 1
-        self.tell(f"{self.phase}, {self.runs} runs so far")
 
 
 @dataclass
@@ -138,7 +120,7 @@ def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Te
         tell(f"search {i + 1} of {len(chosen)}")
         minima.append(_followed(model, x, loss, best, FIRST))
     minima.sort(key=lambda one: one[0])
-    if starts > 1 and is_far(model, minima[0][0]):
+    if starts > 1 and is_far(model, minima[0][0]) and not is_told(model, minima[0][1]):
         minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, FIRST))
         minima.sort(key=lambda one: one[0])
     followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
@@ -163,6 +145,23 @@ def sharp_cost(model: Model, x: Floats, loss: str) -> float:
 def is_far(model: Model, cost: float) -> bool:
     """Return True if the cost is so large that the run does not come near the record."""
     return cost > max(FAR**2 * model.samples, FAR_SHARE**2 * model.scatter)
+
+
+TOLD = 0.5
+"""If a drift or an offset makes up this share of what is left, no search for events goes on."""
+
+
+def is_told(model: Model, searched: Floats) -> bool:
+    """Return True if what is left is mostly a drift or an offset of a record that slides all the time.
+
+    No event is then at a wrong time, which a search without derivatives would mend: the runs lack something, and words say what.
+    """
+    if model.of_means or not all(slides(model.problem, part) for part in model.parts):
+        return False
+    name = next(iter(model.sizes))
+    pieces = {one.name: one for one in pieces_of(model, model.residual(searched), model.jacobian(searched, sides=(1.0,)))}
+    looks = looks_of(model, searched, name, pieces[name].rows)
+    return sum(one.share for one in looks if one.kind.startswith(("drift", "offset"))) > TOLD
 
 
 def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:

@@ -16,7 +16,7 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
-from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
+from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
 from stickslip.inference.record.features import arrests_in
@@ -183,7 +183,7 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
     if not reach > 0.0:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
     times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
-    return {**times, TREND: 0.1 / reach, "initial.slip": 0.1 * reach, "body.damping": 1.0}
+    return {**times, TREND: 0.1 / reach, DRIFT: 0.1 / part.duration, "initial.slip": 0.1 * reach, "body.damping": 1.0}
 
 
 def rounded_times(body: BodyOnCharacteristics, names: Sequence[str]) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,8 +13,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.show import brief
 from stickslip.inference.fit.by_features import events_of
-from stickslip.inference.fit.free import Free
+from stickslip.inference.fit.free import DRIFT, TREND, Free
 from stickslip.inference.fit.part import Part, changed
+from stickslip.inference.fit.plateaus import PlateauDrift, drift_of, plateaus_of, transients_of
 from stickslip.inference.record.features import arrests_in
 from stickslip.inference.record.noise import noise_of
 from stickslip.loading import LoadingHistory
@@ -23,10 +23,6 @@ from stickslip.problem.problem import Problem
 
 COSINE = math.sqrt(math.pi**2 - 8.0)
 """Twice the standard deviation, in time, of the fall of a spring force along half a cosine of angular frequency 1."""
-TAIL, LEAST = 0.3, 8
-"""The plateau at a constant rate is the median over this last share of its samples; it needs at least so many samples."""
-CLEAR = 5.0
-"""A transient counts if it is higher than this many standard deviations of the noise."""
 CREEPS, STIFFER = 0.8, 1.1
 """If the slope of shear between events is outside this range, relative to the stiffness of the problem, the stiffness is doubted.
 The range reaches farther down, because creep makes the slope smaller."""
@@ -45,14 +41,16 @@ class StickSlip(NamedTuple):
 
 
 def with_starts(
-    free: Sequence[Free], problem: Problem, parts: Sequence[Part], given: Iterable[str]
+    free: Sequence[Free], problem: Problem, parts: Sequence[Part], given: Iterable[str], drift: PlateauDrift | None = None
 ) -> tuple[tuple[Free, ...], list[str]]:
     """Return the free numbers with starting values from the record, and sentences on that.
 
-    `given` has the names of those whose start the user chose. A number keeps the value of the problem as a second start.
+    `given` has the names of those whose start the user chose. A number keeps the value of the problem as a second start. `drift` is
+    that of the plateaus, if one of the numbers is.
     """
     given = {full_name(str(name), [one.name for one in free], "", "") for name in given}
-    shown = {name: value for part in reversed(parts) for name, value in _shown(problem, part, {one.name for one in free})}
+    shown = {name: value for part in reversed(parts) for name, value in _shown(problem, part, drift, {one.name for one in free})}
+    shown |= {} if drift is None else {TREND if drift.with_slip else DRIFT: drift.value}
     wanted = [one for one in free if one.name in shown and one.name not in given and one.low < shown[one.name] < one.high]
     values = {one.name: shown[one.name] for one in wanted}
     if not _allowed(problem, values):
@@ -72,12 +70,11 @@ def _allowed(problem: Problem, values: Mapping[str, float]) -> bool:
     return True
 
 
-def _shown(problem: Problem, part: Part, names: set[str]) -> Iterator[tuple[str, float]]:
+def _shown(problem: Problem, part: Part, drift: PlateauDrift | None, names: set[str]) -> Iterator[tuple[str, float]]:
     """Yield names and values (SI) of the numbers that a part of a record shows."""
     if part.record.shear is None:
         return
-    friction = _friction(problem, part)
-    stepped = isinstance(part.loading, LoadingHistory) and hasattr(problem.friction, "distance") and bool(problem.friction.states)
+    friction, stepped = _friction(problem, part), _is_stepped(problem, part)
     cycles = None if stepped else stick_slip(problem, part)  # friction falls after a step of rate, too
     if cycles is not None:
         yield from _of_law(problem, cycles, names)
@@ -85,7 +82,29 @@ def _shown(problem: Problem, part: Part, names: set[str]) -> Iterator[tuple[str,
     elif not stepped and len(arrests_in(friction)):
         yield "friction.static", float(np.nanmax(np.abs(friction)))
     else:
-        yield from _of_steps(problem, part, friction, names)
+        yield from _of_steps(problem, part, drift, names)
+
+
+def _is_stepped(problem: Problem, part: Part) -> bool:
+    """Return True if friction may fall after a step of the pull rate, so that not every fall is a slip event."""
+    pull = problem.pull_rate if part.loading is None else part.loading
+    return isinstance(pull, LoadingHistory) and hasattr(problem.friction, "distance") and bool(problem.friction.states)
+
+
+def slides(problem: Problem, part: Part) -> bool:
+    """Return True if the contact of a part of a record slides all the time, as far as shear shows: without slip events."""
+    if part.record.shear is None or part.record.shear not in part.observed:
+        return False
+    return _is_stepped(problem, part) or not len(arrests_in(_friction(problem, part)))
+
+
+def shown_drift(problem: Problem, parts: Sequence[Part], *, with_slip: bool | None = None) -> PlateauDrift | None:
+    """Return the drift of the plateaus of a record, seen or not; None if there is none to look at, as in stick-slip.
+
+    It is one with slip or with time if that is asked for, and else what the plateaus look like.
+    """
+    sliding = [part for part in parts if slides(problem, part)]
+    return drift_of([plateaus_of(problem, part, _friction(problem, part)) for part in sliding], with_slip)
 
 
 def _friction(problem: Problem, part: Part) -> Floats:
@@ -159,43 +178,18 @@ def _of_slab(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[t
         yield "body.density", cycles.rise * thickness / speed**2
 
 
-class RatePlateau(NamedTuple):
-    """Friction at the end of a part of constant rate (m/s), and its samples: time (s) and friction."""
-
-    rate: float
-    friction: float
-    time: Floats
-    samples: Floats
-
-
-def _plateaus(part: Part, friction: Floats) -> list[RatePlateau]:
-    """Return the plateaus of a part of a record, in their order; stretches without motion or with too few samples are skipped."""
-    known, clock = np.isfinite(friction), part.record.clock
-    clock, friction = clock[known], friction[known]
-    loading = part.loading
-    rows = np.array(loading.segments)[:, :2].tolist() if isinstance(loading, LoadingHistory) else [[0.0, loading or 0.0]]
-    found = []
-    for (begin, rate), (end, _) in pairwise([*rows, [math.inf, 0.0]]):
-        inside = slice(*np.searchsorted(clock, [begin, end]).tolist())
-        time, values = clock[inside], friction[inside]
-        if rate != 0.0 and len(time) >= LEAST:
-            found.append(
-                RatePlateau(abs(rate), abs(float(np.median(values[-math.ceil(TAIL * len(values)) :]))), time, np.abs(values))
-            )
-    return found
-
-
-def _of_steps(problem: Problem, part: Part, friction: Floats, names: set[str]) -> Iterator[tuple[str, float]]:
+def _of_steps(problem: Problem, part: Part, drift: PlateauDrift | None, names: set[str]) -> Iterator[tuple[str, float]]:
     """Yield reference friction, a, b and slip distance of a rate-and-state law from steady sliding at several rates."""
     law: Any = problem.friction
-    plateaus = _plateaus(part, friction)
+    friction = _friction(problem, part)
+    plateaus = [one.without(drift) for one in plateaus_of(problem, part, friction)]
     if not plateaus or not all(hasattr(law, name) for name in ("reference", "a", "b", "distance", "rate")):
         return
     logs, levels = np.log([one.rate / law.rate for one in plateaus]), np.array([one.friction for one in plateaus])
     slope = law.a - law.b
     if float(np.ptp(logs)) > 0.1:
         slope = float(np.polyfit(logs, levels, 1)[0])
-        direct, distance = _transients(plateaus, noise_of(friction))
+        direct, distance = transients_of(plateaus, noise_of(friction))
         a = direct if "friction.a" in names and math.isfinite(direct) else law.a
         if "friction.b" in names and a - slope > 0.0:
             yield "friction.b", a - slope
@@ -206,24 +200,6 @@ def _of_steps(problem: Problem, part: Part, friction: Floats, names: set[str]) -
         if math.isfinite(distance):
             yield "friction.distance", distance
     yield "friction.reference", float(np.mean(levels - slope * logs))
-
-
-def _transients(plateaus: Sequence[RatePlateau], noise: float) -> tuple[float, float]:
-    """Return the direct effect per factor e of rate, and the slip (m) over which it decays by a factor e; NaN if none is clear."""
-    effects, distances = list[float](), list[float]()
-    for before, after in pairwise(plateaus):
-        logs = math.log(after.rate / before.rate)
-        if abs(logs) < 0.1:
-            continue
-        height = math.copysign(1.0, logs) * (after.samples - before.friction)
-        top = int(np.argmax(height[: len(height) // 2]))
-        rest = np.abs(after.samples[top:] - after.friction)
-        if height[top] > CLEAR * noise:
-            effects.append(float(height[top]) / abs(logs))
-            below = np.flatnonzero(rest < rest[0] / math.e)
-            if rest[0] > CLEAR * noise and len(below):
-                distances.append(after.rate * float(after.time[top + below[0]] - after.time[top]))
-    return float(np.median(effects or [math.nan])), float(np.median([one for one in distances if one > 0.0] or [math.nan]))
 
 
 def _doubts(problem: Problem, part: Part, free: Sequence[Free]) -> Iterator[str]:

@@ -63,7 +63,7 @@ def slab_jumps(runs: Runs) -> ClaimVerdict:
         "with it, and is slightly negative after arrest: the stress drop overshoots."
     )
     count = len(solution.shocks)
-    slip = ("slip", solution.events.slip.sum(), "m")
+    slip = ("slip", solution.events.slip.abs().sum(), "m")
     return verdict(judge(count > 0), "α = 1 s/m", why, ("shocks", count, ""), *numbers, slip)
 
 
@@ -129,7 +129,7 @@ def just_above_critical(runs: Runs) -> ClaimVerdict:
         ("first shock, slip rate after", shocks.rate_after.iloc[0], "m/s"),
         ("second shock, time", shocks.time.iloc[-1], "s"),
         ("second shock, slip rate before", shocks.rate_before.iloc[-1], "m/s"),
-        ("slip", event.events.slip.sum(), "m"),
+        ("slip", event.events.slip.abs().sum(), "m"),
         ("time from arrest to the next event", later.start.iloc[1] - later.end.iloc[0], "s"),
     )
 
@@ -155,7 +155,7 @@ def like_coulomb(runs: Runs) -> ClaimVerdict:
         "in kind from αc on; within 10 % from 10 αc",
         why,
         ("Coulomb's slip rate", rate, "m/s"),
-        ("Coulomb's slip", coulomb.events.slip.sum(), "m"),
+        ("Coulomb's slip", coulomb.events.slip.abs().sum(), "m"),
         *((f"slip rate over Coulomb's, α = {factor:g} αc", ratio, "") for factor, ratio in ratios.items()),
     )
 

@@ -51,7 +51,7 @@ def block_slips_once(runs: Runs) -> ClaimVerdict:
         ("stiffness K, as printed", printed.body.stiffness, "N/m"),
         *each("events", {r: len(s.events) for r, s in solutions.items()}),
         *each("share of the load released", released),
-        *each("slip", {r: s.catalogue(0.0).slip.sum() for r, s in solutions.items()}, "m"),
+        *each("slip", {r: s.catalogue(0.0).slip.abs().sum() for r, s in solutions.items()}, "m"),
         *each("stop", {r: s.catalogue(0.0).end.max() for r, s in solutions.items()}, "s"),
     )
 
@@ -91,7 +91,7 @@ def slab_pulses(runs: Runs) -> ClaimVerdict:
         ("pulses, u0 = uc + 1 cm", pulses["u0 = uc + 1 cm"], ""),
         ("pulses, ω = 50 /m", pulses["ω = 50 /m"], ""),
         ("largest slip rate, ω = 50 /m", other.events.peak_rate.max(), "m/s"),
-        ("slip, ω = 50 /m", other.catalogue(0.0).slip.iloc[0], "m"),
+        ("slip, ω = 50 /m", abs(other.catalogue(0.0).slip.iloc[0]), "m"),
     )
 
 
@@ -251,6 +251,6 @@ def block_sticks_and_slips(runs: Runs) -> ClaimVerdict:
         why,
         *each("events in 100 years", {reading: len(table) for reading, table in events.items()}),
         *[(f"start of event {k + 1}, K = G × 10³ m", start, "years") for k, start in enumerate(years[:3].tolist())],
-        *each("largest slip of an event", {reading: events[reading].slip.max() for reading in again}, "m"),
+        *each("largest slip of an event", {reading: events[reading].slip.abs().max() for reading in again}, "m"),
         *each("periods of creep leaped over", {r: s.creep.round_trips.sum() for r, s in solutions.items()}),
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.errors import InputError, nearest_and_all
+from stickslip.foundation.errors import InputError, nearest, some_of
 from stickslip.observables.severity import severity
 from stickslip.trajectory.slip_events import share_sticking
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import Uniqueness
     from stickslip.solution.solution import Solution
 
+LISTED = "`stickslip sweep --help` lists all"
+"""Where all quantities are."""
 Of = Callable[["Solution"], Any]
 """A function of a solution that returns a number."""
 
@@ -124,7 +126,7 @@ _ALL = (
     Summary("first_start", "s", "start of the first slip event", _first("start")),
     Summary("first_end", "s", "end of the first slip event", _first("end")),
     Summary("first_duration", "s", "duration of the first slip event", _first("duration")),
-    Summary("first_slip", "slip", "slip of the first slip event", _first("slip")),
+    Summary("first_slip", "slip", "slip of the first slip event, negative if it slips back", _first("slip")),
     Summary("first_traction_drop", "load", "friction before minus friction after the first slip event", _first("traction_drop")),
     Summary("first_static_drop", "load", "stiffness times slip of the first slip event", _first("static_drop")),
     Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence(np.mean, 1)),
@@ -173,7 +175,7 @@ def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
         if names.count(name) > 1:
             raise InputError(f"sweep: the quantity '{name}' is given twice")
     if not found:
-        raise InputError(f"sweep: no quantity is given; allowed: {', '.join(sorted(QUANTITIES))}")
+        raise InputError(f"sweep: no quantity is given; allowed: {some_of(QUANTITIES, listed=LISTED)}")
     return found
 
 
@@ -182,7 +184,7 @@ def _one(item: Wanted) -> Summary:
         return item
     if isinstance(item, str):
         if item not in QUANTITIES:
-            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest_and_all(item, QUANTITIES)}")
+            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES, listed=LISTED)}")
         return QUANTITIES[item]
     if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
@@ -21,7 +22,7 @@ from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import in_files
+from stickslip.foundation.names import for_readers, in_files
 from stickslip.foundation.show import clean
 from stickslip.io.netcdf import about_curves
 from stickslip.io.zarr_store import FolderFormat, check_layout
@@ -140,6 +141,18 @@ def read_design(about: Mapping[str, Any]) -> tuple[str, list[str], tuple[int, ..
     if not known:
         raise InputError(f"its design is {shown(about.get('design'))}")
     return kind, keys, tuple(check_whole("the length of a chunk", one) for one in chunk)
+
+
+def table_of(found: xr.Dataset) -> pd.DataFrame:
+    """Return a row for each member with its parameters, its results and how it ended; headings name units, as "slip (m)".
+
+    Curves over time, which have more than one number for a member, are left out.
+    """
+    kept = found.drop_vars([name for name, one in found.variables.items() if TIME in one.dims])
+    table = kept.to_dataframe().reset_index()
+    table[STATUS] = table[STATUS].map(lambda code: MEANINGS.get(code, str(code)))
+    units = {name: for_readers(str(one.attrs.get("units", "1"))) for name, one in kept.variables.items()}
+    return table.rename(columns={name: f"{name} ({unit})" for name, unit in units.items() if unit not in ("1", "")})
 
 
 def in_order(found: xr.Dataset) -> xr.Dataset:
