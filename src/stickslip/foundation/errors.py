@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import is_dataclass
 
 from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same
 
@@ -43,6 +44,8 @@ class UnknownAttributeError(AttributeError):
         owner, attribute = self.args
         public = [one for one in dir(owner) if not one.startswith("_")]
         hint = nearest(attribute, public, "it has ", "dir() of it lists all")
+        if attribute in ("replace", "set", "update", "copy") and is_dataclass(owner):
+            hint = "dataclasses.replace(it, NAME=VALUE) makes another"
         return f"{type(owner).__name__} has no attribute {ascii(attribute)[:60]}; {hint}"
 
 
