@@ -1,16 +1,20 @@
-"""Seven ways into the package, as new users of seven fields type them: each command in a fresh process, with its time.
+"""Seven ways into the package, as new users of seven trades type them, from the help to the last number with a file of their own.
 
 python -m benchmarks.ways_through                # with the cache of compiled code as it is
 python -m benchmarks.ways_through --empty        # with an empty one: where a newcomer waits
-python -m benchmarks.ways_through --only teaching
+python -m benchmarks.ways_through --only drill
 
-A line of standard error that says what is being compiled is printed below its command, and a command that fails with what it said.
+Each command runs in a fresh process. It fails if it takes more processor time than its step allows (as measured against a kernel
+of Python and numpy in the same minute, and longer where it says that it compiles), if its exit status is another, or if what it
+prints lacks something, or has another number than the truth of the file (`benchmarks.own_files`). There is a line for each failing
+step, and the exit status is their number.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import resource
 import shlex
 import subprocess
@@ -18,88 +22,114 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.own_files import FILES
+from benchmarks.ways import WAYS, Number, Step
 
 ROOT = Path(__file__).resolve().parents[1]
-WAYS: dict[str, tuple[str, ...]] = {
-    "rupture physics": (
-        "doctor",
-        "check fig6-slab --figure k.png",
-        "run fig6-slab --figure run.png",
-        'run fig6-slab --duration "480 years" --selection maxwell',
-        "sweep fig6-slab -v alpha=0.05..2:20 -v thickness=1km..50km:20 --figure map.png",
-        "run planar-patch --figure fault.png",
-    ),
-    "tribology": (
-        "new lab-slab > mine.toml",
-        "check mine.toml",
-        "run mine.toml --figure mine.png",
-        "run reversing-axis --friction-figure loop.png",
-        "sweep granite-slab -v pull_rate=1e-6..1e-3:20:log -q events -q peak_rate --figure rates.png",
-    ),
-    "drilling": (
-        "new slab --friction power-stribeck > string.toml",
-        "check string.toml",
-        "run string.toml --figure string.png",
-        "sweep string.toml -v pull_rate=0.1..10:20:log -q events --figure speeds.png",
-    ),
-    "laboratory geophysics": (
-        "run velocity-steps-block --friction-figure steps.png",
-        "run rate-and-state-block --figure cycles.png",
-        "run direct-shear-block --catalogue events.csv",
-        "show events.csv --catalogue-figure events.png",
-    ),
-    "teaching": ("paper --out paper", "run fig5-slab-reconstructed --space-time waves.png --animation slab.gif"),
-    "rupture codes": ("benchmark list", "benchmark get loop", "schemes fig4-loop --figure schemes.png"),
-    "acoustics": (
-        "run bowed-string-slab --figure string.png",
-        "check bowed-string-slab",
-        "run kolsky-slab --figure bar.png",
-    ),
-}
-"""Commands by field, in the order in which somebody who reads the pages would try them."""
+KERNEL = 0.20
+"""Processor time (s) of `kernel` where the bounds of the steps were measured."""
+COMPILING = 90.0
+"""Processor time (s) that a command may take in addition if it says that it compiles."""
 
 
-def run(words: list[str], into: str | None, folder: Path) -> tuple[subprocess.CompletedProcess[str], float, float]:
-    """Run one command in a folder; return what it said, and the times on the wall and of the processor (s)."""
+class Done(NamedTuple):
+    """What a command printed, its exit status, and its times on the wall and of the processor (s)."""
+
+    out: str
+    err: str
+    code: int
+    wall: float
+    spent: float
+
+
+def say(*lines: str) -> None:
+    """Print lines at once."""
+    print(*lines, sep="\n", flush=True)  # noqa: T201 - a script
+
+
+def kernel() -> float:
+    """Return the processor time (s) of some work of Python and numpy, the shortest of three."""
+    times = []
+    for _ in range(3):
+        begun, total, values = time.process_time(), 0.0, np.linspace(0.0, 1.0, 200_000)
+        for i in range(600_000):
+            total += i * 0.5
+        for _ in range(60):
+            values = np.sqrt(values * values + 1e-3)
+        times.append(time.process_time() - begun)
+    return min(times)
+
+
+def run(step: Step, folder: Path) -> Done:
+    """Run the command of a step in a folder."""
+    typed, _, into = step.typed.partition(" > ")
+    python = step.typed.startswith("python: ")
+    words = ["-c", step.typed.removeprefix("python: ")] if python else ["-m", "stickslip", *shlex.split(typed)]
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    source = {"PYTHONPATH": str(ROOT / "src")}
     done = subprocess.run(
-        [sys.executable, "-m", "stickslip", *words],
+        [sys.executable, *words],
         cwd=folder,
-        env=os.environ | source,
+        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
         capture_output=True,
         text=True,
         check=False,
     )
     wall, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
-    if into is not None:
+    if into and not python:
         (folder / into).write_text(done.stdout, encoding="utf-8")
-    return done, wall, after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    spent = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return Done(done.stdout, done.stderr, done.returncode, wall, spent)
+
+
+def faults(step: Step, done: Done, slower: float) -> list[str]:
+    """Return what is wrong with what a command did; this machine takes `slower` times as long as that of the bounds."""
+    allowed = step.bound * slower + (COMPILING if "compil" in done.err else 0.0)
+    found = [f"took {done.spent:.1f} s of the processor, {allowed:.1f} s allowed"] if done.spent > allowed else []
+    if done.code != step.code:
+        said = (done.err.strip().splitlines() or ["nothing"])[-1]
+        return [*found, f"exit status {done.code}, not {step.code}: {said}"]
+    printed = done.out + done.err
+    for wanted in step.wanted:
+        pattern = wanted.pattern if isinstance(wanted, Number) else wanted
+        match = re.search(pattern, printed, re.DOTALL)
+        if match is None:
+            found.append(f"does not say {pattern}")
+        elif isinstance(wanted, Number) and not abs(float(match[1]) - wanted.value) <= wanted.within * abs(wanted.value):
+            found.append(f"says {match[0]!r}, where {wanted.value:.6g} is true within {wanted.within:g} of it")
+    return found
 
 
 def main() -> int:
-    """Print each command with its times; return the number of commands that failed."""
+    """Print each command with its times and what is wrong; return the number of steps that failed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--empty", action="store_true", help="begin with an empty cache of compiled code")
-    parser.add_argument("--only", default="", help="only the fields that contain this text")
+    parser.add_argument("--only", default="", help="only the trades that contain this text")
     options = parser.parse_args()
-    failed = 0
+    failed: list[str] = []
+    slower = max(kernel() / KERNEL, 1.0)
     with tempfile.TemporaryDirectory() as place:
         if options.empty:
             os.environ["STICKSLIP_CACHE_DIR"] = f"{place}/cache"
-        for field, commands in WAYS.items():
-            if options.only not in field:
+        for trade, steps in WAYS.items():
+            if options.only not in trade:
                 continue
-            print(f"\n{field}\n  wall s  processor s", flush=True)  # noqa: T201 - a script
-            folder = Path(place, field.replace(" ", "-"))
+            say(f"\n{trade}\n  wall s  processor s")
+            folder = Path(place, trade.replace(" ", "-"))
             folder.mkdir()
-            for command in commands:
-                typed, _, into = command.partition(" > ")
-                done, wall, spent = run(shlex.split(typed), into or None, folder)
-                said = done.stderr.splitlines() if done.returncode else [x for x in done.stderr.splitlines() if "compil" in x]
-                failed += done.returncode != 0
-                print(f"{wall:8.1f}{spent:13.1f}  stickslip {command}", *(f"{'':23}{x}" for x in said), sep="\n", flush=True)  # noqa: T201
-    return failed
+            for name, write in FILES.items():
+                write(folder / name)
+            for step in steps:
+                done = run(step, folder)
+                wrong = faults(step, done, slower)
+                failed += [f"{trade}: {step.typed}: {'; '.join(wrong)}"] * bool(wrong)
+                notes = [*(one for one in done.err.splitlines() if "compil" in one), *(f"FAILS: {one}" for one in wrong)]
+                say(f"{done.wall:8.1f}{done.spent:13.1f}  {step.typed[:120]}", *(f"{'':23}{one}" for one in notes))
+    say("", *failed, f"{len(failed)} steps fail" if failed else "all ways lead through")
+    return min(len(failed), 100)
 
 
 if __name__ == "__main__":

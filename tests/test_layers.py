@@ -158,7 +158,8 @@ ROOMS = {
     ),
     "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
-        ("expand", "extra_words", "options"),
+        ("expand", "options"),
+        ("extra_words",),
         ("mistyped",),
         ("output", "overrides"),
         ("long_run", "installation"),

@@ -22,6 +22,8 @@ READERS = {
     ".zarr": ("a folder of results", "`stickslip show {0}`"),
 }
 """What a file is that stands in place of a command, by the end of its name, and what may be meant."""
+OF_ALL = {"help": "`stickslip --help` or `stickslip COMMAND --help`", "version": "`stickslip --version`"}
+"""Options that are typed as commands, as other programs have them."""
 OF_DATA = ("a table", "`stickslip fit {0}` or `stickslip infer SCENARIO {0} --free NAMES`")
 """The same for measured data."""
 
@@ -34,6 +36,8 @@ def unknown_command(name: str, commands: Collection[str]) -> str:
     kind = READERS.get(".toml" if name in library.names() else Path(name).suffix.lower(), OF_DATA if is_data(name) else None)
     if kind is not None:
         return f"'{shown}' is {kind[0]}, not a command: did you mean {kind[1].format(shown)}?"
+    if name in OF_ALL:
+        return f"there is no command '{shown}'; did you mean {OF_ALL[name]}?"
     return f"there is no command '{shown}'; {nearest(name, commands, listed='`stickslip --help` shows all')}"
 
 
@@ -82,7 +86,13 @@ def _hint(name: str, context: Any) -> str:
     elsewhere = f"it is an option of {' and '.join(filter(None, (', '.join(some[:-1]), some[-1])))}; " if some else ""
     if close or not (some or not is_word):
         close = close or meant(name, options)
-    return f"{elsewhere}{did_you_mean(close)} " if close else elsewhere
+    if close:
+        return f"{elsewhere}{did_you_mean(close)} "
+    if same(name, ["--out"]):
+        return f"{elsewhere}`> FILE` behind the command keeps what it prints; "
+    if is_word and not some and "--set" in options:
+        return f"if it is a number of the scenario, write --set {name[2:].replace('-', '_')}=VALUE; "
+    return elsewhere
 
 
 def _owners(name: str, context: Any) -> Iterator[str]:

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import is_dataclass
 from types import ModuleType
 
 from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same
@@ -44,6 +45,8 @@ class UnknownAttributeError(AttributeError):
         owner, attribute = self.args
         public = getattr(owner, "__all__", None) or [one for one in dir(owner) if not one.startswith("_")]
         hint = nearest(attribute, public, "it has ", "dir() of it lists all")
+        if attribute in ("replace", "set", "update", "copy") and is_dataclass(owner):
+            hint = "dataclasses.replace(it, NAME=VALUE) makes another"
         who = owner.__name__ if isinstance(owner, ModuleType) else type(owner).__name__
         return f"{who} has no attribute {ascii(attribute)[:60]}; {hint}"
 

@@ -69,7 +69,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
         **_energies(history, begin, end),
     }
     pulses = Pulses.of(history, events)
-    columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
+    columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece)).astype(float)
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     before, smallest = extreme_tractions(history, events, pulses)
     columns["dynamic_drop"] = direction(columns["slip"]) * (before - smallest) + 0.0  # no -0.0

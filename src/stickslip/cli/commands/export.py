@@ -60,7 +60,10 @@ def export(
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
     from stickslip.run.progress import progress_line
+    from stickslip.scenarios.text_of_files import is_scenario_name
 
+    if is_scenario_name(str(file)):
+        raise InputError(f"export: the run comes first, and then the file: `stickslip export {file} {run}`")
     check_target(file, "FILE", (".csv", ".nc", *OF_SCEC))
     for_scec = {"--components": components, "--area": area is not None}
     _check_fitting(file, for_scec, {"--points": points is not None})
