@@ -39,9 +39,10 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "marks", "memory", "names", "units"),
         ("conversion", "headings", "netcdf_file"),
-        ("axis", "columns", "quantities"),
+        ("named_columns", "unit_doubts"),
+        ("axis", "columns", "quantities", "record_files"),
         ("other_values", "show", "text_columns"),
         ("zarr_folder",),
     ),
