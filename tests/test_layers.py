@@ -40,10 +40,11 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "lazy_names", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "lazy_names", "marks", "memory", "names", "units"),
         ("headings", "meant", "netcdf_file"),
         ("conversion",),
-        ("axis", "columns", "quantities"),
+        ("named_columns", "unit_doubts"),
+        ("axis", "columns", "quantities", "record_files"),
         ("other_values", "show", "text_columns"),
         ("zarr_folder",),
     ),
