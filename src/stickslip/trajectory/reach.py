@@ -13,7 +13,7 @@ from stickslip.trajectory.history import History, Positions
 
 DIGITS = 8
 """Number of significant digits of a slip in a summary, as in its tables."""
-SAME = 1e-12
+SAME = 1e-9
 """Relative difference of two displacements that is rounding."""
 
 
@@ -34,7 +34,7 @@ class Reach:
     def text(self, problem: Problem) -> str:
         """Return the slip at the end and the largest displacement, in one line."""
         unit, name = problem.unit_of("slip"), name_of("slip", problem.load_unit)
-        largest = f"largest {'rotation' if unit == 'rad' else 'displacement'}"
+        largest = largest_of(unit)
         now = f"{name} at the end {shown_slip(problem.initial_slip + self.end, unit)}"
         if not self.largest:
             return f"{now}, {largest} {shown_slip(0.0, unit)}: nothing slips"
@@ -43,6 +43,11 @@ class Reach:
         if abs(self.largest - self.end) <= SAME * abs(self.largest):
             return f"{now}, which is the {largest}"
         return f"{now}; {largest} {shown_slip(self.largest, unit)}, at {brief(self.time, 's')}"
+
+
+def largest_of(unit: str) -> str:
+    """Return what the largest displacement is called where slip has this unit."""
+    return f"largest {'rotation' if unit == 'rad' else 'displacement'}"
 
 
 def shown_slip(value: float, unit: str) -> str:
