@@ -122,7 +122,7 @@ ROOMS = {
         ("phase_index", "series", "status", "turning_points"),
         ("machine_motion",),
         ("history",),
-        ("slip_events", "tables"),
+        ("reach", "slip_events", "tables"),
     ),
     "contact": (
         ("roots", "secant", "sliding", "wave_modes", "wave_proof"),
