@@ -40,7 +40,7 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "lazy_names", "memory", "names", "units"),
         ("headings", "meant", "netcdf_file"),
         ("conversion",),
         ("axis", "columns", "quantities"),
@@ -98,6 +98,7 @@ ROOMS = {
         ("catalogue_rows", "sampling", "series", "soundness", "zarr_store"),
         ("planar_layout", "scec"),
         ("netcdf", "planar_store"),
+        ("curves",),
     ),
     "run": (
         ("options", "progress"),

@@ -14,8 +14,8 @@ Inter. 96.
 libraries are slow to load.
 """
 
-import lazy_loader
+from stickslip.foundation.lazy_names import lazy_names
 
 __version__ = "0.1.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, is_dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,7 @@ from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.lazy_names import no_other_name
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import NumberSeries, Quantity, check_fields, declare, fields_of, quantity
 from stickslip.foundation.show import Declared, brief_repr
@@ -281,3 +282,6 @@ __all__ = [
     "Steps",
     "Tone",
 ]
+
+if not TYPE_CHECKING:  # with it, type checkers would accept any name
+    __getattr__ = no_other_name(__name__)

@@ -326,8 +326,12 @@ def test_run_draws_space_time_and_animation(command, tmp_path: Path, monkeypatch
 
 
 def test_run_says_what_is_trapped(command):
-    shown = command("run", "fig5-slab-reconstructed").out
+    short = command("run", "fig5-slab-reconstructed").out
+    assert re.search(r"\nproven: to \S+ of the normal stress at every moment; trapped energy: 1\.86\d+e\+07 J/m2 \(--all", short)
+    shown = command("run", "fig5-slab-reconstructed", "--all").out
     assert re.search(r"trapped energy: 1\.86\d+e\+07 J/m2 in waves at the end, 0\.57 % of what", shown)
+    assert "--all" not in shown
+    assert short.partition("proven")[0] == shown.partition("trapped")[0]
     assert "trapped" not in command("run", "cycles-block").out
 
 

@@ -89,7 +89,7 @@ def test_a_cell_of_a_notebook_hides_what_has_nothing_to_show(explorer: Explorer)
     cell = build_for_notebook(explorer)
     cell.explorer = explorer
     cards = {card[1].object.name: card for card in cell.select(pn.Column) if len(card) == 2 and isinstance(card[1], pn.pane.Bokeh)}
-    assert len(cards) == 14  # ten panels, and four of the strip
+    assert len(cards) == 16  # twelve panels, and four of the strip
     assert not cards["plot:state"].visible
     assert cards["plot:field"].visible
     explorer.change(Setting.bundled("fig6-block-reconstructed"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,7 @@ OBEYED: dict[str, tuple[Any, Callable[[Any], bool]]] = {
     "shortest_event": (0.01, lambda run: run.shortest_event == 0.01),
     "max_events": (1, lambda run: len(run.events) == 1 and run.duration < DURATION),
     "max_pieces": (20, lambda run: run.status.name == "too many pieces"),
+    "selection": ("maxwell", lambda run: run.problem.selection == "maxwell"),
     "title": ("mine", lambda run: run.title == "mine"),
 }
 """A value of each option, and what shows that a run obeyed it."""
@@ -75,3 +77,16 @@ def test_each_solver_reports_its_progress_and_keeps_checkpoints(problem: Any, tm
     back = ss.open_solution(place)
     slips = (one.slip if isinstance(one, PlanarSolution) else one.slip(DURATION) for one in (back, run))
     assert np.array_equal(*slips)
+
+
+@pytest.mark.parametrize("source", ["fig4-loop", ss.load_scenario("fig4-loop"), "problem"], ids=["name", "scenario", "problem"])
+def test_a_rule_that_is_given_decides_as_that_of_the_problem_would(source: Any) -> None:
+    """The loop tells the rules apart: the run under a given rule is, bit for bit, that of a problem with this rule."""
+    scenario = ss.load_scenario("fig4-loop")
+    source, duration = (scenario.problem, scenario.duration) if source == "problem" else (source, None)
+    given = ss.simulate(source, duration, scenario.rtol, selection="maxwell")
+    stated = ss.simulate(replace(scenario.problem, selection="maxwell"), scenario.duration, scenario.rtol)
+    assert given.shocks.equals(stated.shocks)
+    assert not given.shocks.equals(ss.simulate(scenario).shocks)
+    with pytest.raises(ss.InputError, match="did you mean 'maxwell'"):
+        ss.simulate(source, duration, selection="maxwel")

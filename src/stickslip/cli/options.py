@@ -207,4 +207,6 @@ FigureFile = Annotated[Path | None, option("Save a figure (.png, .pdf or .svg)."
 Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.", panel=FIGURES)]
 SIZE_HELP = 'Size of figures: "16 x 10 cm", "3.5 x 5 in", "single column" or "double column".'
 Duration = Annotated[str | None, option('Override the duration: s, or with a unit ("480 years").')]
+ALL = "Say all that is known of the proof of the run, the energy of its waves and its predictability."
+Everything = Annotated[bool, typer.Option("--all", help=ALL)]
 Rtol = Annotated[float | None, option("Override the relative tolerance.")]

@@ -4,6 +4,6 @@ Runs and studies draw themselves (`solution.plot()`); `ss.figures` has the figur
 and of laws made from points: `ss.figures.plot_fit(result)`.
 """
 
-import lazy_loader
+from stickslip.foundation.lazy_names import lazy_names
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)

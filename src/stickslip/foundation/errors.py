@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import is_dataclass
+from types import ModuleType
 
 from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same
 
@@ -35,18 +36,19 @@ class ArgumentError(InputError, TypeError):
 
 
 class UnknownAttributeError(AttributeError):
-    """Raised for an attribute that an object does not have; the message names the nearest public one, or all."""
+    """Raised for an attribute that an object or a module does not have; the message names the nearest public ones."""
 
     def __init__(self, owner: object, attribute: str) -> None:
         super().__init__(owner, attribute)  # the message is made when it is read: `hasattr` needs none
 
     def __str__(self) -> str:
         owner, attribute = self.args
-        public = [one for one in dir(owner) if not one.startswith("_")]
+        public = getattr(owner, "__all__", None) or [one for one in dir(owner) if not one.startswith("_")]
         hint = nearest(attribute, public, "it has ", "dir() of it lists all")
         if attribute in ("replace", "set", "update", "copy") and is_dataclass(owner):
             hint = "dataclasses.replace(it, NAME=VALUE) makes another"
-        return f"{type(owner).__name__} has no attribute {ascii(attribute)[:60]}; {hint}"
+        who = owner.__name__ if isinstance(owner, ModuleType) else type(owner).__name__
+        return f"{who} has no attribute {ascii(attribute)[:60]}; {hint}"
 
 
 class InputWarning(UserWarning):

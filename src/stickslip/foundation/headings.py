@@ -65,18 +65,43 @@ COLUMNS: Mapping[str, HeadingColumn] = {
         (
             *("rpm", "rotation", "rotation speed", "rotational speed", "angular velocity"),
             *("drive speed", "drive rpm", "top drive speed", "top drive rpm", *_driven("rate", "velocity", "speed")),
+            *("srpm", "surface rpm", "surface speed", "rotary speed", "rotary rpm", "average rotary speed", "td rpm", "td speed"),
+            *("rpma", "rpm avg", "average rpm", "rpm set point", "rpm setpoint", "set point rpm"),
         ),
         signed=True,
     ),
     "rotation": HeadingColumn("rad", ("angle", "rotation angle", "revolutions", *_driven("position")), signed=True),
     "slip_angle": HeadingColumn("rad", ("slip", "u", "bit angle"), signed=True),
     "slip_rotation": HeadingColumn(
-        "rad/s", ("slip rate", "v", "rate", "speed", "bit speed", "bit rpm", "bit rotation"), signed=True
+        "rad/s",
+        (
+            *("slip rate", "v", "rate", "speed", "bit speed", "bit rpm", "bit rotation"),
+            *("crpm", "collar rpm", "downhole rpm", "dh rpm", "drpm"),
+        ),
+        signed=True,
     ),
-    "torque": HeadingColumn("N m", ("friction torque", "torque on bit", "traction", "tau", "τ", "far stress"), signed=True),
+    "drive_rate": HeadingColumn("rad/s", ("measured drive speed", "measured drive rpm", "actual rpm"), signed=True),
+    "torque": HeadingColumn(
+        "N m",
+        (
+            *("friction torque", "torque on bit", "traction", "tau", "τ", "far stress"),
+            *("bit torque", "tob", "downhole torque", "dtor", "dh torque"),
+        ),
+        signed=True,
+    ),
+    "surface_torque": HeadingColumn(
+        "N m",
+        (
+            *("stor", "tq", "tqa", "torqa", "stq", "tdtq", "surface torque avg", "average surface torque", "torque at surface"),
+            *("top drive torque", "td torque", "drive torque", "rotary torque", "quill torque"),
+        ),
+        signed=True,
+    ),
     "normal_torque": HeadingColumn("N m"),
-    "weight_on_bit": HeadingColumn("N", ("wob",)),
+    "weight_on_bit": HeadingColumn("N", ("wob", "swob", "woba", "surface wob", "surface weight on bit", "average weight on bit")),
     "torque_deviation": HeadingColumn("N m", ("torque error", "sd torque")),
+    "surface_torque_deviation": HeadingColumn("N m", ("surface torque error", "sd surface torque")),
+    "drive_rate_deviation": HeadingColumn("rad/s", ("drive rate error", "sd drive rate")),
     "radius": HeadingColumn("m", ("mean radius", "equivalent radius")),
     "shear_force": HeadingColumn("N", ("force", "shear load", "friction force"), signed=True),
     "normal_force": HeadingColumn("N", ("normal load",)),
@@ -92,6 +117,17 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     "ground_acceleration": HeadingColumn("m/s^2", ("acceleration", "acc"), signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, dots, - and _ make no difference, nor does CamelCase."""
+DRILL_FLOOR: Mapping[str, str] = {
+    **dict.fromkeys(("hkld", "hkla", "hkl", "hook load", "hookload"), "hook load"),
+    **dict.fromkeys(("dbtm", "dept", "depth", "bit depth", "bd", "bit position"), "depth of the bit"),
+    **dict.fromkeys(("dmea", "hole depth", "td", "md", "measured depth"), "depth of the hole"),
+    **dict.fromkeys(("rop", "ropa", "rop avg", "rate of penetration"), "rate of penetration"),
+    **dict.fromkeys(("sppa", "spp", "standpipe pressure", "pump pressure"), "pressure of the mud"),
+    **dict.fromkeys(("bpos", "block position"), "height of the travelling block"),
+    **dict.fromkeys(("mfia", "mfi", "mfo", "flwi", "flow in", "mud flow in", "mud flow out"), "flow of the mud"),
+    **dict.fromkeys(("dwob", "dhwob", "downhole wob"), "weight on the bit, measured there"),
+}
+"""Further columns of the log of a drill floor, by their mnemonics in WITS and in logs while drilling, and what they are."""
 TURNED: Mapping[str, str] = {
     **{"slip": "slip_angle", "slip_rate": "slip_rotation", "load_point": "rotation", "load_rate": "rotation_rate"},
     **{"pull_rate": "rotation_rate", "far_stress": "torque"},
@@ -159,7 +195,7 @@ def _understood(heading: str, wanted: tuple[str, ...]) -> tuple[str, str, str | 
     name, unit = _parts(heading)
     fitting = known.get(plain(name), ())
     if fitting:
-        unit = "rpm" if unit is None and plain(name) == "rpm" else unit
+        unit = "rpm" if unit is None and "rpm" in plain(name) else unit
         best = next((one for one in fitting if len(fitting) > 1 and unit is not None and _fits(unit, one)), fitting[0])
         return best, name, unit
     if unit is None:

@@ -43,6 +43,12 @@ def with_unit(value: float, unit: str) -> str:
     return plain
 
 
+def in_turns(angle: float) -> str:
+    """Return an angle (rad) in turns, in brackets, if it has one or more: " (600.5 turns)"."""
+    turns = angle / (2.0 * math.pi)
+    return f" ({number(turns, 6)} turns)" if abs(turns) >= 1.0 else ""
+
+
 def brief(value: float, unit: str, digits: int = DIGITS) -> str:
     """Format a quantity, with 6 digits by default, in the unit that makes it short: "10 km", "0.05 m/year", "100 MPa".
 

@@ -10,7 +10,6 @@ import re
 import unicodedata
 from collections.abc import Iterable, Iterator
 from functools import cache
-from importlib import resources
 
 _PART = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+")
 TABLE = "trade_words.txt"
@@ -29,6 +28,8 @@ def _latin(letter: str) -> str:
 
 def rows() -> Iterator[tuple[str, list[str]]]:
     """Yield the names of the table, each with words for which it may be meant; a name may come again."""
+    from importlib import resources  # only where there is something to explain
+
     text = (resources.files(__name__.rpartition(".")[0]) / TABLE).read_text(encoding="utf-8")
     for line in text.splitlines():
         if line.strip() and not line.startswith("#"):

@@ -5,6 +5,9 @@ To add a law, add a class to `laws` (docs/adding-a-law.md), and here its import,
 `smooth` and `fit` make laws from noisy points.
 """
 
+from typing import TYPE_CHECKING
+
+from stickslip.foundation.lazy_names import no_other_name
 from stickslip.friction.custom.fit import Fit, fit, fit_each
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
@@ -69,3 +72,6 @@ __all__ += ["HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndS
 __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
 __all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerSlipWeakening", "PowerStribeck", "SinusoidalSlip"]
 __all__ += ["SlipPlusRate", "SlipTimesRate"]
+
+if not TYPE_CHECKING:  # with it, type checkers would accept any name
+    __getattr__ = no_other_name(__name__)

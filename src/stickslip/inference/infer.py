@@ -178,15 +178,16 @@ def infer(
         The data to fit: samples of the record, or features of its slip events (stick-slip), with their scatter from event to
         event.
     observe : str or list of str, optional
-        The samples to fit: friction, shear_stress, shear_force or torque, slip, slip_rate; by default shear if the record has it,
-        or else all of them. Or the features to fit: peak, rest, drop (peak minus rest), recurrence, duration, event_slip,
-        peak_rate; by default all that the record has except the drop.
+        The samples to fit: friction, shear_stress, shear_force or torque, slip, slip_rate, and what is measured at the drive of a
+        string: surface_torque, drive_rate; by default shear if the record has it, or else all of them. Or the features to fit:
+        peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all that the record has except
+        the drop.
     start : {"steady", "record", "problem"}, optional
         How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
         load of the first samples (default for others), or as the problem says.
-    sensor : {"contact", "spring"}
-        Where shear is measured: at the contact, or by a load cell behind the spring of a block. The two differ by the inertia of
-        the block.
+    sensor : {"contact", "spring", "drive"}
+        Where shear is measured: at the contact, by a load cell behind the spring of a block, or at the driver, as a torque at the
+        top drive of a drill string is. They differ by the inertia of the block, or by the waves in the body.
     normal : {"problem", "record"}
         Where the normal load of the runs comes from. "record" follows the record's normal stress (slab) or force (block) in time,
         by the fewest straight lines that fit it within its noise; the default is that of the problem, constant or not.

@@ -7,6 +7,7 @@ array, and the range of every number that the engine uses as an index or as a co
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -96,6 +97,8 @@ def check_place(about: Mapping[str, Any], path: Path) -> dict[str, Any]:
         "last_xi": number(about, "last_xi", path),
         "event_rate": number(about, "event_rate", path),
         "energies": whole_number(about, "energies", path, highest=1),
+        "displaced": number(about, "displaced", path, -sys.float_info.max) if "displaced" in about else 0.0,  # older files: unknown
+        "displaced_at": number(about, "displaced_at", path) if "displaced_at" in about else 0.0,
     }
 
 

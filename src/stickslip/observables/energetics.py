@@ -63,13 +63,13 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
 
     events = SlipEvents.of(history, threshold)
     begin, end = events.begin, events.end
-    columns = {
+    columns: dict[str, Floats] = {
         "start": history.seconds(*history.placed(begin)),
         "slip": history.slipped_within(begin, end),
         **_energies(history, begin, end),
     }
     pulses = Pulses.of(history, events)
-    columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
+    columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece)).astype(float)
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     before, smallest = extreme_tractions(history, events, pulses)
     columns["dynamic_drop"] = direction(columns["slip"]) * (before - smallest) + 0.0  # no -0.0

@@ -69,13 +69,28 @@ class Predictability(NamesAttributes):
         return math.log(self.largest) / reached if reached > 0.0 else math.inf
 
     @property
+    def short(self) -> str:
+        """How long single events are predictable, in a few words."""
+        if math.isinf(self.horizon):
+            return "throughout"
+        return f"up to {f'{self.horizon / YEAR:.6g} years' if self.horizon > 0.5 * YEAR else f'{self.horizon:.6g} s'}"
+
+    @property
     def text(self) -> str:
         """The result as one line of text."""
         grown = f"echoes multiply an error of the load by up to {self.largest:.3g}"
         if math.isinf(self.horizon):
             return f"{grown}; single events are predictable throughout"
-        when = f"{self.horizon / YEAR:.6g} years" if self.horizon > 0.5 * YEAR else f"{self.horizon:.6g} s"
-        return f"{grown}; predictable up to {when}, beyond it only statistics are"
+        return f"{grown}; predictable {self.short}, beyond it only statistics are"
+
+
+def in_short(proven: str, trapped: str, predictable: str) -> str:
+    """Return what is proven of a run, trapped in its waves and predictable, each in a few words, as one line.
+
+    Each is a few words; an empty one is left out. `trapped` may be a longer note, of which the first part is taken.
+    """
+    parts = {"proven": proven, "trapped energy": trapped.partition(" in waves")[0], "predictability": predictable}
+    return "; ".join(f"{what}: {words}" for what, words in parts.items() if words)
 
 
 class PredictedRun(Protocol):

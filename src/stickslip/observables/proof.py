@@ -85,6 +85,12 @@ class Proof:
     __repr__ = brief_repr
 
     @property
+    def short(self) -> str:
+        """The bound in a few words."""
+        but = f", but for {100.0 * self.unproven_share:.2g} % of the sliding time" if self.unproven else ""
+        return f"to {self.relative:.1g} of the normal {KINDS[self.unit].loads} at every moment{but}"
+
+    @property
     def text(self) -> str:
         """One line on the bound."""
         share = f"{self.relative:.1g} of the normal {KINDS[self.unit].loads}"

@@ -16,7 +16,7 @@ from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.event_stream import EventStream, Look
-from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
+from stickslip.observables.predictability import attributes_of, in_short, is_followed, predictability_of_events
 from stickslip.observables.proof import Proven, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
@@ -24,6 +24,7 @@ from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import run_to_end
+from stickslip.trajectory.reach import Reach, reach_of
 from stickslip.trajectory.status import ENOUGH_EVENTS, UNDER_WAY, Status
 from stickslip.trajectory.tables import creep_note
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.scenarios.scenario import Scenario
+    from stickslip.solution.solution import Solution
 
 CAPACITY = 16_384
 """Initial room of a catalogue in pieces of history, about 7 MB; it grows only if the pieces to keep fill half of it."""
@@ -180,6 +182,8 @@ class Catalogue:
     reached: float
     """Time at the end of the run, s."""
     notes: Mapping[str, str]
+    reach: Reach
+    """How far the contact has gone."""
 
     @property
     def files(self) -> list[Path]:
@@ -194,11 +198,14 @@ class Catalogue:
         return table
 
 
-def follow(run: ExactRun, rows: Rows | RowsInMemory) -> Catalogue:
-    """Run to the end and write the table in its final format. Raises InputError if the run ends where it starts."""
+def follow(run: ExactRun, rows: Rows | RowsInMemory, reach: Reach | None = None) -> Catalogue:
+    """Run to the end and write the table in its final format; `reach` is how far the contact has gone in earlier runs.
+
+    Raises InputError if the run ends where it starts.
+    """
     run.keeps_events_only = True
     run.reserve(CAPACITY)
-    return run_to_end(run, EventRows(run, rows))
+    return run_to_end(run, EventRows(run, rows, reach=reach))
 
 
 @dataclass(frozen=True)
@@ -221,6 +228,8 @@ class EventRows:
     rows: Rows | RowsInMemory
     so_far: OutputSoFar | None = None
     residual: float | None = None
+    reach: Reach | None = None
+    """How far the contact had gone in the history that was discarded."""
     who = "catalogue"
     wants_events = True
 
@@ -239,6 +248,7 @@ class EventRows:
         run = self.run
         if self.residual is None:
             self.residual = _residual(run)
+        self.reach = reach_of(run.history()).beyond(self.reach)
         if run.forget_reported() > 0:
             self._remember()
         return run.length < len(run.store.pieces) // 2 or run.grow()
@@ -248,7 +258,9 @@ class EventRows:
         if isinstance(self.rows, RowsInMemory) or self.so_far is None:
             return
         self.rows.sync()
-        save_checkpoint(self.run.solution(code), checkpoint_of(self.rows), self._about(self.so_far, self.rows))
+        solution = self.run.solution(code)
+        about = self._about(self.so_far, self.rows) | {"reach": self._reach_note(solution)}
+        save_checkpoint(solution, checkpoint_of(self.rows), about)
 
     def finish(self, code: int) -> Catalogue:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
@@ -260,21 +272,29 @@ class EventRows:
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
         residual = max(float(run.state.largest_residual), self.residual or 0.0, _residual(run))
         share = float(run.state.slid_unproven / run.state.slid) if run.count.unproven else 0.0
-        proof = Proven(residual, 0, 0, int(run.count.unproven), share, float(run.state.missed)).proof(run.problem).text
-        self.rows.publish(origin(solution) | {"proven": proof} | attributes_of(prediction), run.problem.load_unit)
+        proof = Proven(residual, 0, 0, int(run.count.unproven), share, float(run.state.missed)).proof(run.problem)
+        about = {"proven": proof.text, "reach": self._reach_note(solution)} | attributes_of(prediction)
+        self.rows.publish(origin(solution) | about, run.problem.load_unit)
         self.save(code)
         self.rows.tidy()
+        trapped = trapped_note(solution.history)
         notes = {
+            "short": in_short(proof.short, trapped, prediction.short if prediction else ""),
             "predictability": prediction.text if prediction else "",
-            "trapped": trapped_note(solution.history),
+            "trapped": trapped,
             "creep": creep_note(solution.history),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,
-            "proven": proof,
+            "proven": proof.text,
         }
-        return Catalogue(
-            self.rows, stream.reported, solution.status, solution.duration, {name: note for name, note in notes.items() if note}
-        )
+        said = {name: note for name, note in notes.items() if note}
+        return Catalogue(self.rows, stream.reported, solution.status, solution.duration, said, self._reach(solution))
+
+    def _reach(self, solution: Solution) -> Reach:
+        return solution.reach.beyond(self.reach)
+
+    def _reach_note(self, solution: Solution) -> str:
+        return self._reach(solution).text(solution.problem)
 
     def _remember(self) -> None:
         if self.run.before_end is None:
@@ -294,6 +314,8 @@ class EventRows:
             "event_rate": stream.threshold,
             "energies": int(stream.energies),
             "forgotten": self.run.forgotten,
+            "displaced": 0.0 if self.reach is None else self.reach.largest,
+            "displaced_at": 0.0 if self.reach is None else self.reach.time,
         }
 
 

@@ -23,6 +23,7 @@ from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
+from stickslip.trajectory.reach import Reach
 from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
@@ -149,7 +150,7 @@ class PausedCatalogue:
         run.stream = EventStream(about["event_rate"], about["first"], start, about["told"], bool(about["energies"]))
         with alone_with(rows):
             rows.take_up(about["told"], about["bytes"], about["digest"])
-            return follow(run, rows)
+            return follow(run, rows, Reach(0.0, about["displaced"], about["displaced_at"]))
 
 
 def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:

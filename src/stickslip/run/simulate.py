@@ -13,13 +13,14 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SelectionRule
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
 from stickslip.run.planar_run import PlanarProgress, simulate_planar
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.source import read_source
+from stickslip.scenarios.source import read_source, under_rule
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
 
@@ -45,6 +46,7 @@ def simulate(
     creep_rtol: float | None = None,
     shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
+    selection: str | SelectionRule | None = None,
     progress: Progress | bool | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
@@ -63,6 +65,7 @@ def simulate(
     creep_rtol: float | None = None,
     shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
+    selection: str | SelectionRule | None = None,
     progress: Any = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
@@ -92,6 +95,9 @@ def simulate(
         default (see Notes).
     max_events : int, optional
         Number of slip events after which the run stops.
+    selection : str or callable, optional
+        The selection rule, which decides where the contact equation has several solutions: "perfect-delay", "maxwell", "minimal",
+        "maximal", or one of your own (see `stickslip.selection`). By default that of the problem.
     progress : bool or callable, optional
         True shows the progress in one line, on a terminal or in a notebook. A function is called with a
         `stickslip.run.progress.Report` while the run continues.
@@ -161,7 +167,8 @@ def simulate(
             "title": title or None,
         }
         solver = next(one for one in SOLVERS if one.solves(problem))
-        solver.check("simulate", given)
+        solver.check("simulate", given | {"selection": selection})
+        problem = problem if selection is None else under_rule(problem, selection)
         file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
         others = {"progress": report, "checkpoint": file, "checkpoint_every": checkpoint_every}
         solution: Solution | PlanarSolution = solver.run(problem, options_of(problem, **given, **others))
@@ -187,7 +194,7 @@ class SolverKind:
     run: Callable[[Any, RunOptions], Any]
     """Run it from t = 0 with options that are not yet checked."""
     takes: frozenset[str]
-    """Names of fields of `RunOptions`."""
+    """Names of fields of `RunOptions`, and "selection", which replaces the problem's."""
     refusal: str
     """The message for any other option; braces stand for its name."""
 
@@ -208,7 +215,7 @@ PLANAR = SolverKind(
 EXACT = SolverKind(
     lambda _: True,
     simulate_exactly,
-    ALL_TAKE | {"rtol", "creep_rtol", "shortest_event", "max_events", "max_pieces", "title", "description"},
+    ALL_TAKE | {"rtol", "creep_rtol", "shortest_event", "max_events", "max_pieces", "selection", "title", "description"},
     "{} is for a PlanarSlab: a slab in 1D is known at all times",
 )
 SOLVERS = (PLANAR, EXACT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import DURATION
+from stickslip.problem.selection_rule import SelectionRule
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -40,6 +42,13 @@ def read_source(who: str, source: Problem | Scenario | str | Path, *, contact: b
     if not isinstance(found, Scenario):
         check_problem(who, found, "a Problem, a scenario, or the name of one")
     return found if contact else all_slips_alike(who, found)
+
+
+def under_rule(source: Problem | Scenario, rule: str | SelectionRule) -> Problem | Scenario:
+    """Return a problem, or a scenario, under another selection rule. Raises InputError for an unknown rule."""
+    problem: Problem = source if isinstance(source, Problem) else source.problem
+    changed = replace(problem, selection=rule)
+    return changed if isinstance(source, Problem) else replace(source, problem=changed)
 
 
 def read_duration_and_problem(

@@ -130,7 +130,8 @@ class PlanarSolution(NamesAttributes):
         lines = [
             f"{share:.0%} of the contact slips, from {brief(first, 's')} on; the largest slip is"
             f" {brief(np.ptp(self.slip, 0).max(), 'm')}, the largest slip rate {brief(np.abs(self.slip_rate).max(), 'm/s')}.",
-            f"The middle sees {middle} pulse{'' if middle == 1 else 's'}, other nodes up to {counts.max()}.",
+            f"The middle has slipped {brief(self.middle(self.slip[-1] - self.slip[0]), 'm')} at the end, in {middle}"
+            f" pulse{'' if middle == 1 else 's'}; other nodes see up to {counts.max()}.",
             "All nodes rest at the end." if not self.slip_rate[-1].any() else "Some nodes still slip at the end.",
         ]
         lines += [self._energy_sentence] if self._energy_sentence else []

@@ -21,6 +21,7 @@ from stickslip.scenarios.scenario import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.history import History
+from stickslip.trajectory.reach import Reach, reach_of
 from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import Checkpoint, Status
 from stickslip.trajectory.tables import creep_note, creep_table
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from stickslip.foundation.place import Place
+    from stickslip.observables.predictability import Predictability
     from stickslip.observables.rule_influence import RuleInfluence
 
 
@@ -221,10 +223,14 @@ class Solution(Exports):
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
-        most = events[["slip", "peak_rate"]].max() if events.empty else events.loc[events.slip.abs().idxmax()]
         slip, rate = (problem.unit_of(name) for name in ("slip", "slip_rate"))
-        largest = f", largest slip {brief(most.slip, slip)}, peak rate {most.peak_rate:.6g} {rate}" if len(events) else ""
+        largest = ""
+        if len(events):
+            slips = events.slip.to_numpy(float)
+            most = float(slips[np.abs(slips).argmax()])
+            largest = f", largest slip {brief(most, slip)}, peak rate {events.peak_rate.max():.6g} {rate}"
         return [
+            ("slip", self.reach_note),
             ("body", repr(problem.body)),
             ("friction", problem.law_text),
             ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
@@ -242,6 +248,16 @@ class Solution(Exports):
         ]
 
     @cached_property
+    def reach(self) -> Reach:
+        """How far the contact has gone: its displacement at the end (m, or rad), and the largest one with its time (s)."""
+        return reach_of(self.history)
+
+    @property
+    def reach_note(self) -> str:
+        """One line on the slip at the end and the largest displacement."""
+        return self.reach.text(self.problem)
+
+    @cached_property
     def trapped_note(self) -> str:
         """One line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
         from stickslip.observables.energy.balance import trapped_note
@@ -254,14 +270,25 @@ class Solution(Exports):
         return proof_of_run(self.history)
 
     @cached_property
+    def _prediction(self) -> Predictability | None:
+        from stickslip.observables.predictability import is_followed, predictability
+
+        return predictability(self) if is_followed(self.problem) else None
+
+    @property
     def horizon_note(self) -> str:
         """One line on how long single events are predictable.
 
         It is empty if the growth of an error is not known for the problem (see `predictability`).
         """
-        from stickslip.observables.predictability import is_followed, predictability
+        return self._prediction.text if self._prediction else ""
 
-        return predictability(self).text if is_followed(self.problem) else ""
+    @property
+    def short_note(self) -> str:
+        """What is proven, what energy is trapped in waves, and how long events are predictable, in one short line."""
+        from stickslip.observables.predictability import in_short
+
+        return in_short(self.proven.short, self.trapped_note, self._prediction.short if self._prediction else "")
 
     @cached_property
     def rule_influence(self) -> RuleInfluence:

@@ -4,6 +4,6 @@ The results of studies that run a problem draw themselves with `.plot()`. `__ini
 is first used.
 """
 
-import lazy_loader
+from stickslip.foundation.lazy_names import lazy_names
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)

@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
 OBSERVE = (
-    "Which samples or features: friction, shear_stress, shear_force, torque, slip, slip_rate; peak, rest, drop, recurrence, "
-    "duration, event_slip, peak_rate."
+    "Which samples or features: friction, shear_stress, shear_force, torque, slip, slip_rate, surface_torque, drive_rate; peak, "
+    "rest, drop, recurrence, duration, event_slip, peak_rate."
 )
+SENSOR = "Where shear is measured: contact, spring (load cell of a block), or drive (torque of a top drive)."
 START = "How the run begins: steady, record (load of the first samples) or problem."
 PRIOR = 'What you know beforehand: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
 BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
@@ -43,7 +44,7 @@ def infer(
     by_what: Annotated[str, option(BY, "--by")] = "samples",
     observe: Annotated[str | None, option(OBSERVE)] = None,
     start: Annotated[str | None, option(START)] = None,
-    sensor: Annotated[str, typer.Option(help="Where shear is measured: contact, or spring (load cell of a block).")] = "contact",
+    sensor: Annotated[str, typer.Option(help=SENSOR)] = "contact",
     normal: Annotated[
         str, typer.Option(help="Normal load of the runs: problem, or record (its column, as it varies).")
     ] = "problem",
@@ -77,7 +78,8 @@ def infer(
     The data are columns with headings and units: time, friction (or
     "tau (MPa)" with "sigma (MPa)", or shear_force, or torque), slip,
     slip_rate, and load_point (displacement of the machine) or load_rate,
-    which becomes the loading; of a contact that turns in deg and rpm. Two files with clocks of their own are one record if they are
+    which becomes the loading; of a contact that turns in deg and rpm, as in
+    the log of a drill floor: STOR (torque at the drive), RPM, SWOB. Two files with clocks of their own are one record if they are
     given as FIRST+SECOND@SECONDS, where SECONDS says how much later the
     zero of the second clock is. Each trial is a full run with inertia and
     waves, so that machine stiffness, steps of rate, holds and stick-slip

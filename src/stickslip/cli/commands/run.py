@@ -13,6 +13,7 @@ from stickslip.cli.options import (
     SCENARIO,
     Changes,
     Duration,
+    Everything,
     argument,
     complete_rule,
     complete_scenario,
@@ -57,6 +58,7 @@ def run(
     catalogue: Annotated[Path | None, option(CATALOGUE, panel=RESULTS)] = None,
     csv: Annotated[Path | None, option(CSV, "--csv", panel=RESULTS)] = None,
     energy: Annotated[bool, typer.Option("--energy", help=ENERGY, rich_help_panel=RESULTS)] = False,
+    everything: Everything = False,
     pictures: Pictures,
     rtol: Annotated[float | None, option("Override the relative tolerance.", panel=ACCURACY)] = None,
     creep_rtol: Annotated[float | None, option(CREEP_RTOL, panel=ACCURACY)] = None,
@@ -113,13 +115,13 @@ def run(
         _leave(run.status)
     if request.keeps_events_only:
         chosen, found = list_events(request)
-        show_catalogue(chosen, found)
+        show_catalogue(chosen, found, everything=everything)
         if pictures.wanted:
             announce(*pictures.draw_events(found.read(), chosen.title or chosen.name, chosen.problem.load_unit))
         _say_how_to_go_on(found.status, found.files[-1], request.most_pieces)
         _leave(found.status)
     chosen, solution = solve(request)
-    show_solution(chosen, solution)
+    show_solution(chosen, solution, everything=everything)
     announce(request.file, *write_files((csv, solution.to_csv)), *pictures.draw(solution))
     _say_how_to_go_on(solution.status, request.file, len(solution.history))
     _leave(solution.status)

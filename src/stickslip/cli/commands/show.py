@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import RESULTS, complete_quantity, complete_result, option
+from stickslip.cli.options import RESULTS, Everything, complete_quantity, complete_result, option
 from stickslip.cli.output.files import Target, announce, check_targets, drawing
 from stickslip.cli.output.pictures import Pictures
 from stickslip.cli.output.show import console, say
@@ -38,6 +38,7 @@ def show(
     *,
     scenario: Annotated[bool, typer.Option("--scenario", help=SCENARIO_ONLY)] = False,
     quantity: Annotated[str | None, typer.Option("--quantity", "-q", help=QUANTITY, autocompletion=complete_quantity)] = None,
+    everything: Everything = False,
     csv: Annotated[Path | None, option(CSV, "--csv", panel=RESULTS)] = None,
     pictures: Pictures,
 ) -> None:
@@ -66,7 +67,7 @@ def show(
         typer.echo(found.scenario(), nl=False)
         return
     found.check(pictures)
-    found.summarise()
+    found.summarise(everything=everything)
     found.draw(pictures)
     if csv is not None:
         announce(found.to_csv(csv))
@@ -90,8 +91,8 @@ class Stored(ABC):
         """Refuse pictures that these results do not have. Raises InputError."""
 
     @abstractmethod
-    def summarise(self) -> None:
-        """Print the summary on standard output."""
+    def summarise(self, *, everything: bool = False) -> None:
+        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
 
     @abstractmethod
     def to_csv(self, path: Path) -> Path:
@@ -118,11 +119,11 @@ class StoredRun(Stored):
         """Refuse pictures that these results do not have. Raises InputError."""
         pictures.check_problem(self.solution.problem, "show")
 
-    def summarise(self) -> None:
-        """Print the summary on standard output."""
+    def summarise(self, *, everything: bool = False) -> None:
+        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
         from stickslip.cli.output.summary import show_solution
 
-        show_solution(self.solution.scenario(self.path.stem), self.solution)
+        show_solution(self.solution.scenario(self.path.stem), self.solution, everything=everything)
         self.print_origin()
 
     def draw(self, pictures: Pictures) -> None:
@@ -149,8 +150,8 @@ class StoredContact(Stored):
         """Refuse pictures that these results do not have. Raises InputError."""
         pictures.check_contact(str(self.path))
 
-    def summarise(self) -> None:
-        """Print the summary on standard output."""
+    def summarise(self, *, everything: bool = False) -> None:
+        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
         from stickslip.cli.output.contact import announce_run, show_run
 
         announce_run(self.own, streamed=True)
@@ -183,8 +184,8 @@ class StoredEvents(Stored):
         """Refuse pictures that these results do not have. Raises InputError."""
         pictures.check_events(str(self.path))
 
-    def summarise(self) -> None:
-        """Print the summary on standard output."""
+    def summarise(self, *, everything: bool = False) -> None:
+        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
         from stickslip.cli.output.summary import show_events
 
         show_events(self.path.stem, dict(self.table.items()), self.about, self.problem)
@@ -221,8 +222,8 @@ class StoredSweep(Stored):
 
             data(self.dataset, self.quantity)
 
-    def summarise(self) -> None:
-        """Print the summary on standard output."""
+    def summarise(self, *, everything: bool = False) -> None:
+        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
         from stickslip.cli.output.sweep_summary import show_sweep
 
         show_sweep(self.path.stem, self.dataset)

@@ -29,41 +29,52 @@ DIGITS = 8, 5
 """Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
 MANY_EVENTS = 100_000
 """A catalogue with more events than this is not read again for its statistics."""
+NOTES = {"trapped": "trapped energy", "predictability": "predictability", "proven": "proven"}
+"""Notes that one line sums up, as `Catalogue.notes` calls them, in words."""
+REST = " (--all has the rest)"
+"""Says where the rest of these notes is."""
+REACH = "reach"
+"""Attribute of a catalogue with the slip at the end and the largest displacement, in words."""
 LATE = 1e4
 """Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
 
-def show_solution(scenario: Scenario, solution: Solution) -> None:
-    """Print the summary of a run on standard output."""
+def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:
+    """Print the summary of a run on standard output, with `everything` that is known of its proof, waves and predictability."""
     from stickslip.observables.event_table import event_columns
     from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
     from stickslip.trajectory.tables import SHOCK_COLUMNS, shock_columns
 
     screen, history = titled(scenario), solution.history
+    say(screen, solution.reach_note)
     _say_how(screen, scenario, solution.status, solution.duration, (solution.creep_note, solution.lumping_note))
     say(screen, f"selection rule {solution.selection_note}\n")
     _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
     shocks = shock_columns(history)
     _print(screen, "shock", shocks, [_unit(SHOCK_COLUMNS[name], scenario.problem) for name in shocks])
-    notes = (solution.trapped_note, solution.horizon_note, solution.proven.text, solution.rounding_note)
-    for what, note in zip(("trapped energy", "predictability", "proven", "rounding"), notes, strict=True):
-        if note:
-            say(screen, f"{what}: {note}\n")
+    if everything:
+        notes = (solution.trapped_note, solution.horizon_note, solution.proven.text)
+        _say_notes(screen, dict(zip(NOTES, notes, strict=True)))
+    else:
+        say(screen, f"{solution.short_note}{REST}\n")
+    _say_notes(screen, {"rounding": solution.rounding_note})
 
 
-def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
-    """Print on standard output the summary of a run that kept only slip events."""
+def _say_notes(screen: Console, notes: Mapping[str, str]) -> None:
+    """Print a paragraph for each note that is not empty."""
+    say(screen, *(f"{NOTES.get(name, name)}: {note}\n" for name, note in notes.items() if note))
+
+
+def show_catalogue(scenario: Scenario, found: Catalogue, *, everything: bool = False) -> None:
+    """Print on standard output the summary of a run that kept only slip events; `everything` as for a run."""
     screen = titled(scenario)
+    say(screen, found.reach.text(scenario.problem))
     _say_how(screen, scenario, found.status, found.reached, (found.notes.get("creep", ""), found.notes.get("lumping", "")))
     say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}")
-    for name, what in (
-        ("predictability", "predictability"),
-        ("trapped", "trapped energy"),
-        ("proven", "proven"),
-        ("rounding", "rounding"),
-    ):
+    say(screen, *([] if everything else [f"{found.notes['short']}{REST}"]))
+    for name in (*(NOTES if everything else ()), "rounding"):
         if name in found.notes:
-            say(screen, f"{what}: {found.notes[name]}")
+            say(screen, f"{NOTES.get(name, name)}: {found.notes[name]}")
     if found.events > MANY_EVENTS:
         say(screen, "mean recurrence and slip: `stickslip show` on the catalogue works them out")
     elif found.events > 2:
@@ -75,6 +86,8 @@ def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any], p
     """Print on standard output the slip events of a catalogue, after what its attributes say about the run, if there are any."""
     screen = console()
     say(screen, clean(name), style="bold")
+    if about.get(REACH):
+        say(screen, clean(str(about[REACH])))
     if "status" in about:
         say(screen, clean(f"{about['status']}: {about['status_message']}"))
         reached = float(about["duration"])

@@ -176,7 +176,7 @@ class Answer:
 MOST_SAMPLES = 20_000
 """Of more samples than this, means are drawn and compared."""
 DRAWN_AS = dict.fromkeys(SHEAR, "traction") | {"slip": "slip", "slip_rate": "slip_rate"}
-"""Each measured quantity is drawn behind this curve of a motion."""
+"""Each quantity that is measured at the contact is drawn behind this curve of a motion."""
 
 
 @dataclass(frozen=True)
@@ -223,7 +223,8 @@ class Backdrop:
     def _names(self, problem: Problem) -> list[str]:
         """Return the names of the quantities that are drawn, at most one of shear."""
         moves = self.record.slips_in in ("", problem.unit_of("slip"))
-        names = [name for name in self.record.measured if is_of(name, problem) and (moves or name in SHEAR)]
+        here = [name for name in self.record.measured if name in DRAWN_AS]
+        names = [name for name in here if is_of(name, problem) and (moves or name in SHEAR)]
         shear = [name for name in SHEAR if name in names]
         return [name for name in names if name not in shear[1:]]
 

@@ -19,7 +19,7 @@ from stickslip.explorer.page.words import PinnedRun, Tour, Words
 
 TITLES = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",
-    "state": "State of friction",
+    "state": "State of friction", "given": "Loading", "also_given": "Loading",
     "residual": "Measured minus run", "traction": "Traction", "field": "Slab in space and time", "energy": "Energy",
 }  # fmt: skip
 """Titles of the panels before the first answer, and of those whose axes have texts of their own."""
@@ -109,6 +109,8 @@ HEIGHTS = {
     "profile_rate": 240,
     "state": 110,
     "residual": 110,
+    "given": 110,
+    "also_given": 110,
     "profile_slip": 240,
     "slip": 110,
     "rate": 110,
@@ -120,7 +122,10 @@ HEIGHTS = {
     "shape": 240,
 }
 """Heights (px) of the panels, with their headings."""
-ROWS = (("law", "contact", "shape"), (("slip", "rate", "state", "residual", "traction"), ("field", "energy")))
+ROWS = (
+    ("law", "contact", "shape"),
+    (("slip", "rate", "state", "residual", "given", "also_given", "traction"), ("field", "energy")),
+)
 """The rows of panels: names side by side, and within the second row names below each other."""
 OF_ONE_PLACE = PageLayout(TITLES, ROWS, plots, FIELDS, FIRST_WORDS)
 OF_A_FAULT = PageLayout(

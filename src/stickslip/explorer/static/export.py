@@ -23,6 +23,7 @@ from stickslip.explorer.model.tour import TOUR, TourStep
 from stickslip.explorer.page.components import asset, look, player_script, style_sheet
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import plots, view_of
+from stickslip.explorer.page.panels.loading import TEXTS as GIVEN
 from stickslip.explorer.page.panels.motion import FURTHER
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import place_of, view_of_strip
@@ -200,7 +201,8 @@ def index_page() -> str:
     from bokeh.embed import components
 
     stages = Stage(), Stage()
-    shown = {name: plot for name, plot in plots(stages[0]).items() if name not in FURTHER}  # no step has a state or a record
+    never = FURTHER | GIVEN  # no step has a state, a record or a loading history
+    shown = {name: plot for name, plot in plots(stages[0]).items() if name not in never}
     models = shown | {f"strip_{name}": plot for name, plot in strip_plots(stages[1]).items()}
     made, places = components(models, wrap_script=False)
     facts = {"look": look(), "steps": told_steps()}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -20,28 +19,21 @@ from stickslip.figures.runs.curves import (
     marks_in,
     set_time,
 )
+from stickslip.figures.runs.given import curve_of, varying
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of
-from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import for_readers, readable_unit
 from stickslip.foundation.place import Place
-from stickslip.loading import LoadingHistory
-from stickslip.problem.fields import MAY_VARY
 from stickslip.solution.evaluation import Readings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from stickslip.problem.problem import Problem
 
 WIDTH = 6.4
 """Usual width of the figure, inches."""
 HEIGHTS = {"curves": 1.75, "drive": 1.5, "loading": 1.25, "slip": 2.0}
 """Usual heights (inches) of a panel with a curve, with what a drive measures, with the loading, and with friction against slip."""
-PERIODS = 60.0
-"""A tone with more periods than this is drawn as a band of its amplitude: single periods could not be seen."""
-POINTS = 32
-"""Points in a period of a tone, enough for a smooth line."""
 
 
 @styled
@@ -67,7 +59,7 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
     for last in panels["drive"]:
         draw_curve(last, readings, "surface_torque", span)
         draw_drive_rate(curves[1], readings, span)
-    for field, last in zip(_varying(readings.problem), panels["loading"], strict=True):
+    for field, last in zip(varying(readings.problem), panels["loading"], strict=True):
         _draw_loading(last, readings, field, *span)
     set_time(last, readings, span)
     for panel in panels["slip"]:
@@ -84,7 +76,7 @@ def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[An
 
     They are three curves, what the drive of a string measures, the loading if it varies, and friction against slip.
     """
-    groups = {"curves": 3, "drive": int(bool(readings.at_drive)), "loading": len(_varying(readings.problem))}
+    groups = {"curves": 3, "drive": int(bool(readings.at_drive)), "loading": len(varying(readings.problem))}
     groups |= {"slip": int(not readings.problem.friction.sticks)}
     heights = [HEIGHTS[name] for name, count in groups.items() for _ in range(count)]
     figure = sheet((WIDTH, 0.35 + sum(heights)), **place)
@@ -101,28 +93,17 @@ def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[An
     return figure, found
 
 
-def _varying(problem: Problem) -> dict[str, LoadingHistory]:
-    """Return the fields of a problem that vary in time, by name."""
-    fields = {name: getattr(problem, name) for name in MAY_VARY}
-    return {name: field for name, field in fields.items() if isinstance(field, LoadingHistory)}
-
-
 def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end: float) -> None:
     """Draw the varying field of a name from `start` to `end` (s since the epoch of the readings).
 
     The axis is logarithmic if the field is positive and spans a factor of ten or more, as steps of the pull rate do.
     """
     size = time_unit(end - start)[1]
-    history = _varying(readings.problem)[name]
+    history = varying(readings.problem)[name]
     row, offset = readings.history.epoch
     begun = row * readings.history.round_trip_time + offset
-    tone, swing = history.tone, abs(history.tone.amplitude)
-    turns = (end - start) * tone.frequency / (2.0 * np.pi) if swing > 0.0 else 0.0
-    is_band = turns > PERIODS
-    time, values = _straight(history, start + begun, end + begun, 0.0 if is_band else turns)
-    if not is_band:
-        values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
-    spread, what = swing if is_band else 0.0, name.replace("_", " ")
+    time, values, swing = curve_of(history, start + begun, end + begun)
+    spread, what, is_band = swing, name.replace("_", " "), swing > 0.0
     unit, scale = readable_unit(readings.problem.unit_of(name), np.abs(values) + spread)
     time = (time - begun) / size
     if is_band:
@@ -137,17 +118,3 @@ def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end:
     elif low < 0.0 < high:
         zero_line(panel)
     panel.set_ylabel(f"{what}\n({for_readers(unit)})")
-
-
-def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[Floats, Floats]:
-    """Return times (s since t = 0) and values of the straight segments between two times, with both limits at jumps.
-
-    The points are dense enough to add a tone that makes the given number of `turns` between the two times.
-    """
-    segments = history.segments
-    edges = [start, *(one.start for one in segments[1:] if start < one.start < end), end]
-    first = sum(one.start <= start for one in segments[1:])
-    parts = list(zip(segments[first:], pairwise(edges), strict=False))
-    dense = [np.linspace(low, high, 2 + int(POINTS * turns * (high - low) / (end - start))) for _, (low, high) in parts]
-    values = [one.at(time) for (one, _), time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
-    return np.concatenate(dense), np.concatenate(values)

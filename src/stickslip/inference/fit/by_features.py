@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.inference.fit.memory import ResidualBlock
-from stickslip.inference.fit.model import FAILED, JUMPING, LARGEST, Model, measured
+from stickslip.inference.fit.model import FAILED, JUMPING, LARGEST, Model, breaks_of, is_at_driver, measured
 from stickslip.inference.fit.part import Part
 from stickslip.inference.record.features import FEATURES, LEVELS, Samples, features_in
 from stickslip.inference.record.record import Record
@@ -293,7 +293,8 @@ def features_of_run(run: Solution, part: FeaturePart) -> dict[str, float]:
     names = [shear, *(name for name, of in (("slip", "event_slip"), ("slip_rate", "peak_rate")) if of in part.observed)]
 
     def between(begin: float, end: float, points: int = FINE) -> Samples:
-        breaks = run.breaks[(run.breaks > begin) & (run.breaks < end)]
+        edges = breaks_of(run, is_at_driver(shear, part.sensor))
+        breaks = edges[(edges > begin) & (edges < end)]
         time = np.concatenate([np.linspace(max(begin, 0.0), min(end, run.history.span[1]), points), breaks, breaks])
         left = np.arange(len(time)) >= points + len(breaks)
         values = {}

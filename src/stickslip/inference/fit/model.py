@@ -17,6 +17,7 @@ from stickslip.inference.fit.part import Part, approached, changed, not_begun
 from stickslip.inference.fit.turns import felt, moving
 from stickslip.inference.record.record import SHEAR
 from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
+from stickslip.observables.at_driver import fronts_at_driver
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
@@ -25,7 +26,7 @@ from stickslip.trajectory.history import Side
 
 OF_NO_ZERO = ("slip",)
 """Quantities with an arbitrary zero of the sensor: the mean of their residual is subtracted."""
-JUMPING = (*SHEAR, "slip_rate")
+JUMPING = (*SHEAR, "slip_rate", "drive_rate")
 """Quantities that may jump in a run."""
 SEEN = 0.1
 """Jumps higher than this many standard deviations are spread between samples."""
@@ -124,7 +125,8 @@ class Model:
     def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
         this, least = self.parts[part], SEEN * self.sizes.get(name, 0.0)
         step = self.every * this.record.clock[-1] / max(len(this.record) - 1, 1)
-        found = jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
+        breaks = breaks_of(run, is_at_driver(name, this.sensor))[1:-1]
+        found = jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), breaks, least, step)
         return moving(found, felt(run.problem, this.duration, step), step)
 
     def with_jumps(self, searched: Floats) -> Model:
@@ -341,13 +343,28 @@ class Model:
 
 
 def measured(run: Solution, name: str, sensor: str, time: Floats, side: Side = "right") -> Floats:
-    """Return a quantity in a run at some times (SI), as a sensor at the contact or behind the spring measures it."""
+    """Return a quantity in a run at some times (SI), as a sensor at the contact, behind the spring or at the driver measures it."""
     if name == "slip":
         return run.slip(time) - run.problem.initial_slip
     if name == "slip_rate":
         return run.slip_rate(time, side)
-    force = run.load(time, side) if sensor == "spring" else run.traction(time, side)
+    if name == "drive_rate":
+        return run.drive_rate(time, side)
+    if is_at_driver(name, sensor):
+        force = run.drive_traction(time, side)
+    else:
+        force = run.load(time, side) if sensor == "spring" else run.traction(time, side)
     return force / run.problem.normal_at(time) if name == "friction" else force
+
+
+def is_at_driver(name: str, sensor: str) -> bool:
+    """Return True for a quantity that is measured at the driver, by its name or as the sensor of shear says."""
+    return name in ("surface_torque", "drive_rate") or (sensor == "drive" and name in SHEAR)
+
+
+def breaks_of(run: Solution, at_driver: bool) -> Floats:
+    """Return the times (s) when another piece of a run begins to hold at the contact, or at the driver; the run's ends, too."""
+    return fronts_at_driver(run.history) if at_driver else run.breaks
 
 
 def averaged(rest: Floats, width: int) -> Floats:

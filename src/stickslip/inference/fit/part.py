@@ -31,7 +31,8 @@ class Part:
     """A part of a record with its own run.
 
     `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the fitted quantities.
-    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. `start` says how the
+    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block, "drive" for one at the
+    driver; `is_away` is True if waves are on their way from the contact to where shear is measured. `start` says how the
     run begins: in "steady" sliding, as the "record" does, or as the "problem" says. `pressing` is the normal load since the first
     sample (Pa or N), or None for the problem's own.
     """
@@ -42,6 +43,7 @@ class Part:
     sensor: str = "contact"
     start: str = "problem"
     pressing: PiecewiseLinear | None = None
+    is_away: bool = False
 
     @property
     def duration(self) -> float:

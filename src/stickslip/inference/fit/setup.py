@@ -16,8 +16,9 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
+from stickslip.inference.fit.at_drive import about_drive
 from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
-from stickslip.inference.fit.model import Model
+from stickslip.inference.fit.model import Model, is_at_driver
 from stickslip.inference.fit.part import Part
 from stickslip.inference.record.features import arrests_in
 from stickslip.inference.record.loading import loading_of, normal_of
@@ -27,8 +28,8 @@ from stickslip.problem.problem import Problem
 
 STARTS = ("steady", "record", "problem")
 """How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""
-SENSORS = ("contact", "spring")
-"""Where shear is measured."""
+SENSORS = ("contact", "spring", "drive")
+"""Where shear is measured: at the contact, behind the spring of a block, or at the driver, as the torque of a top drive."""
 MANY_RATES = 40
 """A load point with more rates than this raises a doubt, unless it speeds up and slows down in turn so seldom as a ramp does."""
 MOST_TURNS = 2
@@ -53,7 +54,8 @@ def parts_of(
     if sensor not in SENSORS:
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
-        raise InputError("infer: sensor 'spring' is the load cell behind the spring of a block: a slab has none")
+        noun = problem.body.noun
+        raise InputError(f"infer: sensor 'spring' is the load cell behind the spring of a block, which a {noun} has not: 'drive'?")
     if problem.driver_changes:
         raise InputError("infer: a driver that changes is not fitted: leave driver_reflection out")
     if problem.ground is not None or problem.one_way:
@@ -64,25 +66,35 @@ def parts_of(
     found, notes = [], []
     for given in records:
         record = given.of_motion(problem.unit_of("slip"), type(problem.body).__name__)
+        record = record.driven_as_measured() if "drive_rate" in _split(observe) else record
         loading = loading_of(record)
-        observed = _observed(record, observe, problem)
+        observed = _observed(record, observe, problem, sensor)
+        away = problem.body.has_waves and record.shear is not None and is_at_driver(record.shear, sensor)
         begins = start or ("steady" if problem.friction.states and not problem.friction.sticks else "record")
-        begins = "problem" if start is None and begins == "record" and record.shear is None else begins
+        begins = "problem" if start is None and begins == "record" and (record.shear is None or away) else begins
         if record.clock[-1] <= 0.0:
             raise InputError(f"{record.name}: the record has no duration")
         pressing, told = _pressing(problem, record) if pressed else (None, tuple(_uneven(problem, record)))
-        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins, pressing))
+        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins, pressing, away))
         before = f"{record.name}: " if len(records) > 1 else ""
         said = [*record.notes, *told, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
+        said += about_drive(problem, record, sensor, start)
         if loading is None:
             said.append("the record has no load point: the loading is that of the problem")
         notes += [before + one for one in said]
     return found, list(dict.fromkeys(notes))
 
 
+def _split(observe: Any) -> list[str]:
+    """Return the names of what is to be fitted, as they are given."""
+    return [one.strip() for one in observe.split(",")] if isinstance(observe, str) else list(observe or ())
+
+
 def _pressing(problem: Problem, record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:
     """Return the normal load of a record, and a note. Raises InputError if it is not in the unit of the problem's loads."""
     found, told = normal_of(record)
+    if record.normal_name == "weight_on_bit" and (radius := getattr(problem.body, "bit_radius", None)) is not None:
+        return PiecewiseLinear(found.times, [radius * weight for weight in found.values]), told
     if COLUMNS[record.normal_name].unit != problem.load_unit:
         wanted = f"{problem.body.normal_field} in {problem.load_unit}"
         raise InputError(
@@ -103,6 +115,8 @@ def _uneven(problem: Problem, record: Record) -> Iterator[str]:
 
 def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
     """Yield sentences on a load point that hardly moves like a machine."""
+    if problem.body.has_waves and problem.unit_of("slip") == "rad":  # a drive that gives way swings
+        return
     segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
     ways = np.sign(np.diff(segments))
     ways = ways[ways != 0.0]
@@ -128,11 +142,9 @@ def _check_force(record: Record, name: str, problem: Problem) -> None:
         )
 
 
-def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]:
+def _observed(record: Record, observe: Any, problem: Problem, sensor: str) -> tuple[str, ...]:
     """Return the names of the quantities to fit. Raises InputError."""
-    if isinstance(observe, str):
-        observe = [one.strip() for one in observe.split(",")]
-    names = list(observe) if observe else [record.shear] if record.shear else [one for one in MEASURED if one in record.measured]
+    names = _split(observe) or ([record.shear] if record.shear else [one for one in MEASURED if one in record.measured])
     names = ["shear_stress" if one in ("traction", "tau") else one for one in names]
     for name in names:
         if name not in record.measured:
@@ -150,7 +162,7 @@ def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]
             raise InputError(f"{record.name}: {loads}: {cure}")
         if name in SHEAR and QUANTITIES[name].unit in ("N", TURNS):
             _check_force(record, name, problem)
-    if sum(name in SHEAR for name in names) > 1:
+    if sum(name in SHEAR and not (name == "surface_torque" and sensor != "drive") for name in names) > 1:
         raise InputError(f"infer: observe: {' and '.join(one for one in names if one in SHEAR)} are one measurement: choose one")
     return tuple(names)
 
@@ -213,6 +225,9 @@ def at_rests(part: Part) -> list[Part]:
     record, name = part.record, part.record.shear
     if name is None:
         raise InputError(f"{record.name}: parts='rests' needs shear, whose drops are the slip events")
+    if part.is_away:
+        why = "begins each run with the load at the contact, which a sensor at the drive does not measure"
+        raise InputError(f"{record.name}: parts='rests' {why}: fit the samples, or by='features'")
     arrests = arrests_in(record.measured[name])
     if not len(arrests):
         raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")

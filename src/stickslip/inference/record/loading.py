@@ -27,6 +27,8 @@ BLOCKS = 16
 WALK = 1.7
 """If the noise of means grows by more than this factor as their width doubles, twice in turn or at the widest, it is motion. The
 noise of a random walk grows by sqrt(2)."""
+SWINGS, FEWER = 20, 1.5
+"""A rate with more than SWINGS constant parts, and FEWER times as many as straight ones, is taken as straight lines."""
 MANY_GAPS = 0.05
 """If more than this share of the samples have gaps, that is how the record was sampled, and no gap is reported."""
 GAP = 20.0
@@ -44,7 +46,8 @@ def loading_of(record: Record) -> Loading | None:
     """Return the pull rate in a record as a loading history; None if the record has no load point.
 
     A displacement becomes as few straight lines between knots as leave only noise; lines bridge gaps, and a jump is a short line.
-    A rate becomes steps in the same way. Raises InputError if there are too few numbers.
+    A rate becomes steps in the same way, or straight lines if it swings, as that of a drive does that gives way. Raises InputError
+    if there are too few numbers.
     """
     is_rate = record.load_point is None
     given = record.load_rate if is_rate else record.load_point
@@ -61,6 +64,9 @@ def loading_of(record: Record) -> Loading | None:
     allowed = _allowed(time, values, max(noise_of(values), floor), floor)
     noise = float(allowed[0]) / SURE
     cuts, coarser = straight_parts(time, values, allowed, 0 if is_rate else 1)
+    if is_rate and len(cuts) > SWINGS and (swinging := _swinging(time, values, allowed, len(cuts) - 1)) is not None:
+        told, *others = _notes(record, time, np.array(swinging.values), 1.0, noise)
+        return Loading(swinging, (told.replace("parts of constant rate", "straight parts"), *others))
     if is_rate:
         middle = 0.5 * (time[np.array(cuts[1:-1], int) - 1] + time[cuts[1:-1]]) if len(cuts) > 2 else np.zeros(0)
         starts = np.append(0.0, middle)
@@ -70,6 +76,15 @@ def loading_of(record: Record) -> Loading | None:
         rates, starts = np.diff(heights) / np.diff(at), np.append(0.0, at[1:-1])
         rates[np.abs(np.diff(heights)) < coarser * noise] = 0.0  # at rest, as far as can be told
     return Loading(_steps(starts, rates), _notes(record, time, rates, coarser, noise))
+
+
+def _swinging(time: Floats, values: Floats, allowed: Floats, steps: int) -> PiecewiseLinear | None:
+    """Return a rate (m/s) as straight lines between knots; None if `steps` of constant rate are hardly more than these lines."""
+    cuts, coarser = straight_parts(time, values, allowed)
+    if coarser > 1.0 or FEWER * (len(cuts) - 1) > steps:
+        return None
+    at, heights = _joined(time, values, _knots(time, values, cuts, float(allowed[0]) / SURE))
+    return PiecewiseLinear(at.tolist(), heights.tolist())
 
 
 def normal_of(record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:

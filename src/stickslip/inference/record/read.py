@@ -14,18 +14,18 @@ from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import TURNED, find, missing, quoted
+from stickslip.foundation.headings import DRILL_FLOOR, TURNED, find, missing, names_of, quoted
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
 from stickslip.inference.record.doubts import checked
-from stickslip.inference.record.record import LOADING, MEASURED, Record
+from stickslip.inference.record.record import LOADING, MEASURED, SHEAR, Record
 from stickslip.scenarios.entries import typed_number
 
 LARGEST_FILE = 500_000_000
 """Largest file to read (bytes)."""
 MOST_SAMPLES = 5_000_000
 """Largest number of samples of a record."""
-NORMAL = ("normal_stress", "normal_force", "normal_torque")
+NORMAL = ("normal_stress", "normal_force", "normal_torque", "weight_on_bit")
 """Columns of the normal load: they make friction of shear, and may say how the contact is pressed."""
 BY_ANGLE = {TURNED[name]: name for name in ("slip", "slip_rate", *LOADING)}
 """Columns of angles and their rates, with what they are of a contact that turns."""
@@ -130,12 +130,16 @@ def _listed(headings: tuple[str, ...]) -> str:
 def _passed_over(read: _Columns) -> Iterator[str]:
     """Yield sentences on unused columns: headings that were not understood, and measured quantities other than shear."""
     columns = read.columns
-    if read.passed:
+    known = {heading: DRILL_FLOOR[name] for heading in read.passed if (name := names_of([heading])[0]) in DRILL_FLOOR}
+    strange = tuple(heading for heading in read.passed if heading not in known)
+    if known:
+        yield f"columns that no fit needs: {', '.join(f'{quoted(heading)} ({what})' for heading, what in known.items())}"
+    if strange:
         cure = "the displacement of the machine is called load_point, and its rate load_rate"
         cure = "" if set(LOADING) & set(columns) else f"; {cure}"
-        yield f"columns that were not understood: {_listed(read.passed)}{cure}"
+        yield f"columns that were not understood: {_listed(strange)}{cure}"
     shear, *others = [name for name in MEASURED if name in columns] or [""]
-    others = [name for name in others if name in ("slip", "slip_rate") and shear not in ("slip", "slip_rate")]
+    others = [name for name in others if name not in SHEAR[:4] and shear in SHEAR]
     if others:
         yield f"{shear} is what is fitted, unless observe names {' or '.join(others)}, which the record has too"
 
@@ -195,9 +199,11 @@ def _motion_in(found: dict[str, Floats], notes: list[str], place: str) -> str:
     elif turned and lengths and not set(LOADING) & set(found):
         notes.append(f"{turned} is passed over: a column radius (mm), the mean radius of the contact, makes it the load point")
     angles = [name for name in BY_ANGLE if name in found and not (lengths and name in ("rotation", "rotation_rate"))]
+    angles += [name for name in ("drive_rate",) if name in found]
     if lengths and angles:
-        raise InputError(f"{place}: {lengths[0]} is a length, and {BY_ANGLE[angles[0]]} an angle: a contact slides, or it turns")
-    found |= {BY_ANGLE[name]: found[name] for name in angles}
+        other = BY_ANGLE.get(angles[0], angles[0])
+        raise InputError(f"{place}: {lengths[0]} is a length, and {other} an angle: a contact slides, or it turns")
+    found |= {BY_ANGLE.get(name, name): found[name] for name in angles}
     return "rad" if angles else "m" if lengths else ""
 
 

@@ -16,11 +16,11 @@ from stickslip.foundation.show import brief
 from stickslip.inference.record.features import FEATURES, LEVELS
 from stickslip.problem.problem import Problem
 
-SHEAR = ("friction", "shear_stress", "shear_force", "torque")
-"""Possible measures of the resistance; the first of them that a record has is fitted."""
-SHEAR_IN = {QUANTITIES[name].unit: name for name in SHEAR[1:]}
+SHEAR = ("friction", "shear_stress", "shear_force", "torque", "surface_torque")
+"""Possible measures of the resistance; the first of them that a record has is fitted. The last is the torque at the drive."""
+SHEAR_IN = {QUANTITIES[name].unit: name for name in SHEAR[1:4]}
 """The measure of resistance in each unit of loads."""
-MEASURED = (*SHEAR, "slip", "slip_rate")
+MEASURED = (*SHEAR, "slip", "slip_rate", "drive_rate")
 """All quantities that can be fitted."""
 LOADING = ("load_point", "load_rate")
 OF_EVENTS = (*(f"{name}_{level}" for name in SHEAR for level in LEVELS), *FEATURES)
@@ -39,11 +39,12 @@ class Record(CheckedArguments):
     """A laboratory record in SI, at ascending times (s). Make one with `Record.read`.
 
     `measured` holds friction (1), shear_stress (Pa), shear_force (N), torque (N m), slip (m) and slip_rate (m/s), NaN where nothing
-    was measured, and `deviations` the standard deviations given for them. `load_point` (m) and `load_rate` (m/s) are displacement
-    and rate of the load point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of
+    was measured, of a string also surface_torque (N m) and drive_rate (rad/s), which are measured at its drive, and `deviations`
+    the standard deviations given for them. `load_point` (m) and `load_rate` (m/s) are displacement and rate of the load point, or
+    None. `notes` say what was done with the record, one sentence each. `relative` is the noise of
     each sample relative to the usual noise if some samples are means over more samples than others, or None. `normal` is the normal
-    stress (Pa), force (N) or torque (N m) by which shear was divided, as `normal_name` says, or None. `slips_in` is "rad" if
-    motions are angles, with rad for m above, "m" if they are lengths, and "" if there are none.
+    stress (Pa), force (N) or torque (N m) by which shear was divided, or the weight on the bit (N), as `normal_name` says, or
+    None. `slips_in` is "rad" if motions are angles, with rad for m above, "m" if they are lengths, and "" if there are none.
     """
 
     time: Floats
@@ -75,7 +76,8 @@ class Record(CheckedArguments):
         source : str, Path, DataFrame, mapping or Record
             A text file, or columns of numbers by their headings: `time` with any of `friction`, `shear_stress`, `shear_force`,
             `torque`, `slip` and `slip_rate`, and with `load_point` (displacement) or `load_rate` of the machine. Shear stress with
-            `normal_stress`, shear force with `normal_force`, and torque with `normal_torque` give friction; `rotation_rate` (rpm)
+            `normal_stress`, shear force with `normal_force`, and torque with `normal_torque` give friction; `surface_torque`
+            (STOR) is the torque at a drive, `weight_on_bit` (SWOB) presses a bit; `rotation_rate` (rpm)
             with `radius` gives the load rate. Without a radius the machine turns the contact itself, and slip may be in deg or rad
             and its rate in rpm: such a record is of a body that turns. Headings may carry units, as in "tau (MPa)".
             "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
@@ -134,12 +136,20 @@ class Record(CheckedArguments):
         """
         if self.slips_in in ("", unit):
             return self
-        slips = [name for name in ("slip", "slip_rate") if name in self.measured]
+        slips = [name for name in ("slip", "slip_rate", "drive_rate") if name in self.measured]
         if self.slips_in == "rad" and not slips:
             note = "the rotation is passed over: a column radius (mm), the mean radius of the contact, makes it the load point"
             return replace(self, load_point=None, load_rate=None, notes=(*self.notes, note), slips_in="")
         what = " and ".join(slips or [name for name in LOADING if getattr(self, name) is not None])
         raise InputError(f"{self.name}: {what} in {self.slips_in}, where slip of a contact of {body} is in {unit}")
+
+    def driven_as_measured(self) -> Record:
+        """Return the record with the rate of its drive as something measured, and not as what moves the driver in a run."""
+        if "drive_rate" in self.measured or self.load_rate is None or self.slips_in != "rad":
+            return self
+        note = "the rate of the drive is what is measured there: the drive is asked for what the problem says"
+        measured = self.measured | {"drive_rate": self.load_rate}
+        return replace(self, measured=measured, load_rate=None, notes=(*self.notes, note))
 
     @property
     def clock(self) -> Floats:

@@ -41,7 +41,7 @@ class Models {
   }
 }
 
-const TIME_PLOTS = ["slip", "rate", "state", "residual", "traction"], NEAR_PLOTS = ["field", "energy"];
+const TIME_PLOTS = ["slip", "rate", "state", "residual", "given", "also_given", "traction"], NEAR_PLOTS = ["field", "energy"];
 const COLUMNS_DRAWN = 11, ROWS_DRAWN = 20;
 
 /** Time t on the axis of the panels of slab and energy, which show one event of a long run; and back. */

@@ -6,7 +6,7 @@ from typing import Any
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.page.panels import contact, energy, fault, field, law, motion, shape
+from stickslip.explorer.page.panels import contact, energy, fault, field, law, loading, motion, shape
 from stickslip.explorer.page.panels.law import place, unit_along
 from stickslip.explorer.page.panels.motion import COLUMNS, CURVE_OF, DRAWN, columns_of
 from stickslip.explorer.page.panels.units import share_axis, units_of
@@ -54,7 +54,7 @@ def _widen(view: View, axis: str, values: object) -> None:
 
 __all__ = ["plots", "view_of"]
 
-PANELS = (law, contact, motion, field, energy, shape)
+PANELS = (law, contact, motion, loading, field, energy, shape)
 
 
 def view_of(answer: Answer | FaultAnswer, kept: Any = None) -> View:
@@ -72,4 +72,5 @@ def view_of(answer: Answer | FaultAnswer, kept: Any = None) -> View:
 def plots(stage: Stage) -> dict[str, Any]:
     """Return all plots by name, without data."""
     found = {"law": law.plot(stage), "contact": contact.plot(stage)} | motion.plots(stage) | motion.further_plots(stage)
+    found |= loading.plots(stage)
     return found | {"field": field.plot(stage), "energy": energy.plot(stage), "shape": shape.plot(stage)}

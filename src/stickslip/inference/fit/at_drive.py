@@ -1,0 +1,41 @@
+"""Say what a record of a drill floor means: where its torque is measured, what its speed moves, and what weight is on the bit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from stickslip.foundation.names import TURNS
+from stickslip.foundation.show import brief
+from stickslip.inference.record.record import Record
+from stickslip.problem.problem import Problem
+
+OTHER = 0.2
+"""A weight on the bit is told if it differs from that of the problem by more than this share (1)."""
+
+
+def about_drive(problem: Problem, record: Record, sensor: str, start: str | None) -> Iterator[str]:
+    """Yield sentences on what a record says of the drive of a body with waves that turns."""
+    body = problem.body
+    if problem.load_unit != TURNS or not body.has_waves:
+        return
+    if record.shear == "surface_torque" or (sensor == "drive" and record.shear is not None):
+        yield "the torque is that at the drive, which waves from the bit reach later"
+        if start is None:
+            yield "the run begins as the problem says, because a torque at the drive is not the load at the bit"
+    elif record.shear == "torque":
+        yield "the torque is taken as that at the bit: sensor='drive' takes it as that at the drive, as a heading STOR does"
+    if record.load_rate is not None and not body.is_driven_rigidly:
+        yield (
+            "the speed of the drive is taken as what it is asked for: observe='surface_torque,drive_rate' takes it as measured, "
+            "and driver_impedance='rigid' as the motion of the drive"
+        )
+    elif record.load_rate is not None and len(np.unique(record.load_rate)) > 1:
+        yield "the speed of the drive is taken as its motion: the error with which it was measured is not in the intervals"
+    weight = getattr(body, "weight_on_bit", None)
+    if record.normal_name == "weight_on_bit" and weight is not None and record.normal is not None:
+        usual = float(np.nanmedian(record.normal))
+        if abs(usual - weight) > OTHER * weight:
+            both = f"{brief(usual, 'N', 4)} in the median of the record, and {brief(weight, 'N', 4)} in the problem"
+            yield f"the weight on the bit is {both}"

@@ -1,0 +1,263 @@
+"""What people of the trades type in place of our names is answered with those: one table of words, wherever a name stands."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import pytest
+
+import stickslip as ss
+from stickslip.cli.app import COMMANDS
+from stickslip.cli.main import main
+from stickslip.foundation.errors import MOST_NAMED, InputError, nearest
+from stickslip.foundation.synonyms import last, plain, rows
+from stickslip.scenarios import library
+from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
+from stickslip.scenarios.scenario import read_scenario
+from stickslip.scenarios.templates import template
+
+scenario = cache(ss.load_scenario)
+
+
+@cache
+def run() -> Any:
+    return ss.simulate("fig6-slab")
+
+
+NUMBERS = [
+    ("rate-and-state-block", "Dc", "distance"),
+    ("rate-and-state-block", "d_c", "distance"),
+    ("rate-and-state-block", "friction.L", "friction.distance"),
+    ("rate-and-state-block", "k", "stiffness"),
+    ("rate-and-state-block", "K", "stiffness"),
+    ("rate-and-state-block", "body.spring_constant", "body.stiffness"),
+    ("rate-and-state-block", "mu0", "reference"),
+    ("rate-and-state-block", "f_0", "reference"),
+    ("rate-and-state-block", "sigma_n", "normal_force"),
+    ("rate-and-state-block", "V", "pull_rate"),
+    ("rate-and-state-block", "v_pl", "pull_rate"),
+    ("rate-and-state-block", "plate velocity", "pull_rate"),
+    ("rate-and-state-block", "theta", "state"),
+    ("rate-and-state-block", "eta", "damping"),
+    ("rate-and-state-block", "tmax", "duration"),
+    ("fig6-slab", "mu0", "static"),
+    ("fig6-slab", "mu_s", "static"),
+    ("fig6-slab", "μ_d", "dynamic"),
+    ("fig6-slab", "mu", "static' or 'dynamic"),
+    ("fig6-slab", "σn", "normal_stress"),
+    ("fig6-slab", "Sigma-N", "normal_stress"),
+    ("fig6-slab", "rho", "density"),
+    ("fig6-slab", "vs30", "wave_speed"),
+    ("fig6-slab", "h", "thickness"),
+    ("fig6-slab", "velocity", "pull_rate"),
+    ("fig6-slab", "rule", "selection"),
+    ("fig6-slab", "t_end", "duration"),
+    ("fig6-slab", "tol", "rtol"),
+    ("drill-string", "wob", "weight_on_bit"),
+    ("drill-string", "rpm", "pull_rate"),
+    ("drill-string", "body.od", "body.outer_diameter"),
+    ("drill-string", "G", "shear_modulus"),
+    ("drill-string", "L", "length"),
+    ("drill-string", "J", "inertia' or 'polar_moment"),
+    ("sliding-block-shaken", "ky", "static"),
+    ("sliding-block-shaken", "yield", "static"),
+    ("sliding-block-shaken", "displacement", "slip"),
+    ("reversing-axis", "sigma0", "body.stiffness' or 'friction.stiffness"),
+    ("reversing-axis", "feed", "pull_rate"),
+    ("reversing-axis", "kinetic", "dynamic"),
+]
+
+
+@pytest.mark.parametrize(("name", "typed", "wanted"), NUMBERS)
+def test_a_number_by_the_name_of_a_trade_is_answered_with_ours(name: str, typed: str, wanted: str) -> None:
+    with pytest.raises(InputError, match=re.escape(f"did you mean '{wanted}'?")):
+        find_parameter(scenario(name), typed, "run: --set")
+
+
+def test_a_word_whose_meaning_is_not_here_is_not_taken_for_one_that_is_spelled_alike() -> None:
+    with pytest.raises(InputError, match="it may stand for stiffness or wavenumber, which are not here; allowed: "):
+        find_parameter(scenario("fig6-slab"), "k", "run: --set")
+    with pytest.raises(InputError, match="it may stand for ground_acceleration or amplitude, which are not here; "):
+        find_parameter(scenario("sliding-block-shaken"), "pga", "run: --set")
+    with pytest.raises(InputError) as told:
+        find_parameter(scenario("sliding-block-shaken"), "acceleration", "run: --set")  # spelled like selection
+    assert "did you mean" not in str(told.value)
+
+
+WORDS = [
+    (["plot"], "did you mean 'run' or 'show'?"),
+    (["list"], "did you mean 'new'?"),
+    (["simulate"], "did you mean 'run'?"),
+    (["gui"], "did you mean 'explore'?"),
+    (["calibrate"], "did you mean 'infer'?"),
+    (["scan"], "did you mean 'sweep'?"),
+    (["run.nc"], "did you mean `stickslip show run.nc`?"),
+    (["data.csv"], "did you mean `stickslip fit data.csv` or `stickslip infer SCENARIO data.csv --free NAMES`?"),
+    (["run", "fig6-slab", "--rule", "maxwell"], "did you mean '--selection'?"),
+    (["run", "fig6-slab", "--output", "a.nc"], "did you mean '--out'?"),
+    (["run", "fig6-slab", "--plot", "a.png"], "did you mean '--figure'?"),
+    (["run", "fig6-slab", "--tmax", "3"], "did you mean '--duration'?"),
+    (["run", "fig6-slab", "--tol", "3"], "did you mean '--rtol'?"),
+    (["run", "fig6-slab", "--params", "a=3"], "did you mean '--set'?"),
+    (["run", "fig6-slab", "--max_events", "3"], "did you mean '--events'?"),
+    (["run", "fig6-slab", "--law", "coulomb"], "there is no option --law; it is an option of fit; `"),
+    (["run", "fig6-slab", "--quantity", "slip"], "there is no option --quantity; it is an option of show and sweep; `"),
+    (["run", "fig6-slab", "--vary", "a=1,2"], "it is an option of sweep; did you mean '--set'?"),
+    (["check", "fig6-slab", "--dry-run"], "it is an option of sweep; `"),
+    (["check", "fig6-slab", "-q", "slip"], "there is no option -q; it is an option of show and sweep; `"),
+    (["new", "slab", "--law", "coulomb"], "did you mean '--friction'?"),
+    (["new", "slab", "--loading", "steps"], "did you mean '--pull'?"),
+    (["sweep", "fig6-slab", "--param", "a=1,2"], "did you mean '--set' or '--vary'?"),
+    (["find", "drill-string", "--vary", "rpm"], "it is an option of sweep; did you mean '--set' or '--along'?"),
+    (["infer", "a.toml", "a.csv", "--parameters", "a,b"], "it is an option of check; did you mean '--set' or '--free'?"),
+    (["infer", "a.toml", "a.csv", "--bounds", "a,b"], "did you mean '--bound'?"),
+    (["--duration", "3"], "there is no option --duration; it is an option of run, export, compare, find, sweep and others; `"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "displacement"], "did you mean 'slip'?"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "vmax"], "did you mean 'peak_rate'?"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "stress_drop"], "did you mean 'first_traction_drop' or 'first_static_drop'?"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "n_events"], "did you mean 'events'?"),
+    (["run", "newmark"], "did you mean 'sliding-block-shaken'?"),
+    (["run", "block"], "it is a starter: `stickslip new block > mine.toml` writes it"),
+    (["new", "axis"], "did you mean 'reversing-axis'"),
+    (["new", "slab", "--friction", "rsf"], "did you mean 'rate-and-state'?"),
+    (["new", "slab", "--friction", "stribeck"], "did you mean 'exponential-stribeck' or 'power-stribeck'?"),
+    (["new", "slab", "--pull", "sine"], "did you mean 'sinusoidal'?"),
+    (
+        ["infer", "data.csv", "--free", "a"],
+        "infer: the scenario comes first, and then the data: `stickslip infer SCENARIO data.csv ...`",
+    ),
+    (["infer", "data.lvm"], "infer: the scenario comes first, and then the data: `stickslip infer SCENARIO data.lvm ...`"),
+    (
+        ["infer", "a.csv", "b.csv", "--free", "a"],
+        "and then the data: `stickslip infer SCENARIO a.csv b.csv --free",
+    ),
+    (
+        ["infer", "a.csv", "mine.toml", "--free", "a"],
+        "and then the data: `stickslip infer mine.toml a.csv --free",
+    ),
+    (["infer", "mine.toml"], "infer: DATA is missing, after the scenario: `stickslip infer mine.toml DATA ...`"),
+    (["fit", "mine.toml"], "fit: mine.toml is a scenario, and points come first here: `stickslip fit DATA`;"),
+    (["fit", "fig6-slab"], "fit: fig6-slab is a scenario, and points come first here: `stickslip fit DATA`;"),
+    (["fit", "mine.toml", "a.csv"], "'a.csv' is not expected; to follow a record: `stickslip infer mine.toml a.csv --free NAMES`"),
+    (["find", "mine.toml", "a.csv"], "'a.csv' is not expected; to follow a record: `stickslip infer mine.toml a.csv --free NAMES`"),
+]
+
+
+@pytest.mark.parametrize(("typed", "wanted"), WORDS, ids=[" ".join(typed) for typed, _ in WORDS])
+def test_a_command_in_the_words_of_a_trade_is_answered_with_ours(
+    typed: list[str], wanted: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(typed)
+    said = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert wanted in said
+    assert said.count("\n") == 1
+
+
+KEYS = [
+    ("slab", "thickness", "h", "thickness"),
+    ("slab", "wave_speed", "Vs", "wave_speed"),
+    ("slab", "static", "mu_s", "static"),
+    ("slab", "pull_rate", "v_plate", "pull_rate"),
+    ("block", "stiffness", "k", "stiffness"),
+    ("string", "weight_on_bit", "WOB", "weight_on_bit"),
+]
+
+
+@pytest.mark.parametrize(("starter", "ours", "typed", "wanted"), KEYS)
+def test_a_key_of_a_file_by_the_name_of_a_trade_is_answered_with_ours(starter: str, ours: str, typed: str, wanted: str) -> None:
+    text, found = re.subn(rf"^{ours} =", f"{typed} =", template(starter), flags=re.MULTILINE)
+    assert found == 1
+    with pytest.raises(InputError, match=f"{typed} is unknown; .*{wanted}"):
+        read_scenario(text, "mine.toml")
+
+
+CALLS: list[tuple[Callable[[], Any], str]] = [
+    (lambda: run().displacement, "did you mean 'slip'?"),
+    (lambda: run().velocity, "did you mean 'slip_rate'?"),
+    (lambda: run().tau, "did you mean 'load' or 'traction'?"),
+    (lambda: run().save, "did you mean 'to_netcdf'"),
+    (lambda: run().show, "did you mean 'plot'"),
+    (lambda: run().curve("displacement"), "did you mean 'slip'?"),
+    (lambda: run().problem.sigma, "it has "),
+    (lambda: ss.SpringBlock(m=1.0, stiffness=1.0, normal_force=1.0), "did you mean 'mass'?"),  # type: ignore[call-arg]
+    (lambda: ss.SpringBlock(mass=1.0, k=1.0, normal_force=1.0), "did you mean 'stiffness'?"),  # type: ignore[call-arg]
+    (lambda: ss.friction.Coulomb(mu_s=0.6, mu_d=0.5), "did you mean 'static'?"),  # type: ignore[call-arg]
+    (lambda: ss.friction.RateAndState(f0=0.6, a=0.01, b=0.02, distance=1.0), "did you mean 'reference'?"),  # type: ignore[call-arg]
+    (lambda: ss.friction.RateAndState(0.6, 0.01, 0.02, Dc=1.0), "did you mean 'distance'?"),  # type: ignore[call-arg]
+    (lambda: ss.simulate("fig6-slab", t_end=3.0), "did you mean 'duration'?"),  # type: ignore[call-overload]
+    (lambda: ss.simulate("fig6-slab", rule="maxwell"), "did you mean 'selection'?"),  # type: ignore[call-overload]
+    (lambda: ss.simulat, "did you mean 'simulate'?"),  # type: ignore[attr-defined]
+    (lambda: ss.Block, "did you mean 'RotatingBlock' or 'SpringBlock'?"),  # type: ignore[attr-defined]
+    (lambda: ss.DrillString, "did you mean 'TorsionalString' or 'SectionedString'?"),  # type: ignore[attr-defined]
+    (lambda: ss.integrate, "did you mean 'simulate'?"),  # type: ignore[attr-defined]
+    (lambda: ss.friction.RateStateFriction, "did you mean 'RateAndState'?"),  # type: ignore[attr-defined]
+    (lambda: ss.friction.Stribeck, "did you mean 'ExponentialStribeck' or 'PowerStribeck'?"),  # type: ignore[attr-defined]
+    (lambda: ss.studies.threshold, "did you mean 'find'?"),  # type: ignore[attr-defined]
+    (lambda: ss.loading.Sine, "did you mean 'Sinusoidal'"),
+]
+
+
+@pytest.mark.parametrize(("call", "wanted"), CALLS, ids=[wanted for _, wanted in CALLS])
+def test_python_in_the_words_of_a_trade_is_answered_with_ours(call: Callable[[], Any], wanted: str) -> None:
+    with pytest.raises((AttributeError, InputError), match=re.escape(wanted)):
+        call()
+
+
+def test_no_answer_names_many() -> None:
+    for many in (list(library.names()), list(COMMANDS), list(ss.friction.LAWS), dir(run())):
+        said = nearest("qqqq", many, listed="there")
+        assert said.count(",") < MOST_NAMED
+        assert said.endswith(f" and {len(many) - said.count(',') - 1} more: there")
+    with pytest.raises(InputError) as told:
+        find_parameter(scenario("drill-string"), "qqqq", "run: --set")
+    assert str(told.value).count(",") < MOST_NAMED
+    assert str(told.value).endswith("more: `stickslip check SCENARIO --parameters` lists all")
+
+
+def test_the_list_that_answers_point_at_has_every_name(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["check", "drill-string", "--parameters"])
+    shown = {line.split()[0] for line in capsys.readouterr().out.splitlines() if line.split()}
+    assert {one.name for one in parameter_paths(scenario("drill-string"))} <= shown
+
+
+@cache
+def every_name() -> set[str]:
+    """Return, in their plain form, the names that the package has at its doors."""
+    from stickslip.bodies import BODIES
+    from stickslip.cli.app import _built
+    from stickslip.figures.sheet import KEYWORDS
+    from stickslip.foundation.headings import COLUMNS
+    from stickslip.foundation.names import QUANTITIES
+    from stickslip.inference.fit.free import known_numbers
+    from stickslip.loading import HISTORIES
+    from stickslip.problem.selection_rule import SELECTION_RULES
+    from stickslip.scenarios.schema import TABLES, keys_of
+    from stickslip.studies.find import WHAT
+    from stickslip.sweeps.design.quantities import QUANTITIES as OF_SWEEPS
+
+    registered = (BODIES, ss.friction.LAWS, HISTORIES, WHAT, OF_SWEEPS, QUANTITIES, COLUMNS, SELECTION_RULES, KEYWORDS)
+    found = {name for table in registered for name in table} | set(COMMANDS) | set(library.STARTERS) | set(library.names())
+    kinds = [*BODIES.values(), *ss.friction.LAWS.values(), *HISTORIES.values()]
+    found |= {key for table in TABLES for kind in kinds for key in keys_of(table, kind)}
+    found |= {option for command in COMMANDS for one in _built(command).params for option in one.opts}
+    found |= {name for module in (ss, ss.friction, ss.studies, ss.loading) for name in module.__all__}
+    found |= set(known_numbers(scenario("rate-and-state-block").problem, {})) | {
+        one.name for one in parameter_paths(scenario("fig6-slab"))
+    }
+    found |= {*dir(run()), *run().events.columns, *dir(scenario("fig6-slab").problem), *dir(ss.studies.compare(run(), run()))}
+    for call in (ss.simulate, ss.catalogue, ss.sweep, ss.studies.infer, ss.friction.fit):
+        found |= set(inspect.signature(call).parameters)
+    return {plain(name) for name in found}
+
+
+def test_each_name_that_a_word_leads_to_is_one_of_ours_and_each_word_is_none_of_its_own() -> None:
+    ours = every_name()
+    assert [name for name, _ in rows() if ours.isdisjoint({plain(name), plain(last(name))})] == []
+    assert [(name, word) for name, words in rows() for word in words if plain(name) == plain(word)] == []
