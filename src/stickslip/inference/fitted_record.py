@@ -24,7 +24,7 @@ from stickslip.inference.fit.memory import WHITE
 from stickslip.inference.fit.model import OF_NO_ZERO, Model
 from stickslip.inference.fit.part import Part
 from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.what_is_left import Look
+from stickslip.inference.fit.what_is_left import ResidualLook
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 from stickslip.study import StudyWithDataset
@@ -189,7 +189,7 @@ class FittedRecord(StudyWithDataset):
         return total + self.estimate.cost(self.estimate.searched) + len(self.free) * math.log(n)
 
     @cached_property
-    def looks(self) -> dict[str, list[Look]]:
+    def looks(self) -> dict[str, list[ResidualLook]]:
         """What is left of each fitted quantity looks like, by its name: kinds, shares and sizes, an empty list for noise.
 
         Beside a look the free numbers may still move, as it tells what the fit lacks.

@@ -19,10 +19,10 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.inference.certainty.directions import IDLE
+from stickslip.inference.certainty.drifting import TRENDS, Offer, lacking, needed, offered, said, with_number
 from stickslip.inference.certainty.kept_walk import KeptWalk
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
 from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
-from stickslip.inference.fit.drifting import TRENDS, Offer, decided, offered
 from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
 from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
 from stickslip.inference.fit.model import Model
@@ -300,10 +300,10 @@ def infer(
     fitted = shortened(whole, share)
     if by == "features":
         fitted, _ = by_features(fitted, wishes.observe)
-        whole, said = by_features(whole, wishes.observe)
-        notes += said
-    model, offer, said = _begun(given, fitted, recorded, free, wishes)
-    notes += said
+        whole, told = by_features(whole, wishes.observe)
+        notes += told
+    model, offer, told = _begun(given, fitted, recorded, free, wishes)
+    notes += told
     notes += rounded_times(given.body, [one.name for one in model.free])
     doubts = [note for note in notes if note.endswith("?")]
     with telling(progress, "infer") as tell:
@@ -344,9 +344,9 @@ def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[st
     """Return the parts with a manageable number of samples, and the notes with what was done."""
     found, most = [], max(MOST_FITTED // len(parts), LEAST_FITTED)
     for part in parts:
-        record, said = resampled(part.record, most)
+        record, told = resampled(part.record, most)
         found.append(replace(part, record=record))
-        notes = [*notes, *said]
+        notes = [*notes, *told]
     return found, notes
 
 
@@ -390,8 +390,8 @@ def _begun(
     if offer is not None:
         model = _model(problem, parts, [*_names(free), offer.name], wishes)
     shared = [one for one in model.free if one.part is None]
-    begun, said = with_starts(shared, problem, recorded, wishes.begin_at or (), drift)
-    return model.with_(free=(*begun, *(one for one in model.free if one.part is not None))), offer, said
+    begun, notes = with_starts(shared, problem, recorded, wishes.begin_at or (), drift)
+    return model.with_(free=(*begun, *(one for one in model.free if one.part is not None))), offer, notes
 
 
 def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell, offer: Offer | None) -> Inference:
@@ -402,16 +402,15 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
     tell = progress = wishes.progress(tell)
     model = model.with_(ran=progress.run, tried=progress.tried)
     if offer is not None:
-        tell(f"{offer.text}: {offer.name} is free, too")
+        tell(f"{offer.why}: {offer.name} is free, too")
     found = _estimated(model, wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
-    walk, finished, ended, said = None, found.finished, found.ended, list[str]()
+    walk, finished, ended, words = None, found.finished, found.ended, list[str]()
     try:
         tell("what the record determines")
         sure = certainty_of(found)
-        if offer is not None and finished:
-            found, said = decided(found, sure.widths.tolist(), offer, lambda end, name: _without(name, model, end, wishes, tell))
-            sure = sure if said else certainty_of(found)
+        if finished and wishes.trend == "auto" and wishes.by == "samples" and wishes.parts is None:
+            found, sure, words = _drifting(model, found, sure, offer, wishes=wishes, tell=tell)
         found = _idle_as_given(found, sure)
         if wishes.max_time is None:
             progress.limit = math.inf  # how long the rest takes is known beforehand
@@ -427,7 +426,32 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
     except KeyboardInterrupt as stop:
         finished, ended = False, str(stop)
     found = replace(found, finished=finished, ended=ended)
-    return Inference(found, sure, whole, tuple(said), tuple(profiles), walk, windows)
+    return Inference(found, sure, whole, tuple(words), tuple(profiles), walk, windows)
+
+
+def _drifting(
+    model: Model, found: Estimate, sure: Certainty, offer: Offer | None, *, wishes: Wishes, tell: Tell
+) -> tuple[Estimate, Certainty, list[str]]:
+    """Return a fit without the drift that was offered if it does not need it, and with a drift that it lacks, and sentences.
+
+    `model` is that with which the search began.
+    """
+    kept = list[Offer]()
+    if offer is not None:
+        if needed(found, sure, offer.name):
+            kept = [offer]
+        elif (fewer := _without(offer.name, model, found, wishes, tell)).finished:
+            found, sure = fewer, certainty_of(fewer)
+    for _ in range(2):  # with slip, and with time
+        if (lacked := lacking(found, sure.slopes)) is None:
+            break
+        tell(f"{lacked.why}: {lacked.name} is free, too")
+        more = _estimated(with_number(found, lacked), replace(wishes, starts=1), tell)
+        more_sure = certainty_of(more)
+        if not more.finished or not needed(more, more_sure, lacked.name):
+            break
+        found, sure, kept = more, more_sure, [*kept, lacked]
+    return found, sure, [text for one in kept for text in said(one, found, sure)]
 
 
 def _without(name: str, model: Model, end: Estimate, wishes: Wishes, tell: Tell) -> Estimate:

@@ -40,6 +40,7 @@ MISSED, MISSED_SHARE = 3.0, 0.2
 """A run misses a record if residuals exceed this multiple of the noise of neighbouring samples and this share of the scatter."""
 FALLING = 0.2
 """Shear falls in slip events if it falls during less than this share of the time."""
+INTERRUPTED = "interrupted: these are the best numbers so far"
 MANY = 1.5
 """Residuals above this many given standard deviations are reported as larger than the stated noise."""
 
@@ -194,7 +195,7 @@ def notes_of(study: FittedRecord) -> Iterator[str]:
 def warnings_of(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on doubts about the numbers as a whole."""
     if not study.estimate.finished:
-        yield f"{study.estimate.ended or 'interrupted'}: these are the best numbers so far"
+        yield f"these are the best numbers so far: {study.estimate.ended}" if study.estimate.ended else INTERRUPTED
     yield from _misfit(study)
     yield from looks_left(study)
 

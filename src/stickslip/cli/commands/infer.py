@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,7 +31,13 @@ BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
 COMPARE = "Another scenario, to compare what both predict of the part left out; may be repeated."
 COMPARE_FREE = "The free numbers of the scenarios of --compare; by default those of --free that they have."
 WEIGHT = "More weight for samples soon after a change of the pull rate: exponent p of (n/j)^p, as in RSFit3000."
+TREND = "auto: a drift with slip or time is free, too, if plateaus of friction show one; none: it is not."
+MAX_TIME = 'Processor time (s, or as "1 h") after which the best numbers so far are shown; 10 min for the search by default.'
 SEARCH = "The search"
+OUT_OF_TIME = 124
+"""Exit code if the time of --max-time is over, as that of the command `timeout`."""
+TOLD_AGAIN = 60.0
+"""Processor time (s) between two lines on a long search where there is no terminal to show it in one."""
 
 
 def infer(
@@ -63,6 +72,8 @@ def infer(
     profiles: Annotated[bool, typer.Option("--profiles", help="Intervals from profiles of the likelihood.")] = False,
     samples: Annotated[int, typer.Option(help="Samples of the posterior distribution to draw (needs emcee).")] = 0,
     checkpoint: Annotated[Path | None, option("Keep the samples in this file (.nc); the same command goes on with them.")] = None,
+    trend: Annotated[str, option(TREND, panel=SEARCH)] = "auto",
+    max_time: Annotated[str | None, option(MAX_TIME, panel=SEARCH)] = None,
     compare: Annotated[list[str] | None, option(COMPARE)] = None,
     compare_free: Annotated[str | None, option(COMPARE_FREE)] = None,
     rtol: Annotated[float, typer.Option(help="Relative tolerance of the runs.", rich_help_panel=ACCURACY)] = 1e-8,
@@ -99,10 +110,11 @@ def infer(
       stickslip infer mine.toml rig.lvm --free a,b --column "load_point=Ram (mm)"
 
     After Ctrl-C the command shows and saves the best numbers so far.
+    So it does after the processor time of --max-time (10 min for the search).
     With --checkpoint a command that was killed is typed again, and its samples go on.
 
     Exit code: 0 done, 1 the record determines none of the numbers,
-    2 unusable input, 130 interrupted.
+    2 unusable input, 124 the time is over, 130 interrupted.
     """
     from stickslip.cli.output.studies import show_inference, show_ranking
     from stickslip.cli.overrides import load
@@ -122,7 +134,7 @@ def infer(
     }
     options |= {"loss": loss, "starts": starts, "weight": weight, "windows": windows}
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
-    options |= {"checkpoint": checkpoint}
+    options |= {"checkpoint": checkpoint, "trend": trend, "max_time": _typed(max_time)}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
     options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
     if is_data(scenario):
@@ -146,6 +158,8 @@ def infer(
     if report is not None:
         announce(found.report(report, *others))
     if not found.estimate.finished:
+        if found.estimate.ended:
+            raise typer.Exit(OUT_OF_TIME)
         raise KeyboardInterrupt
     if not found.determined:
         raise typer.Exit(1)
@@ -167,9 +181,24 @@ def _inferred(scenario: Any, data: list[Any], free: str, options: dict[str, Any]
 
     with progress_line(f"{scenario.name}:") as report:
         try:
-            return study(scenario, data, free, progress=report, **options)
+            return study(scenario, data, free, progress=_seldom(scenario.name, report), **options)
         except InputError as error:
             raise InputError(as_options(str(error))) from None
+
+
+def _seldom(name: str, report: Callable[[str], object]) -> Callable[[str], object]:
+    """Return what shows the progress: `report` on a terminal, and elsewhere one line on standard error now and then."""
+    if sys.stderr.isatty():
+        return report
+    told = time.process_time()
+
+    def show(text: str) -> None:
+        nonlocal told
+        if time.process_time() - told > TOLD_AGAIN:
+            told = time.process_time()
+            sys.stderr.write(f"{name}: {text}\n")
+
+    return show
 
 
 def _free_of(name: str, scenario: Scenario, free: str) -> str:

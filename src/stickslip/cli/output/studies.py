@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 FIRST = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
 _ARGUMENT = re.compile(
-    r"\b(by|each|held_out|loss|normal|observe|parts|profiles|samples|sensor|start|starts|trend|weight|windows)='?([\w.]*\w)'?"
+    r"\b(by|each|held_out|loss|max_time|normal|observe|parts|profiles|samples|sensor|start|starts|trend|weight|windows)='?([\w.]*\w)'?"
 )
 """An argument of `infer` as messages name it, with its value."""
 

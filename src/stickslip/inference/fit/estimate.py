@@ -13,18 +13,18 @@ from stickslip.inference.fit.memory import Memory, memory_of
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
 from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.progress import Tell
+from stickslip.inference.fit.progress import OutOfTime, Tell
 from stickslip.inference.fit.search import (
     COMPETES,
     Best,
     is_far,
     is_rough,
-    is_told,
     light,
     polished,
     searched_minima,
     sharp_cost,
     solved,
+    told_by,
 )
 from stickslip.inference.record.noise import GAUSSIAN, cost_of
 
@@ -73,7 +73,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
         best.cost, best.searched = np.inf, searched
         found = _with_noise(model, searched, loss, tell, best)
         misses = any(size > ROUGH * model.sizes[name] for name, size in found.model.sizes.items())
-        if starts > 1 and misses and is_rough(found.model, found.searched) and not is_told(found.model, found.searched):
+        if starts > 1 and misses and is_rough(found.model, found.searched) and not told_by(found.model, found.searched):
             tell("polishing without derivatives")
             better = polished(found.model, found.searched, loss)
             if found.cost(better) < found.cost(found.searched) - COMPETES:
@@ -82,7 +82,10 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
     except KeyboardInterrupt as stop:
         if not len(best.searched):
             raise
-        return Estimate(found.model.with_(every=model.every), best.searched, finished=False, loss=loss, ended=str(stop))
+        model = found.model.with_(every=model.every)
+        if isinstance(stop, OutOfTime):  # a few runs more, so that intervals know what is left
+            model = _noise(model, best.searched, model.jacobian(best.searched, sides=(1.0,)), loss)
+        return Estimate(model, best.searched, finished=False, loss=loss, ended=str(stop))
 
 
 def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floats:

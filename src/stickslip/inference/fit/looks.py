@@ -1,4 +1,4 @@
-"""Look at what the runs of a model leave of a record."""
+"""ResidualLook at what the runs of a model leave of a record."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from stickslip.foundation.arrays import Floats
 from stickslip.inference.fit.free import DELAY, DRIFT, SERVO, TREND
 from stickslip.inference.fit.memory import ResidualBlock
 from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.what_is_left import Look, Residuals, near_changes, what_is_left
+from stickslip.inference.fit.what_is_left import ResidualLook, Residuals, near_changes, what_is_left
 from stickslip.inference.record.record import SHEAR
 
 
-def looks_of(model: Model, searched: Floats, name: str, slopes: Floats | None = None) -> list[Look]:
+def looks_of(model: Model, searched: Floats, name: str, slopes: Floats | None = None) -> list[ResidualLook]:
     """Return what is left of a quantity at searched numbers looks like; an empty list for noise, and if a run fails.
 
     `slopes` are the derivatives of the residuals of this quantity: beside a look the free numbers may still move.
@@ -66,7 +66,7 @@ CURES = {
 """What can be free against a look."""
 
 
-def cure_of(look: Look, name: str, free: set[str]) -> str:
+def cure_of(look: ResidualLook, name: str, free: set[str]) -> str:
     """Return what to do about a look of a quantity, as text; empty if there is nothing simple."""
     cures = {
         "steps": "sample faster, or leave the samples beside the steps out",

@@ -63,8 +63,10 @@ class SearchProgress:
         left = f", {self.left}" if self.left else ""
         self.tell(f"{self.phase}{left}, {self.runs} runs so far")
         if self.clock() - self.begun > self.limit:
-            told, self.limit = about_time(self.limit), math.inf
-            raise OutOfTime(f"the search was stopped after {told} of processor time and {self.runs} runs (max_time)")
+            over, self.limit = self.limit, math.inf
+            left = f"; {self.left}" if self.left else ""
+            more = f"bounds and a nearer start make it shorter, max_time={2.0 * over:.6g} gives it twice the time"
+            raise OutOfTime(f"stopped after {about_time(over)} of processor time and {self.runs} runs{left}; {more}")
 
     @property
     def left(self) -> str:

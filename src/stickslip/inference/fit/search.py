@@ -14,6 +14,7 @@ from stickslip.inference.fit.model import FAILED, Model
 from stickslip.inference.fit.pieces import pieces_of
 from stickslip.inference.fit.progress import Tell
 from stickslip.inference.fit.starting import slides
+from stickslip.inference.fit.what_is_left import words
 from stickslip.inference.record.noise import OUTLYING, cost_of
 from stickslip.inference.record.resample import RAMP
 
@@ -120,7 +121,9 @@ def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Te
         tell(f"search {i + 1} of {len(chosen)}")
         minima.append(_followed(model, x, loss, best, FIRST))
     minima.sort(key=lambda one: one[0])
-    if starts > 1 and is_far(model, minima[0][0]) and not is_told(model, minima[0][1]):
+    if starts > 1 and is_far(model, minima[0][0]) and (why := told_by(model, minima[0][1])):
+        tell(f"no run comes near the record, of which is left {why}: no search without derivatives")
+    elif starts > 1 and is_far(model, minima[0][0]):
         minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, FIRST))
         minima.sort(key=lambda one: one[0])
     followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
@@ -151,17 +154,18 @@ TOLD = 0.5
 """If a drift or an offset makes up this share of what is left, no search for events goes on."""
 
 
-def is_told(model: Model, searched: Floats) -> bool:
-    """Return True if what is left is mostly a drift or an offset of a record that slides all the time.
+def told_by(model: Model, searched: Floats) -> str:
+    """Return what is left of a record that slides all the time if it is mostly a drift or an offset; otherwise an empty text.
 
     No event is then at a wrong time, which a search without derivatives would mend: the runs lack something, and words say what.
     """
     if model.of_means or not all(slides(model.problem, part) for part in model.parts):
-        return False
+        return ""
     name = next(iter(model.sizes))
     pieces = {one.name: one for one in pieces_of(model, model.residual(searched), model.jacobian(searched, sides=(1.0,)))}
     looks = looks_of(model, searched, name, pieces[name].rows)
-    return sum(one.share for one in looks if one.kind.startswith(("drift", "offset"))) > TOLD
+    plain = sum(one.share for one in looks if one.kind.startswith(("drift", "offset")))
+    return words(looks, model.problem.unit_of(name)) if plain > TOLD else ""
 
 
 def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +24,8 @@ from stickslip.problem.problem import Problem
 
 COSINE = math.sqrt(math.pi**2 - 8.0)
 """Twice the standard deviation, in time, of the fall of a spring force along half a cosine of angular frequency 1."""
+FALLING = 0.2
+"""Shear falls in slip events if it falls during less than this share of the time."""
 CREEPS, STIFFER = 0.8, 1.1
 """If the slope of shear between events is outside this range, relative to the stiffness of the problem, the stiffness is doubted.
 The range reaches farther down, because creep makes the slope smaller."""
@@ -95,7 +98,15 @@ def slides(problem: Problem, part: Part) -> bool:
     """Return True if the contact of a part of a record slides all the time, as far as shear shows: without slip events."""
     if part.record.shear is None or part.record.shear not in part.observed:
         return False
-    return _is_stepped(problem, part) or not len(arrests_in(_friction(problem, part)))
+    return _is_stepped(problem, part) or not _has_events(_friction(problem, part))
+
+
+def _has_events(friction: Floats) -> bool:
+    """Return True if shear falls as in slip events, much faster than it rises, and not as where it drifts."""
+    known = friction[np.isfinite(friction)]
+    bottoms = [0, *arrests_in(known).tolist()]
+    falling = sum(last - first - int(np.argmax(np.abs(known[first : last + 1]))) for first, last in pairwise(bottoms))
+    return bool(0 < falling < FALLING * bottoms[-1])
 
 
 def shown_drift(problem: Problem, parts: Sequence[Part], *, with_slip: bool | None = None) -> PlateauDrift | None:
@@ -205,6 +216,8 @@ def _of_steps(problem: Problem, part: Part, drift: PlateauDrift | None, names: s
 def _doubts(problem: Problem, part: Part, free: Sequence[Free]) -> Iterator[str]:
     """Yield a question if a fixed stiffness differs from that of the record."""
     if problem.body.has_waves or part.record.shear is None or any(one.name == "body.stiffness" for one in free):
+        return
+    if not _has_events(_friction(problem, part)):
         return
     cycles, body = stick_slip(problem, part), problem.body
     stiffness = float(getattr(body, "stiffness", math.nan))

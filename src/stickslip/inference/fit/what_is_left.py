@@ -1,7 +1,8 @@
 """Say in words what the residuals of a fit look like: drift, lag, offset, oscillation, or steps that the samples do not resolve.
 
 Each look is a regression of the residuals, beside which the free numbers may still move and the noise may be correlated. A look is
-told if chance does not explain it and if it makes up a share of what is left that one would see.
+told if chance does not explain it and if it makes up a share of what is left that one would see. Residuals far above the noise from
+sample to sample that do not forget themselves are no noise anyway: there the share alone decides.
 """
 
 from __future__ import annotations
@@ -17,12 +18,16 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.inference.fit.memory import Memory, ResidualBlock, independent, independent_columns, memory_of, spread_by
+from stickslip.inference.fit.memory import LONGEST, Memory, ResidualBlock, independent, independent_columns, memory_of, spread_by
+from stickslip.inference.record.noise import noise_of
 
 CHANCE = 1e-5
 """Largest probability that noise alone looks like this, for each kind of look."""
 LEAST = 0.08
 """A look is told if it makes up at least this share of the sum of squares that is left."""
+LARGE, FORGETS, PLAIN = 3.0, 0.9, 0.3
+"""Residuals are no noise if they exceed LARGE times the noise of neighbouring samples and remember themselves for more than FORGETS
+of the longest time that is considered: looks with a share above PLAIN are then told without asking for chance."""
 MOST = 3
 """Largest number of looks that are told."""
 BESIDE = 2
@@ -43,7 +48,7 @@ Size = Callable[[Floats], float]
 """The size of a look from the coefficients of its columns."""
 
 
-class Look(NamedTuple):
+class ResidualLook(NamedTuple):
     """One look of residuals (data minus run): its kind, its share of the sum of squares, and its size in the unit of its kind.
 
     Kinds and sizes are "drift with slip" (unit of the residual per metre), "drift with time" and "drift" with either (per second),
@@ -98,12 +103,13 @@ class Residuals:
         return Residuals(self.values[kept], blocks, *arrays, self.changes, self.slopes[kept])
 
 
-def what_is_left(found: Residuals) -> list[Look]:
+def what_is_left(found: Residuals) -> list[ResidualLook]:
     """Return what residuals look like, the largest share first; an empty list if they look like noise."""
-    total, looks = float(found.values @ found.values), list[Look]()
+    total, looks = float(found.values @ found.values), list[ResidualLook]()
     bare = found.without(np.zeros((len(found.values), 0)))
+    least = PLAIN if len(bare.values) >= FEWEST and _is_no_noise(bare) else math.inf
     while len(looks) < MOST and len(bare.values) >= FEWEST and total > 0.0:
-        look, rest = _next(bare, total, {one.kind.partition(" ")[0] for one in looks})
+        look, rest = _next(bare, total, {one.kind.partition(" ")[0] for one in looks}, least)
         if look is None or rest is None:
             break
         looks.append(look)
@@ -111,22 +117,28 @@ def what_is_left(found: Residuals) -> list[Look]:
     return looks
 
 
-class _Try(NamedTuple):
-    """A look that residuals may have: its share, and what makes it certain."""
+def _is_no_noise(found: Residuals) -> bool:
+    longest = LONGEST * max(float(np.ptp(time)) for _, time in found.blocks)
+    size, noise = math.sqrt(float(np.mean(found.values**2))), max(noise_of(found.values[rows]) for rows, _ in found.blocks)
+    return size > LARGE * noise and _memory(found).time > FORGETS * longest
 
-    look: Look
+
+class _Try(NamedTuple):
+    """A look that residuals may have: its share, what is left without it, and whether chance does not explain it."""
+
+    look: ResidualLook
     rest: Callable[[], Residuals]
     sure: Callable[[], bool]
 
 
-def _next(found: Residuals, total: float, known: set[str]) -> tuple[Look | None, Residuals | None]:
-    """Return the look that explains most of what is left, if it is no chance, and the residuals without it."""
+def _next(found: Residuals, total: float, known: set[str], least: float) -> tuple[ResidualLook | None, Residuals | None]:
+    """Return the look that explains most of what is left, if it is no chance or above `least`, and the residuals without it."""
     tries = [one for one in _tries(found, total) if one.look.kind.partition(" ")[0] not in known and one.look.share >= LEAST]
     tries.sort(key=lambda one: -one.look.share)
     special = [one for one in tries if one.look.kind == "steps" and one.look.share > ALIKE * tries[0].look.share]
     plain = [one for one in tries if one.look.kind not in ("steps", "transients") and one.look.share > ALIKE * tries[0].look.share]
     for one in dict.fromkeys([*special, *plain, *tries]):
-        if one.sure():
+        if one.look.share > least or one.sure():
             return one.look, one.rest()
     return None, None
 
@@ -195,14 +207,15 @@ def _regressed(found: Residuals, total: float, kind: str, columns: Floats, size:
         ratio = float(some @ np.linalg.pinv(covariance, rcond=1e-10, hermitian=True) @ some) / rank
         return bool(f.sf(ratio, rank, freedom) * tried < CHANCE)
 
-    return _Try(Look(kind, explained / total, size(coefficients)), lambda: found.without(columns), sure)
+    return _Try(ResidualLook(kind, explained / total, size(coefficients)), lambda: found.without(columns), sure)
 
 
 def _larger(found: Residuals, total: float, kind: str, chosen: NDArray[np.bool_]) -> _Try:
     """Return the look of residuals that are larger at some samples than at others."""
     inside, outside = found.values[chosen], found.values[~chosen]
     quiet = max(float(np.mean(outside**2)), 1e-300)
-    ratio, excess = float(np.mean(inside**2)) / quiet, float(inside @ inside) - len(inside) * quiet
+    ratio = float(np.mean(inside**2)) / quiet
+    excess = float(inside @ inside) - len(inside) * quiet if ratio > LARGER**2 else 0.0
 
     def sure() -> bool:
         from scipy.stats import f
@@ -210,10 +223,10 @@ def _larger(found: Residuals, total: float, kind: str, chosen: NDArray[np.bool_]
         rest = found.only(~chosen)
         share = _count(rest, _memory(rest)) / max(len(rest.values), 1)
         freedom = [max(1.0, share * len(one)) for one in (inside, outside)]
-        return bool(ratio > LARGER**2 and f.sf(ratio, *freedom) < CHANCE)
+        return bool(f.sf(ratio, *freedom) < CHANCE)
 
     size = float(found.changes) if kind == "steps" else math.sqrt(ratio)
-    return _Try(Look(kind, max(excess, 0.0) / total, size), lambda: found.only(~chosen), sure)
+    return _Try(ResidualLook(kind, excess / total, size), lambda: found.only(~chosen), sure)
 
 
 def _wave(found: Residuals) -> tuple[float, Floats, int] | None:
@@ -245,19 +258,21 @@ def near_changes(time: Floats, changes: Floats) -> tuple[NDArray[np.bool_], NDAr
     return near, after
 
 
-def words(looks: Sequence[Look], unit: str, noise: float = 0.0) -> str:
-    """Return what residuals look like as text, such as "drift with slip, -2 /m (76 %)"; `unit` is that of the residual."""
-    if not looks:
-        return "noise"
-    return ", ".join(f"{one.kind}{_size(one, unit)} ({one.share:.0%} of it)" for one in looks)
+def words(looks: Sequence[ResidualLook], unit: str) -> str:
+    """Return what residuals look like as text, such as "a drift with slip of -2 /m (76 % of it)"; `unit` is theirs."""
+    return ", ".join(f"{_named(one, unit)} ({one.share:.0%} of it)" for one in looks) or "noise"
 
 
-def _size(look: Look, unit: str) -> str:
+def _named(look: ResidualLook, unit: str) -> str:
     per: Mapping[str, str] = {"drift with slip": "/m", "drift with time": "/s", "drift": "/s"}
     if look.kind in per:
-        return f" of {look.size:.3g} {'' if unit == '1' else unit}{per[look.kind]}"
-    if look.kind in ("lag", "oscillation"):
-        return f" of {brief(abs(look.size), 's', 3)}" + (" (early)" if look.kind == "lag" and look.size < 0.0 else "")
+        return f"a {look.kind} of {look.size:.3g} {'' if unit == '1' else unit}{per[look.kind]}"
+    if look.kind == "lag":
+        return f"a {'lag' if look.size > 0.0 else 'lead'} of {brief(abs(look.size), 's', 2)}"
+    if look.kind == "oscillation":
+        return f"an oscillation with a period of {brief(look.size, 's', 3)}"
     if look.kind == "offset":
-        return f" of {brief(look.size, unit, 3)}"
-    return f" not resolved ({look.size:.0f} changes of the pull rate)" if look.kind == "steps" else f" {look.size:.2g}-fold"
+        return f"an offset of {brief(look.size, unit, 3)}"
+    if look.kind == "steps":
+        return f"steps that the samples do not resolve, beside {look.size:.0f} changes of the pull rate"
+    return f"a misfit after changes of the pull rate, {look.size:.2g} times what is left elsewhere"
