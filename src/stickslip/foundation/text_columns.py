@@ -149,15 +149,20 @@ class _Rows(NamedTuple):
         Raises InputError for the first row that cannot be read, and for one too many.
         """
         at_lines, numbers, most = array("q"), array("d"), self.asked.most
+        width, places = len(self.sheet.header), [one.place for one in self.chosen.values()]
         for at, row in self.sheet.rows:
             if len(at_lines) == most:
                 raise InputError(f"{self.at(at)}: more than {most} rows")
-            numbers.extend(self._numbers(row, at, first=not at_lines))
+            try:
+                found = [float(row[place]) for place in places] if len(row) <= width else None
+            except (ValueError, IndexError):
+                found = None
+            numbers.extend(self._numbers(row, at, first=not at_lines) if found is None else found)
             at_lines.append(at)
         return np.array(at_lines), np.array(numbers).reshape(-1, len(self.chosen))
 
     def _numbers(self, row: Sequence[str], line: int, *, first: bool) -> list[float]:
-        """Return the numbers of the chosen columns in a row, the first one or another, in their unit. Raises InputError."""
+        """Return the numbers of the chosen columns in a row with other cells too, the first row or another. Raises InputError."""
         at, width = self.at(line), len(self.sheet.header)
         if any(cell.strip() for cell in row[width:]):
             raise InputError(f"{at}: {len(row)} cells, but the header has {width}{self.sheet.hint}")
