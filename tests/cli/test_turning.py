@@ -129,3 +129,13 @@ def test_every_command_takes_what_turns_with_its_units_or_refuses_it_by_name(
     assert not SLIDES.findall(told), told
     if "--catalogue" not in options:
         assert re.search(r"\brad\b|\bN m\b|\brpm\b|\b[kM]?J\b|\bstring over block\b", told)
+
+
+def test_the_shell_sets_a_drive_by_one_word_and_check_says_its_three_numbers(command: Callable[..., Outcome]) -> None:
+    said = " ".join(command("check", "drill-string", "--set", "soft_torque=5 s").out.split())
+    for number in ("driver_impedance 498.25563 N m s", "driver_inertia 2900 kg m^2", "driver_integral_gain 4.5794964 kN m/rad"):
+        assert number in said
+    assert "T 5 s period to which the driver is tuned" in said
+    assert "# soft_torque =" in command("new", "string").out
+    refused = command("check", "drill-string", "--set", "soft_torque=soft").refusal
+    assert refused == 'check: --set: soft_torque must be a period, as "5 s", or "impedance matched", got \'soft\'\n'

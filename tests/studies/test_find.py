@@ -51,6 +51,26 @@ def test_the_edge_of_stick_slip_from_rest_is_that_of_an_independent_integration(
     assert edge.runs == len(edge.table) == len(set(edge.table["loading.pull_rate"]))
 
 
+def test_runs_that_are_short_are_made_longer_until_the_edge_holds():
+    """The scenario of the drill string lasts 60 s, in which stick-slip from rest has not died out where it dies out in the end."""
+    rpm = math.pi / 30.0
+    edge, long = ss.studies.find("drill-string"), ss.studies.find("drill-string", duration="480 s")
+    assert long.text.endswith("runs of 960 s give the same at both ends")
+    assert abs(edge.low - long.low) < 2e-3 * long.low
+    assert edge.duration > 60.0
+    assert f"runs of {2.0 * edge.duration:g} s give the same at both ends (runs of 60 s were short: 124.2" in edge.text
+    short = ss.studies.find("drill-string", low="110 rpm", high="140 rpm", duration="60 s")
+    assert short.low > long.high + 1.5 * rpm
+    assert short.duration == 60.0
+    assert "runs of 60 s are short: at 124." in short.text
+    assert short.text.endswith("those of 120 s give something else; leave the duration out, or give a longer one")
+
+
+def test_what_grows_with_the_duration_is_not_asked_of_longer_runs():
+    edge = ss.studies.find(AXIS, "initial.load", "1 N", "4.9 N", what="events", duration=0.5, within=0.1)
+    assert edge.longer == ""
+
+
 def test_steady_finds_by_itself_that_it_sticks_from_rest_where_sliding_is_stable():
     """An independent integration: it sticks at the lower rate and not at the upper one, within 2 % of each other."""
     found = ss.studies.steady(AXIS)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from stickslip.bodies.contract import check_body, check_driver
 from stickslip.bodies.layered import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
+from stickslip.bodies.soft_torque import with_soft_torque
 from stickslip.bodies.turning import (
     BIT_RADIUS,
     DRIVE,
@@ -109,6 +110,14 @@ class SectionedString(Declared, OnBit, OfOneSide):
     def given(self) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
         """The length of each section, its inertia per length, and its wave speed."""
         return self.length, self.inertia_per_length, self.wave_speeds
+
+    def with_soft_torque(self, setting: Any, gain: Any = None, inertia: Any = None) -> SectionedString:
+        """Return the string with a drive tuned to a period of stick-slip (s, or a text such as "5 s"), or "impedance matched".
+
+        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.bodies.soft_torque`.
+        `gain` (N m s) takes the place of the impedance of the pipe, and `inertia` (kg m^2) that of the drive. Raises InputError.
+        """
+        return with_soft_torque(self, setting, gain, inertia)
 
     def equivalent_block(self) -> RotatingBlock:
         """Return the rotating block to which the string is equivalent in slow motion, with the bit.

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from stickslip.bodies.contract import OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.bodies.soft_torque import with_soft_torque
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
@@ -177,6 +178,14 @@ class TorsionalString(Declared, OnBit, WithWaves):
     def distance(self) -> float:
         """The length (m)."""
         return self.length
+
+    def with_soft_torque(self, setting: Any, gain: Any = None, inertia: Any = None) -> TorsionalString:
+        """Return the string with a drive tuned to a period of stick-slip (s, or a text such as "5 s"), or "impedance matched".
+
+        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.bodies.soft_torque`.
+        `gain` (N m s) takes the place of the impedance of the pipe, and `inertia` (kg m^2) that of the drive. Raises InputError.
+        """
+        return with_soft_torque(self, setting, gain, inertia)
 
     def equivalent_block(self) -> RotatingBlock:
         """Return the rotating block to which the string is equivalent in slow motion: K = G J / length, inertia I length / 3 + bit.

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.bodies import BodyOnCharacteristics, BodyWithWaves, as_waves
+from stickslip.bodies.soft_torque import sent_back, tuned_period
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
@@ -179,7 +180,7 @@ def _derived(problem: Problem) -> list[Fact]:
         ]
     if not body.is_uniform:
         layers = layer_facts(of_layers(body), body.stiffness * problem.first_pull_rate, problem.driver_changes)
-        return [*layers, *_later_drivers(problem), *start, *_pulses(problem)]
+        return [*layers, *_tuned(problem), *_later_drivers(problem), *start, *_pulses(problem)]
     of = "of sharp fronts" if body.has_machine else "of waves"
     begins = " at first" if problem.driver_changes else ""
     waves = as_waves(body)
@@ -190,11 +191,22 @@ def _derived(problem: Problem) -> list[Fact]:
         Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
         Fact(f"{symbol}/h", body.stiffness, stiffness, "load lost by slow slip"),
         Fact("r", waves.front_reflection, "1", f"reflection {of} at the driver{begins}: -1 rigid, 0 matched, +1 dead load"),
+        *_tuned(problem),
         *_later_drivers(problem),
         Fact(f"{symbol} V/h", body.stiffness * problem.first_pull_rate, load_rate, "rate of loading at first"),
         *start,
         *_pulses(problem),
     ]
+
+
+def _tuned(problem: Problem) -> list[Fact]:
+    """Return the period at which mass and integral gain of a driver cancel, and what it sends back of a wave of that period."""
+    body = problem.body
+    if not body.has_machine or math.isnan(period := tuned_period(body)):
+        return []
+    whole, half, twice = (f"{sent_back(body, factor * period):.2g}" for factor in (1.0, 0.5, 2.0))
+    share = f"the driver sends back {whole} of a wave with this period, {half} with half of it, {twice} with twice"
+    return [Fact("T", period, "s", f"period to which the driver is tuned, where its mass and integral gain cancel: {share}")]
 
 
 def _later_drivers(problem: Problem) -> list[Fact]:

@@ -26,7 +26,7 @@ from stickslip.scenarios.contact import LOCKED, Contact
 from stickslip.scenarios.contact_table import PLACES, TAPER
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
-from stickslip.scenarios.schema import quantities_in
+from stickslip.scenarios.schema import SOFT_TORQUE, WITH_SOFT_TORQUE, quantities_in, without_owner
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
@@ -156,6 +156,10 @@ def _pressed(scenario: Scenario, value: float) -> Scenario:
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
     """Return a scenario with other values of some parameters, as `Scenario.with_values` does; `where` begins messages."""
     changes, texts = [], []
+    soft = next((name for name in (SOFT_TORQUE, f"body.{SOFT_TORQUE}") if name in values), "")
+    if soft and hasattr(scenario.problem.body, WITH_SOFT_TORQUE):
+        scenario = _softened(scenario, values[soft], where)
+        texts, values = [f"{soft} = {values[soft]}"], {name: value for name, value in values.items() if name != soft}
     for name, value in values.items():
         parameter = find_parameter(scenario, name, where)
         changes.append((parameter, parameter.read(value, where)))
@@ -165,6 +169,16 @@ def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Sc
     return replace(
         scenario_of(document_with(scenario, changes, where), Source(where)), name=scenario.name, title=title, description=""
     )
+
+
+def _softened(scenario: Scenario, setting: Any, where: str) -> Scenario:
+    """Return a scenario with another setting of its drive, in place of its gains. Raises InputError."""
+    problem = scenario.problem
+    try:
+        body = problem.body.with_soft_torque(setting)  # type: ignore[attr-defined] # as the caller has seen
+    except InputError as error:
+        raise InputError(f"{where}: {without_owner(error)}") from None
+    return replace(scenario, problem=replace(problem, body=body))
 
 
 def _said_back(parameter: ParameterPath, value: Any) -> Any:

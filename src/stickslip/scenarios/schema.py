@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from stickslip.bodies import BODIES
+from stickslip.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.bodies.turning import WEIGHT_ON_BIT
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
@@ -41,6 +42,9 @@ TABLES = ("body", "friction", "loading", "initial", "run")
 """The tables of a scenario."""
 CONTACT = "contact"
 """The table that a scenario has if its contact is a line or a plane of nodes."""
+SOFT_TORQUE, WITH_SOFT_TORQUE = "soft_torque", "with_soft_torque"
+"""The key of a string that stands for the three numbers of its drive, and the method of a body that has it."""
+DRIVE = ("driver_impedance", "driver_inertia", "driver_integral_gain")
 ONE_WAY = "true: the contact never slips backwards"
 """Meaning of the key one_way."""
 MOST_EVENTS = 10**12
@@ -130,6 +134,8 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
     keys = {"kind": Key(lambda value, _: value)} if has_kind(table) else {}  # `kind_of` has checked it
     for name, (declared, default) in entries_in(table, kind, states).items():
         keys[name] = Key(partial(_read_entry, declared), default, describe(declared))
+    if table == "body" and hasattr(kind, WITH_SOFT_TORQUE):
+        keys[SOFT_TORQUE] = Key(lambda value, _: value, None, SOFT_TORQUE_MEANS)
     if table == "run":
         keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
@@ -211,9 +217,19 @@ def read_part(table: str, raw: dict[str, Any], source: Source, heading: str = ""
     content = read_table(table, kind, raw, source, heading=heading)
     keys = {name: key_of(name, entry) for name, (entry, _) in fields_of(kind).items()}
     try:
+        if content.get(SOFT_TORQUE) is not None:
+            return _softened(kind, {name: content[key] for name, key in keys.items() if name not in DRIVE}, raw)
         return kind(**{name: content[key] for name, key in keys.items()})
     except InputError as error:
         raise InputError(f"{source.file}: [{table}] {without_owner(error)}") from None
+
+
+def _softened(kind: type, fields: dict[str, Any], raw: Mapping[str, Any]) -> Any:
+    """Return a string whose drive is set by one key of its table, beside an inertia and a gain if given. Raises InputError."""
+    impedance, inertia, integral = (raw.get(name) for name in DRIVE)
+    if integral is not None:
+        raise InputError(f"{kind.__name__}: {SOFT_TORQUE} gives the integral gain of the drive: leave {DRIVE[2]} out")
+    return kind(**fields).with_soft_torque(raw[SOFT_TORQUE], impedance, inertia)
 
 
 def without_owner(error: InputError) -> str:

@@ -10,6 +10,7 @@ from dataclasses import MISSING
 from types import MappingProxyType
 from typing import Any
 
+from stickslip.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS
@@ -24,7 +25,17 @@ from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of, to_table
 from stickslip.scenarios.parameter_paths import find_parameter, put_into
 from stickslip.scenarios.scenario import scenario_of
-from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
+from stickslip.scenarios.schema import (
+    KINDS,
+    SOFT_TORQUE,
+    TABLES,
+    WITH_SOFT_TORQUE,
+    columns_of,
+    entries_in,
+    has_kind,
+    kind_of,
+    read_part,
+)
 
 _HEADER = """\
 # A scenario for stickslip: what slides, what resists, how it is loaded, where it starts, how long to run.
@@ -195,6 +206,8 @@ def _table(table: str, kind: type, example: dict[str, Any], load_unit: str, stat
         else:
             shown = "" if default is None or default is MISSING else _toml(default)
             lines.append(f"# {name} = {shown}  # {describe(entry)}".replace("=   #", "=  #"))
+    if table == "body" and hasattr(kind, WITH_SOFT_TORQUE):
+        lines.append(f"# {SOFT_TORQUE} =  # {SOFT_TORQUE_MEANS}")
     columns = columns_of(table, kind)
     if columns:
         lines.append(f'# file = "points.csv"  # instead of lists: columns {", ".join(columns)}, in SI or with units as in (mm/s)')

@@ -23,6 +23,7 @@ from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.solution.solution import Solution
+from stickslip.studies.longer_runs import held_in_longer_runs
 from stickslip.study import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import share_sticking
 
@@ -35,6 +36,8 @@ WHAT: dict[str, Callable[[Solution], bool | int]] = {
     "pulses": lambda run: int(run.events.pulses.sum()),
 }
 """What may change along a parameter: whether the contact sticks in the last third of a run, how many events or pulses it has."""
+SETTLED = "sticking"
+"""That of them which is asked of the end of a run, and should not depend on its length."""
 WITHIN = 1e-3
 """Default width of the last bracket, as a share of its upper end."""
 MOST_DOUBLINGS = 12
@@ -72,6 +75,8 @@ class Edge(StudyWithDataset):
     """Declared meaning of the parameter."""
     start: str = ""
     """How the runs started, if not as the problem does."""
+    longer: str = ""
+    """Whether longer runs give the same at both ends; "" if that was not asked for."""
 
     @property
     def runs(self) -> int:
@@ -84,7 +89,8 @@ class Edge(StudyWithDataset):
         ends = f"{brief(self.low, self.unit, 9)} and {brief(self.high, self.unit, 9)}"
         changes = f"{self.what}: {_word(self.at_low)} below, {_word(self.at_high)} above"
         runs = f"{self.runs} exact runs of {brief(self.duration, 's')}"
-        return f"between {self.parameter} = {ends} ({changes}), by {runs}" + (f", which start {self.start}" if self.start else "")
+        starts = f", which start {self.start}" if self.start else ""
+        return f"between {self.parameter} = {ends} ({changes}), by {runs}{starts}" + (f"; {self.longer}" if self.longer else "")
 
     def _about(self) -> Iterable[str]:
         return (self.text,)
@@ -133,7 +139,8 @@ def find(
         "sticking": whether the contact rests in the last third of a run (or nearly does, see the quantity of that name in sweeps).
         "events", "pulses": how many there are. Or a function of a `Solution` that returns True or False, or a whole number.
     duration : float or str, optional
-        Duration of the runs (s), long enough for what happens at the start to be over; that of the scenario by default.
+        Duration of the runs (s), long enough for what happens at the start to be over. By default it is that of the scenario, and
+        for "sticking" it is doubled until runs twice as long give the same at both ends; if it is given, the result says whether.
     within : float
         Width of the last bracket, as a share of its upper end.
     progress : bool or callable, optional
@@ -175,7 +182,9 @@ def find(
     ends = [None if end is None else parameter.declared.check("find", parameter.name, end) for end in (low, high)]
     with telling(progress, "find") as tell:
         search = _EdgeSearch(scenario, parameter, what, lasts, tell)
-        return search.edge(*search.ends(*ends), within)
+        span = search.ends(*ends)
+        edge = search.edge(*span, within)
+        return held_in_longer_runs(search, edge, span, within, given=duration is not None) if what == SETTLED else edge
 
 
 def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lambda text: None) -> FromRest | None:
@@ -231,6 +240,10 @@ class _EdgeSearch:
     tell: TextProgress
     most_pieces: int | None = None
     seen: dict[float, bool | int] = field(default_factory=dict)
+
+    def longer(self, factor: float) -> _EdgeSearch:
+        """Return the same search by runs that last longer by a factor."""
+        return replace(self, duration=factor * self.duration, seen={})
 
     @property
     def name(self) -> str:

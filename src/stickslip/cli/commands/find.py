@@ -12,6 +12,7 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_targe
 from stickslip.cli.output.show import print_sentences, titled
 from stickslip.foundation.errors import InputError
 
+DURATION = "Duration of the runs: s, or with a unit. Default: that of the scenario; for sticking doubled until the edge holds."
 ALONG = "NAME=LOW..HIGH: what to vary, and between which values. Default: pull_rate, upwards from where steady sliding is stable."
 
 
@@ -21,7 +22,7 @@ def find(
     changes: Changes = None,
     along: Annotated[str, option(ALONG)] = "pull_rate",
     what: Annotated[str, option("What changes: sticking, events or pulses.")] = "sticking",
-    duration: Annotated[str | None, option("Duration of the runs: s, or with a unit.")] = None,
+    duration: Annotated[str | None, option(DURATION)] = None,
     within: Annotated[float, typer.Option(help="Width of the last bracket, as a share of its upper end.")] = 1e-3,
     out: Annotated[Path | None, table_of("run")] = None,
     figure: FigureFile = None,
@@ -32,7 +33,8 @@ def find(
     At which pull rate does stick-slip vanish? From which stiffness on is there
     no event, or one pulse less? The answer is the last bracket, with what the
     runs at its two ends did. "sticking" asks whether the contact rests in the
-    last third of a run: let the run last long enough. A contact that starts
+    last third of a run; runs twice as long are asked at the two ends, whether
+    they give the same. A contact that starts
     from rest may stick although steady sliding is stable: `stickslip check`
     says from which rate on steady sliding is stable, and finds this edge to 2 %.
     Runs that would begin in steady sliding start without load instead, as only
@@ -59,6 +61,7 @@ def find(
     chosen = load_with("find", scenario, changes, duration=duration)
     values = (typed_number(typed.low), typed_number(typed.high)) if typed else (None, None)
     with progress_line(f"{chosen.name}:") as report:
-        found = study(chosen, name.strip(), *values, what=what, within=within, progress=report)
+        lasts = None if duration is None else chosen.duration
+        found = study(chosen, name.strip(), *values, what=what, within=within, duration=lasts, progress=report)
     print_sentences(titled(chosen), found.text)
     announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
