@@ -247,3 +247,12 @@ def test_a_file_of_curves_is_read_back_as_a_record(kind: str, tmp_path: Path) ->
     table = read_file(run.to_csv(tmp_path / "a.csv", points=50), ("time", slip, shear), (10**6, 1000), raw=True)
     np.testing.assert_array_equal(table.columns[slip], run.slip(table.columns["time"]))
     np.testing.assert_array_equal(table.columns[shear], run.traction(table.columns["time"]))
+
+
+def test_friction_is_drawn_over_the_normal_load_of_its_moment() -> None:
+    """Coulomb friction slides at its dynamic coefficient, also after the normal force was halved."""
+    run = run_of("block, pressed")
+    slides = run.events.start[0] + 0.5 * run.events.duration[0]
+    axes = run.plot.friction(start=float(run.events.start[0]) + 1e-6, end=slides).axes[0]  # type: ignore[union-attr]
+    line = next(one for one in axes.get_lines() if len(one.get_xdata()) > 100)
+    assert np.asarray(line.get_ydata(), float) == pytest.approx(0.4, rel=1e-9)

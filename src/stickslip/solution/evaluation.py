@@ -23,9 +23,11 @@ if TYPE_CHECKING:
 
     from stickslip.observables.field import Field
 
-Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip"]
+Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip", "normal_load"]
 LONG_HISTORY = 100_000
 """With more pieces than this, fewer values of each are evaluated for a curve."""
+HAIR = 1e-12
+"""Relative distance of the two limits at a jump of the normal load from the jump, whose time may be rounded."""
 TIME = Quantity("s", "time")
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Quantities that every run can draw against time."""
@@ -92,13 +94,14 @@ class Readings(NamesAttributes):
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
-    def normal_load(self, t: ArrayLike | None = None) -> Floats:
+    def normal_load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the normal load S on the contact at times t, also where it varies, in the unit of loads (Pa, N or N m)."""
         time, history = self._times(t), self.problem.normal_load
         if history is None:
             return np.full(time.shape, self.problem.normal)
         trip, offset = self.history.epoch
-        return history.at(trip * self.history.round_trip_time + offset + time)
+        beside = 1.0 + (HAIR if side == "right" else -HAIR)
+        return history.at((trip * self.history.round_trip_time + offset + time) * beside)
 
     def state(self, t: ArrayLike | None = None) -> Floats:
         """Return the state variable of the friction law, in the law's own unit (`FrictionLaw.state`), at times t.

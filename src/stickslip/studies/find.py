@@ -87,7 +87,7 @@ class Edge(StudyWithDataset):
         return f"between {self.parameter} = {ends} ({changes}), by {runs}" + (f", which start {self.start}" if self.start else "")
 
     def _about(self) -> Iterable[str]:
-        return (self.text,)
+        return (self.text, f"{self.parameter} in {self.unit}" if self.unit not in ("", "1") else "")
 
     def _lines(self) -> Iterable[str]:
         return (self.text,)
