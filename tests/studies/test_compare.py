@@ -183,3 +183,35 @@ def test_the_dynamic_drop_is_exact_where_a_pulse_lasts_no_time() -> None:
     """Fig. 5, slab: from 3430 Pa above S (muS + a) down to S (muS - a), 1e8 Pa apart; relative 1e-9."""
     row = ss.studies.compare("fig5-slab-reconstructed", "fig5-block-reconstructed-omega").table.iloc[0]
     assert row.dynamic_drop == pytest.approx(1e8 + 3430.0, rel=1e-9)
+
+
+def test_curves_that_lie_on_one_another_are_told_by_marks_at_places_of_their_own() -> None:
+    """Four times the same run: colours and marks differ, wider lines lie below, and no two marks share a place."""
+    run = ss.simulate("fig6-slab")
+    figure = Comparison(dict.fromkeys("abcd", run)).plot()
+    for axes in figure.axes:
+        lines = axes.get_lines()[:4]
+        assert len({line.get_color() for line in lines}) == len({line.get_marker() for line in lines}) == 4
+        widths = [line.get_linewidth() for line in lines]
+        assert widths == sorted(widths, reverse=True)
+        places = np.sort([np.asarray(line.get_xdata(), float)[place] for line in lines for place in line.get_markevery()])  # type: ignore[union-attr]
+        span = float(np.ptp(np.asarray(lines[0].get_xdata(), float)))
+        assert len(places) == 24
+        assert np.diff(places).min() > 0.5 * span / 24
+
+
+def test_rules_of_one_scenario_are_its_runs_under_each() -> None:
+    found = compare("second-event-maxwell", rules=True)
+    assert list(found.runs) == ["perfect-delay", "maxwell", "minimal", "maximal"]
+    assert list(found.table.rule) == list(found.runs)
+    assert found.scenario == "The second event of the alpha = 1 slab, maxwell rule: each selection rule"
+    labels = [text.get_text() for text in found.plot().legends[0].get_texts()]
+    assert labels[1] == "maxwell (waits 394.3 years)"
+    moving = ss.Problem(
+        ss.ElasticSlab(2800, 3500, 1e4, 1e8),
+        ss.friction.SlipPlusRate(ss.friction.SinusoidalSlip(0.5, 0.1, 5.0), ss.friction.HyperbolicRate(0.3, 0.1, 1.0)),
+        pull_rate=1e-3,
+        initial_excess=-1e6,
+    )
+    with pytest.raises(ss.InputError, match="there are no rules to compare"):
+        compare(ss.simulate(moving, 1.0), rules=True)

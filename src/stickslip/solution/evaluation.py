@@ -33,12 +33,15 @@ Curve = Literal[
     "state",
     "second_state",
     "event_slip",
+    "normal_load",
     "drive_rate",
     "drive_traction",
     "surface_torque",
 ]
 LONG_HISTORY = 100_000
 """With more pieces than this, fewer values of each are evaluated for a curve."""
+HAIR = 1e-12
+"""Relative distance of the two limits at a jump of the normal load from the jump, whose time may be rounded."""
 TIME = Quantity("s", "time")
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Quantities that every run can draw against time."""
@@ -134,13 +137,14 @@ class Readings(NamesAttributes):
         time = self._times(t)
         return at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
 
-    def normal_load(self, t: ArrayLike | None = None) -> Floats:
+    def normal_load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the normal load S on the contact at times t, also where it varies, in the unit of loads (Pa, N or N m)."""
         time, history = self._times(t), self.problem.normal_load
         if history is None:
             return np.full(time.shape, self.problem.normal)
         trip, offset = self.history.epoch
-        return history.at(trip * self.history.round_trip_time + offset + time)
+        beside = 1.0 + (HAIR if side == "right" else -HAIR)
+        return history.at((trip * self.history.round_trip_time + offset + time) * beside)
 
     def state(self, t: ArrayLike | None = None) -> Floats:
         """Return the state variable of the friction law, in the law's own unit (`FrictionLaw.state`), at times t.

@@ -93,7 +93,7 @@ class Edge(StudyWithDataset):
         return f"between {self.parameter} = {ends} ({changes}), by {runs}{starts}" + (f"; {self.longer}" if self.longer else "")
 
     def _about(self) -> Iterable[str]:
-        return (self.text,)
+        return (self.text, f"{self.parameter} in {self.unit}" if self.unit not in ("", "1") else "")
 
     def _lines(self) -> Iterable[str]:
         return (self.text,)

@@ -244,8 +244,8 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
 
 def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["time", "slip", "slip_rate"] = "time") -> None:
     """Draw the friction coefficient, against time beside the load over the normal load, or against slip or slip rate."""
-    normal, slip = readings.problem.normal, readings.curves[0]
-    time, (load, traction) = readings.curves_together(("load", "traction"), *span)
+    slip = readings.curves[0]
+    time, (load, traction, normal) = readings.curves_together(("load", "traction", "normal_load"), *span)
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
     traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
     if against != "time":

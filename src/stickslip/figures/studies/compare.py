@@ -103,14 +103,14 @@ def _line(view: Readings, row: str, span: tuple[float, float], *, shares: bool, 
     """Return times and values of a run's line in the panel of a row."""
     problem = view.problem
     curve: Curve = "event_slip" if row == "slip" and "event_slip" in view.curves else cast("Curve", row)
-    time, values = view.curve(curve, *span)
+    time, (values, normal) = view.curves_together((curve, "normal_load"), *span)
     if curve == "slip":
         values = values - problem.initial_slip
     if row == "traction" and not problem.friction.sticks:
         # Such a law has no friction at rest, where a run may start: that zero would set the scale.
         values = np.where(values != 0.0, values, np.nan)
     if row == "traction" and mixed:
-        values = values / problem.normal
+        values = values / normal
     return ((time - span[0]) / (span[1] - span[0]) if shares else time), values
 
 

@@ -1,0 +1,258 @@
+"""Every column of every file that is written has the numbers of the run in the unit of its heading, for every kind of body."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import stickslip as ss
+from stickslip.bodies import SpringBlock
+from stickslip.foundation.text_columns import read_file
+from stickslip.io.scec import write_scec
+from stickslip.observables.event_table import with_units
+from stickslip.solution.solution import Solution
+from stickslip.sweeps.results.layout import table_of
+
+SIZES = {"MPa": ("Pa", 1e6), "m s-1": ("m/s", 1.0), "rad s-1": ("rad/s", 1.0)}
+"""Units of files that are spelled or sized unlike SI: their SI unit, and the factor to it. Others are SI already."""
+AREA = 0.75
+
+
+def in_si(unit: str) -> tuple[str, float]:
+    return SIZES.get(unit, (unit, 1.0))
+
+
+def pressed() -> ss.Problem:
+    """A block on which the normal force is halved after 2 s, so that it slips."""
+    falls = ss.loading.Steps(times=[0.0, 2.0], values=[1e6, 5e5])
+    return ss.Problem(
+        SpringBlock(1e5, 1e7, 1e6), ss.friction.Coulomb(0.6, 0.4), initial_load=4e5, pull_rate=1e-3, normal_load=falls
+    )
+
+
+RUNS: dict[str, Callable[[], Solution]] = {
+    "block": lambda: ss.simulate("direct-shear-block", 5.0),
+    "block, pressed": lambda: ss.simulate(pressed(), 4.0),
+    "block to and fro": lambda: ss.simulate("reversing-axis", 0.15),
+    "slab": lambda: ss.simulate("fig6-slab"),
+    "slab, slip law": lambda: ss.simulate("fig5-slab-reconstructed", 3.0),
+    "slab with a state": lambda: ss.simulate("rate-and-state-slab", 0.3),
+    "layers": lambda: ss.simulate("low-velocity-zone", 12.0),
+    "string": lambda: ss.simulate("drill-string", 12.0),
+    "string of sections": lambda: ss.simulate("pipe-and-collar", 8.0),
+}
+"""Runs of every kind of body, short ones."""
+KINDS = list(RUNS)
+
+
+@cache
+def run_of(kind: str) -> Solution:
+    return RUNS[kind]()
+
+
+def read_at(run: Solution, name: str, time: np.ndarray) -> tuple[np.ndarray, str]:
+    """What a column of this name holds at times, from the run itself, and its SI unit."""
+    if name == "time":
+        return time, "s"
+    if name in ("state", "second state"):
+        number = ("state", "second state").index(name)
+        return getattr(run, name.replace(" ", "_"))(time), run.problem.friction.states[number].unit
+    return getattr(run, name.replace(" ", "_"))(time), run.problem.unit_of(name.replace(" ", "_"))
+
+
+def parts(heading: str) -> tuple[str, str]:
+    """Name and unit of a heading such as "slip rate (m/s)"."""
+    found = re.fullmatch(r"(.*?)(?: \((.*)\))?", heading)
+    assert found is not None
+    return found[1], found[2] or "1"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_curves_as_csv(kind: str, tmp_path: Path) -> None:
+    run = run_of(kind)
+    table = pd.read_csv(run.to_csv(tmp_path / "a.csv", points=201))
+    time = table["time (s)"].to_numpy()
+    assert time == pytest.approx(np.linspace(0.0, run.duration, 201), rel=1e-14, abs=0.0)
+    names = [parts(heading)[0] for heading in table]
+    assert names[:5] == ["time", "slip", "slip rate", "load", "traction"]
+    assert len(names) == 5 + len(run.problem.friction.states)
+    for heading in table:
+        name, unit = parts(heading)
+        expected, si = read_at(run, name, time)
+        assert in_si(unit) == (si, 1.0), heading
+        np.testing.assert_array_equal(table[heading].to_numpy(), expected, heading)
+
+
+@pytest.mark.sampled(every=4)
+@pytest.mark.parametrize("kind", KINDS)
+def test_curves_as_netcdf(kind: str, tmp_path: Path) -> None:
+    run = run_of(kind)
+    with xr.open_dataset(run.to_csv(tmp_path / "a.nc", sampling_rate=20.0 / run.duration), decode_times=False) as found:
+        time = found["time"].to_numpy()
+        assert len(time) == 21
+        for name in ("slip", "slip_rate", "load", "traction", *("state",) * len(run.problem.friction.states)):
+            expected, si = read_at(run, name.replace("_", " "), time)
+            assert in_si(found[name].attrs["units"]) == (si, 1.0), name
+            np.testing.assert_array_equal(found[name].to_numpy(), expected, name)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if "string" not in kind])
+@pytest.mark.parametrize("area", [None, AREA])
+def test_text_of_the_scec(kind: str, area: float | None, tmp_path: Path) -> None:
+    run = run_of(kind)
+    is_block = run.problem.load_unit == "N"
+    if area and not is_block:
+        with pytest.raises(ss.InputError, match="the loads of a slab are stresses already"):
+            write_scec(run, tmp_path / "a.txt", 10.0, area=area)
+        return
+    rate = 50.0 / run.duration
+    lines = write_scec(run, tmp_path / "a.txt", rate, components=True, area=area).read_text(encoding="utf-8").splitlines()
+    headings = [line.partition(" = ")[2] for line in lines if line.startswith("# Column #")]
+    numbers = np.loadtxt([line for line in lines if not line.startswith("#")][1:]).T
+    time, size = numbers[0], area or 1.0
+    normal = run.problem.normal_load
+    of_run = {
+        "Time": (time, "s"),
+        "horizontal slip": (run.slip(time) - run.problem.initial_slip, "m"),
+        "horizontal slip rate": (run.slip_rate(time), "m/s"),
+        "normal": (-(np.full(len(time), run.problem.normal) if normal is None else normal.at(time)) / size, "N"),
+        "horizontal shear": (run.traction(time) / size, "N"),
+    }
+    for heading, values in zip(headings, numbers, strict=True):
+        name, unit = parts(heading)
+        si, factor = in_si(unit)
+        if name.startswith("vertical"):
+            assert not values.any()
+            continue
+        of = re.sub(r" (stress|force)$", "", name)
+        expected, own = of_run[of]
+        if own == "N":
+            own = "Pa" if area or not is_block else "N"
+            assert name.endswith("stress" if own == "Pa" else "force")
+        assert si == own, heading
+        scale = float(np.abs(expected).max())
+        np.testing.assert_allclose(factor * values, expected, rtol=1e-11, atol=1e-11 * scale, err_msg=heading)
+
+
+def of_events(run: Solution, table: pd.DataFrame) -> Iterator[tuple[str, np.ndarray, str]]:
+    """What columns of a catalogue hold, from the run itself: name, values and SI unit."""
+    start, end, peak = (table[name].to_numpy(float) for name in ("start", "end", "peak_time"))
+    over = np.where(np.isnan(end), run.duration, end)
+    loads, slip = run.problem.load_unit, run.problem.unit_of("slip")
+    slipped = run.slip(over) - run.slip(start)
+    yield "slip", slipped, slip
+    yield "static_drop", run.problem.body.stiffness * slipped, loads
+    speed = np.maximum(np.abs(run.slip_rate(peak)), np.abs(run.slip_rate(peak, side="left")))
+    yield "peak_rate", speed, f"{slip}/s"
+    whole = np.isfinite(end)
+    yield "duration", np.where(whole, end - start, np.nan), "s"
+    yield "traction_drop", (table.traction_before - table.traction_after).to_numpy(), loads
+
+
+@pytest.mark.sampled(every=4)
+@pytest.mark.parametrize("kind", KINDS)
+def test_slip_events_in_every_file(kind: str, tmp_path: Path) -> None:
+    """In the table, with units in its headings, and in the file of the run; a slip back is negative."""
+    run = run_of(kind)
+    table = run.events
+    with xr.open_dataset(run.to_netcdf(tmp_path / "run.nc"), decode_times=False) as kept:
+        headed = with_units(table, run.problem.load_unit)
+        for name, expected, si in of_events(run, table):
+            heading = next(one for one in headed if parts(one)[0] == name)
+            assert parts(heading)[1] == si
+            scale = float(np.nanmax(np.abs(expected), initial=0.0))
+            np.testing.assert_allclose(headed[heading].to_numpy(float), expected, rtol=1e-6, atol=1e-7 * scale, err_msg=heading)
+            if len(table):
+                assert in_si(kept[f"event_{name}"].attrs["units"])[0] == si
+                np.testing.assert_array_equal(kept[f"event_{name}"].to_numpy(), table[name].to_numpy(), name)
+
+
+def test_events_to_and_fro_have_signs() -> None:
+    """Slip to and fro: the signs of the events add up to the slip of the run; their sizes do not."""
+    run = ss.simulate("reversing-axis", 0.3)
+    events = run.catalogue(0.0)
+    assert (events.slip < 0.0).any()
+    assert (events.slip > 0.0).any()
+    assert events.slip.sum() == pytest.approx(float(run.slip()), rel=1e-9, abs=1e-15)
+    assert events.slip.abs().sum() > 2.0 * abs(float(run.slip()))
+
+
+@pytest.mark.sampled(every=3)
+@pytest.mark.parametrize("kind", KINDS)
+def test_table_of_a_comparison(kind: str, tmp_path: Path) -> None:
+    run, other = run_of(kind), run_of("slab")
+    found = ss.studies.compare(run, other, names=["it", "slab"])
+    file = found.to_csv(tmp_path / "a.csv")
+    said = dict(
+        parts(line[2:].split(":")[0]) for line in file.read_text(encoding="utf-8").splitlines() if re.match(r"# \w+ \(.*\): ", line)
+    )
+    row = pd.read_csv(file, comment="#").iloc[0]
+    slip = run.problem.unit_of("slip")
+    time = np.linspace(0.0, run.duration, 4001)
+    moved = run.slip(time) - run.problem.initial_slip
+    for name, expected, si in (
+        ("end_slip", float(run.slip(run.duration)), slip),
+        ("displacement", moved[np.abs(moved).argmax()], slip),
+    ):
+        assert si in said[name].split(" or ")
+        assert row[name] == pytest.approx(expected, rel=1e-4, abs=0.0), name
+    assert abs(row.displacement) >= np.abs(moved).max() * (1.0 - 1e-12)
+    assert row.load_unit == run.problem.load_unit
+
+
+@pytest.mark.parametrize("kind", ["block", "string"])
+def test_table_and_store_of_a_sweep(kind: str) -> None:
+    run = run_of(kind)
+    wanted = ("slip", "peak_rate", "first_slip", "first_static_drop")
+    found = ss.sweep(run.scenario(), {"friction.dynamic": [run.problem.friction.dynamic]}, quantities=wanted)
+    table = table_of(found)
+    expected = {
+        f"slip ({run.problem.unit_of('slip')})": float(run.slip()) - run.problem.initial_slip,
+        f"peak_rate ({run.problem.unit_of('slip')}/s)": run.events.peak_rate.max(),
+        f"first_slip ({run.problem.unit_of('slip')})": run.events.slip[0],
+        f"first_static_drop ({run.problem.load_unit})": run.events.static_drop[0],
+    }
+    for heading, value in expected.items():
+        assert table[heading][0] == pytest.approx(value, rel=1e-6, abs=0.0), heading
+
+
+@pytest.mark.slow
+def test_curves_of_a_contact_of_many_nodes(tmp_path: Path) -> None:
+    scenario = ss.load_scenario("planar-patch")
+    slab = replace(scenario.planar_slab, nodes=64)
+    run = ss.simulate(slab, 1.0)
+    table = pd.read_csv(run.to_csv(tmp_path / "a.csv"))
+    units = {"time": "s", "slip": "m", "slip rate": "m/s", "traction": "Pa", "heat": "J/m^2"}
+    assert [parts(heading) for heading in table] == list(units.items())
+    assert float(table["slip (m)"].iloc[-1]) == run.slip[-1, 32]
+    with xr.open_dataset(run.to_csv(tmp_path / "a.nc")) as found:
+        np.testing.assert_array_equal(found["slip"].to_numpy(), run.slip)
+        assert found["heat"].attrs["units"] == "J m-2"
+
+
+@pytest.mark.parametrize("kind", ["block", "slab", "string"])
+def test_a_file_of_curves_is_read_back_as_a_record(kind: str, tmp_path: Path) -> None:
+    """By the headings alone, in SI: a record of a run is the run."""
+    run = run_of(kind)
+    shear = {"N": "shear_force", "Pa": "shear_stress", "N m": "torque"}[run.problem.load_unit]
+    slip = "slip_angle" if kind == "string" else "slip"
+    table = read_file(run.to_csv(tmp_path / "a.csv", points=50), ("time", slip, shear), (10**6, 1000), raw=True)
+    np.testing.assert_array_equal(table.columns[slip], run.slip(table.columns["time"]))
+    np.testing.assert_array_equal(table.columns[shear], run.traction(table.columns["time"]))
+
+
+def test_friction_is_drawn_over_the_normal_load_of_its_moment() -> None:
+    """Coulomb friction slides at its dynamic coefficient, also after the normal force was halved."""
+    run = run_of("block, pressed")
+    slides = run.events.start[0] + 0.5 * run.events.duration[0]
+    axes = run.plot.friction(start=float(run.events.start[0]) + 1e-6, end=slides).axes[0]  # type: ignore[union-attr]
+    line = next(one for one in axes.get_lines() if len(one.get_xdata()) > 100)
+    assert np.asarray(line.get_ydata(), float) == pytest.approx(0.4, rel=1e-9)
