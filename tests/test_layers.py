@@ -39,7 +39,9 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "memory", "units"),
+        ("given",),
+        ("names",),
         ("conversion", "headings", "netcdf_file"),
         ("axis", "columns", "quantities"),
         ("other_values", "show", "text_columns"),
@@ -66,7 +68,13 @@ ROOMS = {
         ("on_demand",),
         ("loop",),
     ),
-    "problem": (("ground", "normal_load", "run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
+    "problem": (
+        ("ground", "normal_load", "run_quantities", "selection_rule"),
+        ("fields",),
+        ("parameters", "start"),
+        ("problem",),
+        ("given_units",),
+    ),
     "engine_input": (("branch_table", "forcing", "limits"), ("ladder", "shaking"), ("prepare",)),
     "planar": (
         ("driving", "echo", "layout", "memory", "nodes"),

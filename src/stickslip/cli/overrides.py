@@ -15,6 +15,8 @@ from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import show_in
+from stickslip.problem.given_units import units_given
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
 from stickslip.scenarios.entries import read_typed, typed_number
@@ -36,10 +38,11 @@ def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, c
     Raises InputError, also for a scenario with a contact of many nodes unless `contact` is True.
     """
     loaded = _load(scenario) if contact else all_slips_alike(command, _load(scenario))
-    if not changes:
-        return loaded
     where = f"{command}: --set"
-    return with_values(loaded, typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"'), where)
+    if changes:
+        loaded = with_values(loaded, typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"'), where)
+    show_in(units_given(loaded.problem))
+    return loaded
 
 
 def _load(scenario: str) -> Scenario:
