@@ -40,7 +40,9 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "lazy_names", "marks", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "lazy_names", "marks", "memory", "units"),
+        ("given",),
+        ("names",),
         ("headings", "meant", "netcdf_file"),
         ("conversion",),
         ("named_columns", "unit_doubts"),
@@ -69,7 +71,13 @@ ROOMS = {
         ("on_demand",),
         ("loop",),
     ),
-    "problem": (("ground", "normal_load", "run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
+    "problem": (
+        ("ground", "normal_load", "run_quantities", "selection_rule"),
+        ("fields",),
+        ("parameters", "start"),
+        ("problem",),
+        ("given_units",),
+    ),
     "engine_input": (("branch_table", "forcing", "limits"), ("ladder", "shaking"), ("prepare",)),
     "planar": (
         ("driving", "echo", "layout", "memory", "nodes"),

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
+from stickslip.problem.given_units import in_given_units
 from stickslip.run.progress import reporting
 from stickslip.solution.accessors import figure_of_study, known_to_pyplot
 from stickslip.solution.solution import Solution
@@ -61,6 +62,7 @@ class Study(NamesAttributes):
     def _about(self) -> Iterable[str]:
         return ()
 
+    @in_given_units
     def plot(self, **place: Unpack[Place]) -> Figure:
         """Plot the result; the panels are described with each study in the documentation.
 
@@ -83,9 +85,11 @@ class Study(NamesAttributes):
         """Return what `repr` shows below the name; empty lines are left out."""
         raise NotImplementedError
 
+    @in_given_units
     def __repr__(self) -> str:
         return "\n".join([f"stickslip {type(self).__name__}", *(f"  {line}" for line in self._lines() if line)])
 
+    @in_given_units
     def _repr_html_(self) -> str:
         lines = "".join(f"<div>{escape(line)}</div>" for line in self._lines() if line)
         table = self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)

@@ -7,6 +7,8 @@ from dataclasses import fields, is_dataclass
 from inspect import Parameter, Signature, signature
 from typing import Any, get_type_hints
 
+from stickslip.foundation.given import shown_in
+
 
 def expanded(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that takes an option for each field of those of its parameters that are dataclasses."""
@@ -15,7 +17,8 @@ def expanded(command: Callable[..., None]) -> Callable[..., None]:
     taken = signature(command).parameters
 
     def called(**typed: Any) -> None:
-        command(**{name: _made(hint, typed) if is_dataclass(hint) else typed[name] for name, hint in hints.items()})
+        with shown_in({}):  # each command shows results in the units of its own problem
+            command(**{name: _made(hint, typed) if is_dataclass(hint) else typed[name] for name, hint in hints.items()})
 
     parameters = [one for name, hint in hints.items() for one in _options(hint, taken[name])]
     called.__signature__ = Signature(parameters)  # type: ignore[attr-defined] # typer reads it

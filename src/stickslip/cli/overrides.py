@@ -15,6 +15,8 @@ from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import show_in
+from stickslip.problem.given_units import units_given
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
 from stickslip.scenarios.entries import read_typed, typed_number
@@ -36,14 +38,16 @@ def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, c
     Raises InputError, also for a scenario with a contact of many nodes unless `contact` is True.
     """
     loaded = _load(scenario) if contact else all_slips_alike(command, _load(scenario))
-    if not changes:
-        return loaded
     where = f"{command}: --set"
-    values = typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"')
-    several = next((name for name, value in values.items() if isinstance(value, str) and ".." in value), None)
-    if several is not None:
-        raise InputError(f"{where}: {shown(several)} takes one value; `stickslip sweep` runs a range: --vary NAME=LOW..HIGH:POINTS")
-    return with_values(loaded, values, where)
+    if changes:
+        values = typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"')
+        several = next((name for name, value in values.items() if isinstance(value, str) and ".." in value), None)
+        if several is not None:
+            cure = "`stickslip sweep` runs a range: --vary NAME=LOW..HIGH:POINTS"
+            raise InputError(f"{where}: {shown(several)} takes one value; {cure}")
+        loaded = with_values(loaded, values, where)
+    show_in(units_given(loaded.problem))
+    return loaded
 
 
 def _load(scenario: str) -> Scenario:

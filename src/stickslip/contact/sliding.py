@@ -12,7 +12,8 @@ import numpy as np
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.foundation.show import brief, brief_repr
+from stickslip.foundation.show import brief, brief_repr, exactly
+from stickslip.problem.given_units import in_given_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -215,6 +216,7 @@ class SteadySlidings:
         lasting = [one for one in self.slidings if one.lasts]
         return lasting[0] if len(lasting) == 1 and not self.can_rest else None
 
+    @in_given_units
     def plot(self, **place: Unpack[Place]) -> Figure | Axes:
         """Plot friction of steady sliding against the slip rate: where it is stable, this motion, critical rates, hysteresis.
 
@@ -238,6 +240,7 @@ class SteadySlidings:
     def __str__(self) -> str:
         return " ".join(f"{line[0].upper()}{line[1:]}." for line in self.lines())
 
+    @in_given_units
     def lines(self) -> list[str]:
         """Return sentences for users, without a capital and without a full stop."""
         if self.why_none:
@@ -277,7 +280,7 @@ class SteadySlidings:
     def _ranges(self) -> Iterator[str]:
         """Yield the words for each range of rates between two changes, and for the ranges below and above all of them."""
         first, last, words = self.changes[0], self.changes[-1], ("unstable", "stable")
-        rates = [f"{one.rate:.9g} {self._rate}" for one in self.changes]
+        rates = [exactly(one.rate, self._rate) for one in self.changes]
         yield f"{words[not first.stable_above]} below {self._place(first)}"
         for one, low, high in zip(self.changes[1:], rates, rates[1:], strict=False):
             yield f"{words[not one.stable_above]} from {low} to {high}{self._pulled(one)}"
@@ -297,14 +300,14 @@ class SteadySlidings:
     def _place(self, change: StabilityChange) -> str:
         """Return the words for where stability changes."""
         of = "pull" if change.pull_rate == change.rate else "slip"
-        return f"a {of} rate of {change.rate:.9g} {self._rate}{self._pulled(change)}"
+        return f"a {of} rate of {exactly(change.rate, self._rate)}{self._pulled(change)}"
 
     def _pulled(self, change: StabilityChange) -> str:
         """Return the words for the pull rate that leads to a change, if it is not the slip rate."""
         if change.pull_rate is None or change.pull_rate == change.rate:
             return ""
         back = " (the driver would have to move back)" * (self.far_stress is not None and change.pull_rate * self.pull_rate < 0.0)
-        return f", at a pull rate of {change.pull_rate:.9g} {self._rate}{back}"
+        return f", at a pull rate of {exactly(change.pull_rate, self._rate)}{back}"
 
 
 def driven_at(rate: float, *, is_driven_rigidly: bool, unit: str = "m/s") -> str:

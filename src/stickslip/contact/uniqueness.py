@@ -24,8 +24,9 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
-from stickslip.foundation.show import brief, html_table
+from stickslip.foundation.show import brief, exact_range, html_table
 from stickslip.friction.law import rises_with_rate
+from stickslip.problem.given_units import in_given_units
 from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES
@@ -126,6 +127,7 @@ class Uniqueness(NamesAttributes):
         if len(self.jumps) > MOST_SHOWN:
             yield "", f"and {len(self.jumps) - MOST_SHOWN} more jumps"
 
+    @in_given_units
     def plot(self, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the set K: every pair of slip rate and load that solves the contact equation, and the jumps of the rule.
 
@@ -367,7 +369,7 @@ def _summary(
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
     unit, rate = problem.load_unit, problem.unit_of("slip_rate")
     flat = "; ".join(
-        f"{p.rate_from:.6g} to {p.rate_to:.6g} {rate} at a load of {brief(g.strength + p.excess, unit, 9)}" for p in g.plateaus
+        f"{exact_range((p.rate_from, p.rate_to), rate, 6)} at a load of {brief(g.strength + p.excess, unit, 9)}" for p in g.plateaus
     )
     sizes = [f"a continuum of slip rates, {flat}, where no rule picks one"] if flat else []
     if window[0] < window[1]:
@@ -375,7 +377,7 @@ def _summary(
         side = "at" if end == 0.0 else f"{brief(abs(end), unit)} {'above' if end > 0.0 else 'below'}"
         sizes.append(f"a window of {brief(end - window[0], unit)} that ends {side} the static strength")
     steps = "; ".join(
-        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} {rate} at a load of {brief(j.load, unit, 9)}"
+        f"{j.direction} from {exact_range((j.rate_before, j.rate_after), rate, 6)} at a load of {brief(j.load, unit, 9)}"
         for j in jumps[:MOST_SHOWN]
     )
     steps += f"; and {len(jumps) - MOST_SHOWN} more" if len(jumps) > MOST_SHOWN else ""

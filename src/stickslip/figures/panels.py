@@ -20,6 +20,7 @@ from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import PALE, Numbers, folded, label, shown
 from stickslip.foundation.axis import Axis
+from stickslip.foundation.given import Given
 from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
 
@@ -127,7 +128,8 @@ def parameter_numbers(problem: Problem, **axes: Axis) -> dict[str, Numbers]:
     for name, axis in axes.items():
         one = problem.parameters[axis.parameter]
         text = parameter_name(one.name, one.declared.meaning)
-        found[name] = Numbers(axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
+        shown_in = {"shown_in": axis.low.unit} if isinstance(axis.low, Given) else {}
+        found[name] = Numbers(axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)} | shown_in)
     return found
 
 

@@ -26,6 +26,7 @@ from __future__ import annotations
 import io
 import textwrap
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
 
@@ -34,7 +35,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import display_name
 from stickslip.foundation.names import QUANTITIES, for_readers, name_of, readable_unit, si_unit
+from stickslip.foundation.units import si_factor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -136,9 +140,18 @@ def curve_quantity(dims: str | Sequence[str], values: Any, curve: str, load_unit
     return quantity(dims, values, name_of(curve, load_unit), QUANTITIES[curve].symbol, si_unit(curve, load_unit))
 
 
+def readable(variable: Any, *values: Any, log: bool = False) -> tuple[str, float]:
+    """Return the unit (name, size in SI units) in which a variable is readable: that in which it was given, if any."""
+    si, given = str(variable.attrs.get("units", "1")), str(variable.attrs.get("shown_in", ""))
+    if given:
+        with suppress(InputError):  # from a file of anybody
+            return display_name(given, si), float(si_factor(given, si))
+    return readable_unit(si, *values, log=log)
+
+
 def unit_shown(*variables: xr.DataArray | Numbers) -> tuple[str, float]:
     """Return the unit (name, size in SI units) in which variables that share an axis are drawn."""
-    return readable_unit(variables[0].attrs["units"], *(variable.values for variable in variables))
+    return readable(variables[0], *(variable.values for variable in variables))
 
 
 def shown(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = None) -> Floats:

@@ -11,6 +11,7 @@ import numpy as np
 
 from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import as_given
 from stickslip.foundation.meant import probably_meant
 from stickslip.foundation.units import LONGEST, split_quantity, to_si
 
@@ -104,6 +105,16 @@ def _from_text(text: str, unit: str) -> float:
         return float(_in_one_of(parts[0], parts[1], unit))
     except InputError as error:
         raise InputError(f"{shown(text)}: {error}") from None
+
+
+def remembered(value: Any, number: float, unit: str) -> float:
+    """Return a number (in `unit`, SI) that `to_number` read from a value; it remembers a unit in which results are to be shown."""
+    if not isinstance(value, str) and not has_unit(value):
+        return number
+    parts = split_quantity(value if isinstance(value, str) else as_text(value))
+    if parts is None or (has_unit(value) and to_si(*parts, unit) != number):  # another registry may define its units otherwise
+        return number
+    return as_given(number, *parts, unit)
 
 
 def unit_among(value: Any, units: str) -> str:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.given import preferred
 
 
 @dataclass(frozen=True)
@@ -224,17 +225,21 @@ def sizes_of(unit: str) -> tuple[tuple[float, str], ...]:
     return tuple((size, prefix + unit) for size, prefix in _PREFIXES) if has_prefixes(unit) else _READABLE.get(unit, ())
 
 
-def readable_unit(unit: str, *values: Any, log: bool = False, plain: bool = False) -> tuple[str, float]:
+def readable_unit(unit: str, *values: Any, log: bool = False, plain: bool = False, of: str = "") -> tuple[str, float]:
     """Return the unit (name, size in SI units) in which values (SI) are readable together: the largest that fits.
 
+    Where quantities of this kind were given in a unit of a trade, such as rpm or inch, it is that one (`given.preferred`); `of` is
+    "place" for lengths inside a body, which are of another kind than slip.
     The largest magnitude is at least one in it (s, m and m/s: a half). It is the SI unit if all values are 0 or the unit has no
     others, and on a logarithmic axis (`log`) for values that span more than `DECADES`. In plain text (`plain`) only prefixes for
     large numbers are taken, and the unit is left as it is spelled.
     """
-    unit = unit if plain else for_readers(unit)
+    si, unit = unit, unit if plain else for_readers(unit)
     choice = [(size, name) for size, name in sizes_of(unit) if not plain or (has_prefixes(unit) and size >= 1.0)]
     known = np.concatenate([np.abs(np.ravel(np.asarray(one, float))) for one in values]) if values else np.zeros(0)
     known = known[np.isfinite(known) & (known > 0.0)]
+    if given := preferred(of or si, float(known.max()) if known.size else None):
+        return given
     if not choice or not known.size or (log and known.max() > DECADES * known.min()):
         return unit, 1.0
     least = 0.5 if unit in _READABLE else 1.0

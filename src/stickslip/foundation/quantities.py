@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.conversion import as_text, has_unit, to_number, unit_among
+from stickslip.foundation.conversion import as_text, has_unit, remembered, to_number, unit_among
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.given import Given
 from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.units import si_base
 
@@ -61,12 +62,13 @@ class Quantity:
         """
         where = f"{owner}: {name}"
         try:
-            number = value if type(value) is float else to_number(value, self.unit, ("inf", self.word) if self.infinite else ())
+            known = type(value) is float or type(value) is Given
+            number = value if known else to_number(value, self.unit, ("inf", self.word) if self.infinite else ())
         except InputError as error:
             raise InputError(f"{where} must be {self.allowed}, got {error}{_without_percent(value)}") from None
         low, high = self._plain
         if low <= number <= high:
-            return number
+            return number if known else remembered(value, number, self.unit)
         for broken, rule in self._rules(number):
             if broken:
                 origin = f" (from {shown(value)})" if isinstance(value, str) else ""

@@ -14,6 +14,7 @@ import numpy as np
 
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.given import Given, preferred
 from stickslip.foundation.names import has_prefixes, readable_unit, short_units, si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, fields_of, in_units
 
@@ -56,10 +57,23 @@ def brief(value: float, unit: str, digits: int = DIGITS) -> str:
     """
     if unit in ("1", ""):
         return f"{value:.{digits}g}"
+    if given := preferred(unit, abs(value)):
+        return f"{value / given[1]:.{digits}g} {given[0]}"
     units = ((unit.removeprefix("1"), 1.0), *short_units(unit))
     sizes = ((f"{value / factor:.{digits}g}", name, abs(value / factor)) for name, factor in units)
     shown, name, _ = min(sizes, key=lambda one: len(one[0] + one[1]) + (0 if 0.1 <= one[2] < 1000.0 else UNHANDY))
     return f"{shown} {name.removesuffix('s') if (shown, name) == ('1', 'years') else name}"
+
+
+def exactly(value: float, unit: str, digits: int = 9) -> str:
+    """Format a quantity with many digits in its SI unit, or in the unit in which its kind was given."""
+    return exact_range((value,), unit, digits)
+
+
+def exact_range(values: Sequence[float], unit: str, digits: int = 9, between: str = " to ") -> str:
+    """Format quantities, such as both ends of a range, in one unit, as `exactly` does."""
+    name, size = preferred(unit, max(abs(value) for value in values)) or (unit, 1.0)
+    return f"{between.join(f'{value / size:.{digits}g}' for value in values)} {name}"
 
 
 def how_long(reached: float, asked: float, text: Callable[[float, str], str] = brief) -> str:
@@ -231,6 +245,8 @@ def _text(value: Any, declared: Any) -> str:
     unit = item.unit if isinstance(item, Quantity) and " or " not in item.unit else ""
     if isinstance(value, np.ndarray) and value.ndim:
         return f"<array of shape {value.shape}>"
+    if isinstance(value, Given):
+        return f"'{value.amount:.{DIGITS}g} {value.unit}'"
     if isinstance(value, Real) and not isinstance(value, bool | np.bool_ | int):
         return _number(float(value), unit)
     if isinstance(value, tuple) and type(value) is tuple:

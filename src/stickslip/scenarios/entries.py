@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.given import Given
 from stickslip.foundation.headings import missing
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import (
@@ -126,7 +127,7 @@ def describe(entry: Field) -> str:
 
 
 def to_table(owner: Any) -> dict[str, Any]:
-    """Return a body, a law or a loading history as a table of a scenario, in SI, with numbers that read back to the last digit.
+    """Return a body, a law or a loading history as a table of a scenario, with numbers that read back to the last digit.
 
     An object of a user's class is written, too, but not read: its kind is unknown. A class that inherits the kind of another one is
     written by its own name, so that the file is not read back as the other.
@@ -143,7 +144,14 @@ def to_table(owner: Any) -> dict[str, Any]:
 def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
-    return to_table(value) if isinstance(entry, LawField) else value
+    if isinstance(value, tuple):
+        return [as_written(one) for one in value]
+    return to_table(value) if isinstance(entry, LawField) else as_written(value)
+
+
+def as_written(value: Any) -> Any:
+    """Return a value as it stands in a scenario: in SI, or as a text in the unit in which results are to be shown."""
+    return value.text if isinstance(value, Given) else value
 
 
 LARGEST_DATA_FILE = 5_000_000

@@ -50,6 +50,8 @@ class ParameterPath:
     declared: Quantity | Choice
     written: str = ""
     """Unit that follows the number in the scenario file (only parameters of an expression have one)."""
+    shown_in: str = ""
+    """Unit in which its values are shown, because they were given in it; "" for a readable one."""
 
     @property
     def unit(self) -> str:
@@ -194,7 +196,7 @@ def values_in(scenario: Scenario) -> Iterator[tuple[ParameterPath, Any]]:
     for one in parameter_paths(scenario):
         owner, key = place_of(one.name, scenario.document)
         if (isinstance(key, int) or key in owner) and not isinstance(owner[key], Mapping):  # a history in place of a number
-            yield one, owner[key]
+            yield one, one.read(owner[key], scenario.name)
 
 
 def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:

@@ -26,7 +26,7 @@ from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.scenarios import library
 from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.contact_table import contact_table, read_contact
-from stickslip.scenarios.entries import Source, to_table
+from stickslip.scenarios.entries import Source, as_written, to_table
 from stickslip.scenarios.schema import CONTACT, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
@@ -93,7 +93,7 @@ class Scenario(CheckedArguments):
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """The scenario as a parsed TOML document, in SI; it must not be changed. Raises InputError as `to_toml` does."""
+        """The scenario as a parsed TOML document, which must not be changed. Raises InputError as `to_toml` does."""
         return tomllib.loads(self.to_toml())
 
     def with_values(self, values: Mapping[str, Any]) -> Scenario:
@@ -108,7 +108,7 @@ class Scenario(CheckedArguments):
         return with_values(self, values, self.name)
 
     def to_toml(self) -> str:
-        """Return the scenario as TOML text, with every value in SI and to the last digit."""
+        """Return the scenario as TOML text, to the last digit: with values in SI, but for those in rpm, g, inch and the like."""
         problem = self.problem
         tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
         tables |= {"body": to_table(problem.body), "friction": to_table(problem.friction), "loading": {}, "initial": {}}
@@ -116,7 +116,9 @@ class Scenario(CheckedArguments):
             value = getattr(problem, f.name)
             if value is not None and value is not False and f.name not in ("body", "friction", "selection"):
                 table = "initial" if f.name.startswith("initial_") else "loading"
-                tables[table][f.name.removeprefix("initial_")] = to_table(value) if isinstance(value, LoadingHistory) else value
+                tables[table][f.name.removeprefix("initial_")] = (
+                    to_table(value) if isinstance(value, LoadingHistory) else as_written(value)
+                )
         if self.contact is not None:
             tables |= {CONTACT: contact_table(self.contact), "run": {"duration": self.duration}}
             return tomli_w.dumps(tables, multiline_strings=True)

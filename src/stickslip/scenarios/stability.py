@@ -9,6 +9,7 @@ from stickslip.bodies import BodyOnCharacteristics, OfLayers, as_waves
 from stickslip.bodies.layer_response import growth_on_layers
 from stickslip.contact.rules.loop import first_rate, resolved
 from stickslip.foundation.names import si_unit
+from stickslip.foundation.show import exactly
 from stickslip.friction import RateAndState
 from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import SteadySliding
@@ -30,17 +31,18 @@ def start_of(problem: Problem) -> str:
     """Return a sentence on the motion of the contact at t = 0+ and, if it sticks, on the time when it will slip."""
     slip_rate = problem.unit_of("slip_rate")
     if problem.has_initial_rate:
-        return f"slides from the start, at {problem.rate:.6g} {slip_rate}: {_why_it_slides(problem)}"
+        return f"slides from the start, at {exactly(problem.rate, slip_rate, 6)}: {_why_it_slides(problem)}"
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
     rate = resolved(rate, problem.load, problem.body.damping)
-    jump = f"; the slip rate jumps to {rate:.9g} {slip_rate}" if rate > 0.0 else ""
+    jump = f"; the slip rate jumps to {exactly(rate, slip_rate)}" if rate > 0.0 else ""
     if problem.load < -problem.strength:
-        return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"
+        beyond = exactly(-problem.load - problem.strength, unit, 6)
+        return f"slips backwards at once: the load is {beyond} beyond the static strength"
     if excess > 0:
-        return f"slips at once: the load exceeds the static strength by {excess:.6g} {unit}{jump}"
+        return f"slips at once: the load exceeds the static strength by {exactly(excess, unit, 6)}{jump}"
     if excess == 0 and pulled:
         return f"slips at 0+: the load is the static strength and grows{jump}"
     if rate > 0.0:
@@ -50,7 +52,7 @@ def start_of(problem: Problem) -> str:
         return f"{held}: the load is the static strength"
     wait = wait_of(problem)
     when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
-    return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
+    return f"stuck: the load is {exactly(-excess, unit, 6)} below the static strength{when}"
 
 
 def _why_it_slides(problem: Problem) -> str:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.errors import InputError
+from stickslip.problem.given_units import in_given_units
 from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ class Plots(NamesAttributes, Generic[Run]):
     def __init__(self, run: Run) -> None:
         self._run = run
 
+    @in_given_units
     def __call__(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
         """Draw slip, slip rate, traction and load against time.
 
@@ -81,11 +83,13 @@ class Plots(NamesAttributes, Generic[Run]):
         """Draw the second state variable of a law with two, as `state` draws the first."""
         return self._curve("second_state", start, end, place)
 
+    @in_given_units
     def _curve(self, name: Curve, start: float | None, end: float | None, place: Place) -> Figure | Axes:
         from stickslip.figures.runs import curves
 
         return known_to_pyplot(curves.draw_alone(self._run, name, start, end, **place), place)
 
+    @in_given_units
     def friction(
         self,
         start: float | None = None,
@@ -98,6 +102,7 @@ class Plots(NamesAttributes, Generic[Run]):
 
         return known_to_pyplot(curves.draw_friction_alone(self._run, start, end, against, **place), place)
 
+    @in_given_units
     def field(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
         """Draw velocity and stress in the slab over time, with characteristics, above the curves of the contact.
 
@@ -107,6 +112,7 @@ class Plots(NamesAttributes, Generic[Run]):
 
         return known_to_pyplot(inside.draw_space_time(inside.space_time_data(self._run, start, end), **place), place)
 
+    @in_given_units
     def snapshots(self, t: ArrayLike | None = None, **place: Unpack[Place]) -> Figure:
         """Draw displacement, velocity and stress across the slab at times (s), by default six over one round trip of the waves.
 
@@ -116,6 +122,7 @@ class Plots(NamesAttributes, Generic[Run]):
 
         return known_to_pyplot(inside.draw_snapshots(inside.snapshots_data(self._run, t), **place), place)
 
+    @in_given_units
     def energy(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw elastic and kinetic energy, friction heat, radiated and damped energy, stacked over time, and their total.
 
@@ -125,6 +132,7 @@ class Plots(NamesAttributes, Generic[Run]):
 
         return known_to_pyplot(energy.draw(energy.data(self._run, start, end), **place), place)
 
+    @in_given_units
     def animation(
         self,
         path: str | Path,

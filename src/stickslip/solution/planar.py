@@ -20,6 +20,7 @@ from stickslip.foundation.show import brief
 from stickslip.observables.energy.balance import LONG_NAMES
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
+from stickslip.problem.given_units import in_given_units
 from stickslip.solution.accessors import known_to_pyplot
 from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import STATUSES, Status
@@ -48,12 +49,14 @@ class PlanarPlots(NamesAttributes):
     def __init__(self, run: PlanarSolution) -> None:
         self._run = run
 
+    @in_given_units
     def __call__(self, **place: Unpack[Place]) -> Figure:
         """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
         from stickslip.figures.runs import planar
 
         return known_to_pyplot(planar.draw(self._run, **place), place)
 
+    @in_given_units
     def animation(
         self,
         path: str | Path,
@@ -92,6 +95,7 @@ class PlanarSolution(NamesAttributes):
     residual: float
     title: str = ""
 
+    @in_given_units
     def __repr__(self) -> str:
         nodes = " x ".join(str(count) for count in self.slab.shape)
         return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status.name})"
@@ -120,6 +124,7 @@ class PlanarSolution(NamesAttributes):
         return self.fields["heat"]
 
     @property
+    @in_given_units
     def sentences(self) -> list[str]:
         """What happened on the contact, and how far it is resolved, in sentences."""
         if not self.has_slipped.any():

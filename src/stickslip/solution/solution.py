@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import brief, how_long, html_table
+from stickslip.foundation.show import brief, exactly, how_long, html_table
 from stickslip.observables.event_table import events_table
 from stickslip.observables.proof_of_run import ProofOfRun, proof_of_run
+from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.scenarios.scenario import UNNAMED, Scenario
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 class SolutionPlots(Plots["Solution"]):
     """Figures of a whole run: as in `Plots`, its catalogue, and its path through the solutions of the contact equation."""
 
+    @in_given_units
     def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
         """Draw the slip events, one of them in ever closer zooms, and their distributions.
 
@@ -52,6 +54,7 @@ class SolutionPlots(Plots["Solution"]):
 
         return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
 
+    @in_given_units
     def path(self, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the solutions of the contact equation (the set K) and the path of the run through them.
 
@@ -228,7 +231,7 @@ class Solution(Exports):
         if len(events):
             slips = events.slip.to_numpy(float)
             most = float(slips[np.abs(slips).argmax()])
-            largest = f", largest slip {brief(most, slip)}, peak rate {events.peak_rate.max():.6g} {rate}"
+            largest = f", largest slip {brief(most, slip)}, peak rate {exactly(events.peak_rate.max(), rate, 6)}"
         return [
             ("slip", self.reach_note),
             ("body", repr(problem.body)),
@@ -302,8 +305,10 @@ class Solution(Exports):
         """One line that says whether the result depends on the selection rule."""
         return self.rule_influence.note
 
+    @in_given_units
     def __repr__(self) -> str:
         return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])
 
+    @in_given_units
     def _repr_html_(self) -> str:
         return html_table("stickslip Solution", self._lines())

@@ -15,7 +15,7 @@ from stickslip.cli.options import Changes, ScenarioName, axes_of, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
-from stickslip.foundation.show import brief, clean, with_unit
+from stickslip.foundation.show import brief, clean, exact_range, exactly, with_unit
 
 if TYPE_CHECKING:
     from stickslip.contact.folds import Fold
@@ -183,9 +183,9 @@ def _findings(found: Examination) -> Iterator[tuple[str, str]]:
     assert contact.problem is not None
     loads, rates = contact.problem.load_unit, contact.problem.unit_of("slip_rate")
     for fold in contact.folds:
-        yield "fold", f"slip rate {fold.rate:.9g} {rates}, load {brief(fold.load, loads, 12)}{_proof(fold, rates)}"
+        yield "fold", f"slip rate {exactly(fold.rate, rates)}, load {brief(fold.load, loads, 12)}{_proof(fold, rates)}"
     for low, high in contact.undecided[:MOST_UNDECIDED]:
-        yield "not decided", f"whether there is a fold between {low:.9g} and {high:.9g} {rates}"
+        yield "not decided", f"whether there is a fold between {exact_range((low, high), rates, between=' and ')}"
     yield from _by_rule(contact, loads, rates)
 
 
@@ -194,14 +194,15 @@ def _proof(fold: Fold, unit: str) -> str:
     if fold.enclosure is None:
         return "; not proven"
     low, high = fold.enclosure
-    return f"; proven to within {high - low:.1g} {unit}" if high > low else "; proven, at a kink of the law"
+    return f"; proven to within {exactly(high - low, unit, 1)}" if high > low else "; proven, at a kink of the law"
 
 
 def _by_rule(contact: Uniqueness, loads: str, unit: str) -> Iterator[tuple[str, str]]:
     """Yield what depends on the selection rule: the jumps, and the loop that they enclose, with the units of loads and rates."""
     for jump in contact.jumps:
         change = jump.traction_after - jump.traction_before
-        rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} {unit} at a load of {brief(jump.load, loads, 12)}"
+        span = exact_range((jump.rate_before, jump.rate_after), unit)
+        rates = f"slip rate {span} at a load of {brief(jump.load, loads, 12)}"
         yield f"jump {jump.direction} *", f"{rates}; traction changes by {brief(change, loads)}"
     if contact.jumps:
         retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"

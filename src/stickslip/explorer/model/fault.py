@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
 from stickslip.explorer.model.words import short
 from stickslip.foundation.errors import InputError
+from stickslip.problem.given_units import in_given_units
 from stickslip.run.options import options_of
 from stickslip.run.planar_run import FRAMES, memory_of, simulate_planar
 from stickslip.scenarios.scenario import Scenario
@@ -42,6 +43,7 @@ class FaultAnswer:
     """What the slip rate follows from is said of a contact of one place only."""
 
 
+@in_given_units
 def solve_fault(scenario: Scenario, told: Told) -> FaultAnswer:
     """Run a scenario; `told` is called with lines on its progress, and may raise `Stopped` to end the run there.
 

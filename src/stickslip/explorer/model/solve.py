@@ -17,6 +17,7 @@ from stickslip.explorer.model.pictures import contact_picture, energy_picture, l
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.examine import warnings_of
@@ -93,6 +94,7 @@ LONG = 5_000
 """From this many pieces of a run on, its pictures take so long that their progress is reported."""
 
 
+@in_given_units
 def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = None) -> Answer:
     """Run a scenario, with a record drawn behind it if there is one, and return all that the explorer shows of it, in SI units.
 

@@ -16,6 +16,7 @@ from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.tour import TOUR, TourStep, tour_of
 from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.problem.given_units import in_given_units
 
 
 def told_steps(steps: tuple[TourStep, ...] = TOUR) -> list[dict[str, str]]:
@@ -139,6 +140,7 @@ class Words:
         self.view.texts = told | {"fault": explorer.fault, "progress": explorer.progress}
 
 
+@in_given_units
 def words_of(answer: Answer | FaultAnswer) -> dict[str, Any]:
     """Return what is said of an answer: the sentence, the word for the regime, and the notes."""
     return {"sentence": answer.sentence, "regime": answer.regime, "notes": list(answer.notes)}

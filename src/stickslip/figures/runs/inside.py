@@ -38,6 +38,7 @@ from stickslip.figures.style import (
     unit_shown,
 )
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.field import extent_of
@@ -249,7 +250,7 @@ class Scales:
         time, stress, self.load_unit = dataset.time.values, dataset.stress.values, dataset.stress.attrs["units"]
         self.time_unit, self.time = time_unit(float(np.ptp(time)))
         lowest, highest = dataset.attrs.get("lowest", 0.0), dataset.attrs["thickness"]
-        self.place_unit, self.place = readable_unit("m", max(highest, -lowest))
+        self.place_unit, self.place = readable_unit("m", max(highest, -lowest), of=PLACE)
         self.places = lowest / self.place, highest / self.place
         self.boundaries = np.array(dataset.attrs.get("boundaries", [])) / self.place
         self.offset = float(stress[0, 0]) if nearly_flat(stress.ravel()) else 0.0

@@ -16,6 +16,7 @@ from stickslip.figures.runs.curves import marks_in
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, axis_text, styled
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 from stickslip.solution.planar import PlanarSolution
@@ -36,7 +37,7 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
     figure = sheet((7.2, 6.4), **place)
     axes: Any = figure.subplots(3, 1, sharex=True, height_ratios=(2.6, 1.0, 1.0))
     time_name, time_size = readable_unit("s", solution.times)
-    place_name, place_size = readable_unit("m", solution.slab.y)
+    place_name, place_size = readable_unit("m", solution.slab.y, of=PLACE)
     times, size = solution.times / time_size, np.abs(solution.middle_line(solution.slip_rate))
     largest = float(size.max()) or 1.0
     image = axes[0].pcolormesh(
@@ -122,7 +123,7 @@ def _draw_profiles(
     _: Figure, axes: Any, solution: PlanarSolution, shown: NDArray[np.intp]
 ) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw slip rate and slip along a line in axes whose limits hold every frame."""
-    place_name, place_size = readable_unit("m", solution.slab.y)
+    place_name, place_size = readable_unit("m", solution.slab.y, of=PLACE)
     drawn = []
     fields = (("slip rate", solution.slip_rate, GREEN), ("slip", solution.slip, INK))
     for axis, (name, field, color) in zip(axes, fields, strict=True):
@@ -146,7 +147,7 @@ def _draw_maps(
     figure: Figure, axes: Any, solution: PlanarSolution, shown: NDArray[np.intp]
 ) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw slip rate and slip over a plane in colours that hold for every frame."""
-    place_name, place_size = readable_unit("m", solution.slab.y)
+    place_name, place_size = readable_unit("m", solution.slab.y, of=PLACE)
     edges = [0.5 * sign * size / place_size for size in solution.slab.extent for sign in (-1.0, 1.0)]
     extent = np.array(edges) - np.repeat(solution.slab.spacing, 2) / (2.0 * place_size)
     fastest = float(np.abs(solution.slip_rate[shown]).max()) or 1.0

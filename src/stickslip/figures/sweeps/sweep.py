@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -19,7 +20,10 @@ from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweeps.maps import draw_maps, draw_members
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.given import Units, shown_in
 from stickslip.foundation.place import Place
+from stickslip.problem.given_units import units_given
+from stickslip.scenarios.scenario import read_scenario
 from stickslip.sweeps.design.design import MEMBER
 from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
 
@@ -53,7 +57,16 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         If the sweep has no such quantity, if nothing is varied, or for a grid of more than three keys: then select some values of
         the other keys first.
     """
-    return shown_or_saved(draw(data(dataset, quantity), **place), path, place)
+    with shown_in(_units_of(dataset)):
+        drawn = draw(data(dataset, quantity), **place)
+    return shown_or_saved(drawn, path, place)
+
+
+def _units_of(dataset: xr.Dataset) -> Units:
+    """Return the units in which the scenario of a sweep was given; none for a dataset of anybody without a scenario."""
+    with suppress(InputError, KeyError):
+        return units_given(read_scenario(dataset.attrs["scenario"], "plot_sweep").problem)
+    return {}
 
 
 def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import cell_edges, set_log_ticks
-from stickslip.figures.style import ROOM, axis_text, folded
+from stickslip.figures.style import ROOM, axis_text, folded, readable
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import readable_unit
 
@@ -68,7 +68,7 @@ def scaled(variable: xr.DataArray) -> ScaledNumbers:
         return ScaledNumbers(np.array([words.index(word) for word in given], float), name, words=words)
     values = np.asarray(variable.values, float)
     log = bool(variable.attrs.get("log")) or is_logarithmic(values)
-    unit, size = readable_unit(variable.attrs.get("units", "1"), values, log=log)
+    unit, size = readable(variable, values, log=log)
     return ScaledNumbers(values / size, axis_text(name, "", unit), size, log)
 
 
@@ -103,7 +103,7 @@ def names_of(variable: xr.DataArray) -> Names:
     if not np.issubdtype(variable.dtype, np.number):
         values = [str(value) for value in variable.values.tolist()]
     else:
-        unit, size = readable_unit(variable.attrs.get("units", "1"), variable.values)
+        unit, size = readable(variable, variable.values)
         values = [f"{value:.4g}" + ("" if unit == "1" else f" {unit}") for value in variable.values / size]
     return Names(parameter_name(*about), plain_name(*about), symbol(*about), tuple(values))
 

@@ -16,6 +16,7 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.axis import TypedRange, check_ends, range_meant, spaced
 from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import Given
 from stickslip.foundation.quantities import Choice, Quantity
 from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
@@ -54,7 +55,7 @@ class DesignAxis:
             got = " ".join(shown(values.tolist() if isinstance(values, np.ndarray) else values).split())
             raise InputError(f"{where}: {parameter.name} must be a one-dimensional array or a list of values, got {got}{hint}")
         found = read_values(parameter, values, where)
-        return cls(parameter, found, log=_in_equal_ratios(found))
+        return cls(in_unit_of(parameter, values, where), found, log=_in_equal_ratios(found))
 
     @classmethod
     def of_range(cls, parameter: ParameterPath, ends: Sequence[Any], log: bool, where: str) -> DesignAxis:
@@ -62,6 +63,7 @@ class DesignAxis:
         if isinstance(parameter.declared, Choice):
             words = ", ".join(parameter.declared.allowed)
             raise InputError(f"{where}: {parameter.name} takes words, not a range: list some of {words}")
+        parameter = in_unit_of(parameter, ends, where)
         low, high = (float(parameter.read(_without_unit(parameter, end, where), where)) for end in ends)
         check_ends(f"{where}: {parameter.name}", low, high, log=log, unit=parameter.unit)
         return cls(parameter, np.empty(0), (low, high), log)
@@ -74,6 +76,14 @@ class DesignAxis:
         if self.log:
             return np.asarray(low * np.exp(shares * np.log(high / low)))
         return np.asarray(low + shares * (high - low))
+
+
+def in_unit_of(parameter: ParameterPath, values: Any, where: str) -> ParameterPath:
+    """Return a parameter that is shown in the unit of the first of its values, if that is one in which results are shown."""
+    listed = values if isinstance(values, list | tuple) else ()
+    first = next((one for one in listed if isinstance(one, str) or has_unit(one)), None)
+    given = None if first is None or not parameter.unit else parameter.read(first, where)
+    return replace(parameter, shown_in=given.unit) if isinstance(given, Given) else parameter
 
 
 def read_values(parameter: ParameterPath, values: Iterable[Any], where: str, most: float = LARGEST_AXIS) -> Values:
@@ -150,7 +160,7 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> DesignAxis:
     values = [typed_value(parameter, one) for one in (found[:2] if found else content.split(","))]
     if found is None:
         try:
-            return DesignAxis(parameter, read_values(parameter, values, where))
+            return DesignAxis(in_unit_of(parameter, values, where), read_values(parameter, values, where))
         except InputError as error:
             meant = range_meant(content)
             raise InputError(f"{where}: {parameter.name}: {meant}, got {shown(content)}" if meant else str(error)) from None

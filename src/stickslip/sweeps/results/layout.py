@@ -48,6 +48,7 @@ def lay_out(plan: Plan, place: Any) -> None:
     design, series = plan.design, plan.work.series
     for one, column in zip(design.parameters, design.columns, strict=True):
         about = {"long_name": one.declared.meaning, "log": int(one.name in design.logs)} | ({"units": one.unit} if one.unit else {})
+        about |= {"shown_in": one.shown_in} if one.shown_in else {}
         _coordinate(group, one.name, column, (one.name,) if design.is_grid else design.dims, about)
     if series is not None:
         _coordinate(group, TIME, series.times, (TIME,), {"long_name": "time since the start of the run", "units": "s"})
@@ -170,7 +171,7 @@ def check_contents(found: xr.Dataset) -> None:
         raise InputError(f"it has no variable {missing[0]!r}")
     own = {*keys, STATUS, REASON}
     for name, variable in found.variables.items():
-        about = {key: variable.attrs.get(key, "") for key in ("long_name", "units")}
+        about = {key: variable.attrs.get(key, "") for key in ("long_name", "units", "shown_in")}
         texts = [name, *about.values()]
         if not all(isinstance(text, str) and text.isprintable() for text in texts):
             raise InputError(f"the variable {ascii(name)[:60]} has the texts {shown(about)}")

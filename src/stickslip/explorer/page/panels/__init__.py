@@ -12,6 +12,8 @@ from stickslip.explorer.page.panels.motion import COLUMNS, CURVE_OF, DRAWN, colu
 from stickslip.explorer.page.panels.units import share_axis, units_of
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, limits
+from stickslip.foundation.given import shown_in
+from stickslip.problem.given_units import units_given
 
 NOTHING: dict[str, Columns] = {
     "pinned": {name: [] for name in COLUMNS},
@@ -59,8 +61,12 @@ PANELS = (law, contact, motion, loading, field, energy, shape)
 
 def view_of(answer: Answer | FaultAnswer, kept: Any = None) -> View:
     """Return all that the panels show of an answer, with the run that is kept beside it, which is of the same kind."""
-    if isinstance(answer, FaultAnswer):
-        return fault.view_of_fault(answer, kept)
+    with shown_in(units_given(answer.scenario.problem)):
+        return fault.view_of_fault(answer, kept) if isinstance(answer, FaultAnswer) else _view_of(answer, kept)
+
+
+def _view_of(answer: Answer, kept: Answer | None) -> View:
+    """Return the view of a contact that is a single place."""
     units, view = units_of(answer, kept), View()
     for panel in PANELS:
         view.add(panel.data_of(answer, units))

@@ -13,6 +13,7 @@ from stickslip.explorer.page.panels import energy, field, motion
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, limits, single
 from stickslip.figures.style import nearly_flat
+from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import name_of, readable_unit
 
 TITLES = {
@@ -49,7 +50,7 @@ def _units(answer: FaultAnswer, kept: FaultAnswer | None) -> Units:
     main, run = answer.motions[0], answer.run
     both = (main, *(kept.motions if kept else ()))
     offset = float(main.traction[0]) if nearly_flat(main.traction, main.load) else 0.0
-    time, place = readable_unit("s", np.ptp(main.time)), readable_unit("m", run.slab.y)
+    time, place = readable_unit("s", np.ptp(main.time)), readable_unit("m", run.slab.y, of=PLACE)
     stress = readable_unit("Pa", *(curve - offset for one in both for curve in (one.traction, one.load)))
     slip, rate = readable_unit("m", run.slip), readable_unit("m/s", run.slip_rate)
     return Units(time, time, 0.0, True, slip, rate, False, stress, offset, stress, rate, place)

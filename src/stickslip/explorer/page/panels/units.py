@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.explorer.model.answer import Answer, BodyCurves
 from stickslip.explorer.page.view import Units
 from stickslip.figures.style import nearly_flat
+from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import readable_unit, si_unit
 
 Curve = Literal["slip", "slip_rate", "traction"]
@@ -42,7 +43,7 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
         offset=offset,
         load=readable_unit(main.load_unit, contact.load if contact else main.load),
         on_curve=readable_unit(rate, main.slip_rate, contact.path_rate if contact else 0.0),
-        place=readable_unit("m", slab.place if slab else 1.0),
+        place=readable_unit("m", slab.place if slab else 1.0, of=PLACE),
         slip_unit=si_unit("slip", main.load_unit),
     )
 
