@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import stickslip as ss
 from stickslip.cli.options import complete_fitted, complete_table
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import load_scenario
@@ -59,6 +60,27 @@ def test_the_block_of_a_fit_takes_the_numbers_of_a_machine(command, points):
     ):
         shown = command(*fitting, *given)
         assert (shown.code, said in shown.err, Path("b.toml").exists()) == (2, True, False), shown.err
+
+
+@pytest.mark.parametrize("name", library.STARTERS)
+def test_a_starter_lends_a_fit_no_title_and_no_duration_of_its_example(name):
+    example = load_scenario(library.STARTERS[name].example)
+    made = load_scenario_text(with_law(name, RATE_LAW, ["data.csv"]))
+    assert example.title not in made.title
+    assert "Fig." not in made.title
+    trips = made.duration / made.problem.body.round_trip_time
+    assert trips >= 18.0
+    assert trips <= 105.0 or not made.problem.body.has_waves
+
+
+def test_a_fit_for_a_machine_lasts_some_loads_of_its_contact():
+    """Static friction over the rate at which the pull loads the spring, by hand: 0.4 x 50 kN / (1 MN/m x 1 mm/s) = 20 s."""
+    values = {"normal_force": "50 kN", "mass": "20 kg", "stiffness": "1 MN/m", "pull_rate": "1 mm/s"}
+    law = ss.friction.HyperbolicRate(static=0.4, dynamic=0.2, alpha=1.0)
+    made = load_scenario_text(with_law("block", law, ["data.csv"], values))
+    assert (made.title, made.duration) == ("A block on a spring, under a law of the kind hyperbolic-rate", 60.0)
+    assert len(ss.simulate(made).events) >= 2
+    assert load_scenario_text(with_law("block", law, ["data.csv"], values | {"duration": "7 s"})).duration == 7.0
 
 
 @pytest.mark.sampled(every=4)

@@ -107,6 +107,23 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.parametrize(
+    ("name", "typed", "ours"),
+    [
+        ("ln", "0.6 + 0.01*ln(1 + v/v_c)", "0.6 + 0.01*log(1 + v/v_c)"),
+        ("lg", "0.6 - 0.02*lg(1 + v/v_c)", "0.6 - 0.02*log10(1 + v/v_c)"),
+        ("asinh", "0.6 + 0.01*asinh(v/v_c)", "0.6 + 0.01*arcsinh(v/v_c)"),
+    ],
+)
+def test_a_function_has_the_names_that_people_give_it(name: str, typed: str, ours: str) -> None:
+    law, same = (FromExpression(text, {"v_c": 1e-3}) for text in (typed, ours))
+    rate = np.geomspace(1e-9, 1e3, 50)
+    assert (law.coefficient(0.0, rate) == same.coefficient(0.0, rate)).all()
+    x = rate / 1e-3
+    known = {"ln": 0.01 * np.log1p(x), "lg": -0.02 * np.log1p(x) / math.log(10.0), "asinh": 0.01 * np.arcsinh(x)}
+    np.testing.assert_allclose(law.coefficient(0.0, rate), 0.6 + known[name], rtol=1e-14)
+
+
 @pytest.mark.parametrize(("text", "message"), HOSTILE)
 def test_everything_else_is_refused_in_one_line(text: str, message: str) -> None:
     with pytest.raises(InputError) as caught:

@@ -27,7 +27,7 @@ class Starter(NamedTuple):
 
 STARTERS = {
     "slab": Starter("an elastic slab", "fig6-slab"),
-    "lab-slab": Starter("the same in the size of a laboratory", "granite-slab"),
+    "lab-slab": Starter("an elastic slab in the size of a laboratory", "granite-slab"),
     "block": Starter("a block on a spring", "fig6-block-reconstructed"),
     "string": Starter("a drill string", "drill-string"),
     "sectioned-string": Starter("a drill string of pipe and collars", "pipe-and-collar"),

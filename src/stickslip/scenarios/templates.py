@@ -15,11 +15,12 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
-from stickslip.foundation.show import clean
+from stickslip.foundation.show import brief, clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
 from stickslip.loading import HISTORIES
 from stickslip.problem.fields import HISTORIES_ONLY
+from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of, to_table
@@ -36,7 +37,14 @@ from stickslip.scenarios.schema import (
     kind_of,
     read_part,
 )
+from stickslip.scenarios.stability import loading_rate
 
+LOADINGS = 3
+"""Number of loads from nothing to the strength in which a contact slips several times, as few events take all of the load."""
+LEAST_TRIPS, MOST_TRIPS = 20, 100
+"""Such a run has so many periods of a block, or round trips of waves, at least; and so many round trips at most, each of which may
+have many pieces.
+"""
 _HEADER = """\
 # A scenario for stickslip: what slides, what resists, how it is loaded, where it starts, how long to run.
 # Every quantity is a number in SI or a text with a unit: "10 km", "0.05 m/year" (Julian year), "100 MPa".
@@ -88,9 +96,10 @@ def check_takes_law(name: str) -> None:
 def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[str, Any] = MappingProxyType({})) -> str:
     """Return a starter or a bundled scenario with another friction law without a state, as commented TOML text to the last digit.
 
-    `about` are lines of comments for the head of the text. The title is that of the scenario, with the kind of the law. `values`
-    are other values of its parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown
-    name, and for values that the scenario cannot have.
+    `about` are lines of comments for the head of the text. The title is that of the scenario, with the kind of the law; a starter
+    says what slides, and runs for some loads of its contact. `values` are other values of its
+    parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown name, and for values that
+    the scenario cannot have.
     """
     check_takes_law(name)
     example = tomllib.loads(library.text(library.STARTERS[name].example if name in library.STARTERS else name))
@@ -100,7 +109,8 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[
     former = kind_of("friction", example["friction"], name)
     if former.state is not None:  # type: ignore[attr-defined] # registered
         example["initial"] = {"excess": 0.0}
-    title = f"{example['title'] or name}, under a law of the kind {law.kind}"
+    starter, changes = library.STARTERS.get(name), []
+    title = f"{starter.meaning.capitalize() if starter else example['title'] or name}, under a law of the kind {law.kind}"
     example |= {"title": title, "description": f"Body, loading and start of {name}.", "friction": _listed(to_table(law))}
     if values:
         scenario = scenario_of(example, Source(name))
@@ -110,7 +120,19 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[
             raise InputError(f"{name}: {taken} belongs to the law, which comes from the points")
         example = put_into(example, scenario, changes, name)
         _ = scenario_of(example, Source(name))
+    if starter and all(one.name != "run.duration" for one, _ in changes):
+        example["run"] = example["run"] | _lasting(scenario_of(example, Source(name)).problem)
     return _written(example, "".join(f"# {clean(line)}".rstrip() + "\n" for line in about))
+
+
+def _lasting(problem: Problem) -> dict[str, str]:
+    """Return the duration of a run in which the contact is loaded some times, as its key and value; none if nothing loads it."""
+    rate, trip = loading_rate(problem), problem.body.round_trip_time
+    if not rate > 0.0:
+        return {}
+    lasts = max(LOADINGS * problem.strength / rate, LEAST_TRIPS * trip)
+    lasts = min(lasts, MOST_TRIPS * trip) if problem.body.has_waves else lasts
+    return {"duration": brief(float(f"{lasts:.1g}"), "s")}
 
 
 def _listed(table: dict[str, Any]) -> dict[str, Any]:

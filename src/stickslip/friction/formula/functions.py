@@ -27,6 +27,8 @@ COMPOSED: dict[str, Callable[..., Any]] = {
     "sinh": lambda x: 0.5 * (expm1(x) - expm1(-x)),
 }
 """Further functions that are expressed by those of OPERATIONS."""
+OTHER_NAMES = {"ln": "log", "lg": "log10", "asinh": "arcsinh", "arsinh": "arcsinh"}
+"""Other names of functions in a formula that is typed."""
 _KINKED = ("maximum", "minimum", "fmax", "fmin", "sign", "heaviside", "floor", "ceil", "rint", "trunc", "fabs", "copysign")
 """Functions of numpy with kinks or jumps, which have no Taylor series there."""
 _OF_NUMPY: dict[str, Callable[..., Any]] = (

@@ -25,7 +25,7 @@ from stickslip.friction.formula.expression import (
     depends_on,
     nodes_of,
 )
-from stickslip.friction.formula.functions import COMPOSED
+from stickslip.friction.formula.functions import COMPOSED, OTHER_NAMES
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS, operation_of
 from stickslip.friction.formula.operations.operation import UNITS, Dimension, unit_text, without_zeros
 from stickslip.friction.formula.operations.powers import POW
@@ -162,11 +162,11 @@ class _Reader:
             raise InputError(f"the exponent of {self.part(node)} must be within {LARGEST_EXPONENT:g}")
 
     def call(self, node: ast.Call, depth: int) -> Expression:
-        if isinstance(node.func, ast.Attribute) and node.func.attr in (*FUNCTIONS, *COMPOSED, *KINKED):
+        if isinstance(node.func, ast.Attribute) and node.func.attr in (*FUNCTIONS, *COMPOSED, *OTHER_NAMES, *KINKED):
             raise InputError(f"{self.part(node.func)} is written {node.func.attr}, without the name of a library")
         if not isinstance(node.func, ast.Name):
             raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
-        name = node.func.id
+        name = OTHER_NAMES.get(node.func.id, node.func.id)
         if name in KINKED:
             raise InputError(f"the function {self.part(node.func)} has a kink or a jump; {KINKS}")
         if name not in FUNCTIONS and name not in COMPOSED:
