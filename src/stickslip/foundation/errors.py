@@ -188,5 +188,6 @@ def _nearest_end(name: str, known: Sequence[str], listed: str) -> str:
     ends = Counter(map(last, known))
     close = same(name, known) or [full for full in known if last(full) in meant(name, ends)] if "." not in name else []
     if not close:
-        return _elsewhere(name) + nearest(name, known, listed=listed)
+        hint = nearest(name, known, listed=listed)
+        return hint if hint.startswith("did") else _elsewhere(name) + hint
     return did_you_mean(last(full) if ends[last(full)] == 1 else full for full in close[:MOST_MEANT])
