@@ -40,10 +40,11 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "lazy_names", "memory", "names", "units"),
+        ("arguments", "atomic_write", "determined", "lazy_names", "marks", "memory", "names", "units"),
         ("headings", "meant", "netcdf_file"),
         ("conversion",),
-        ("axis", "columns", "quantities"),
+        ("named_columns", "unit_doubts"),
+        ("axis", "columns", "quantities", "record_files"),
         ("other_values", "show", "text_columns"),
         ("zarr_folder",),
     ),
@@ -121,7 +122,7 @@ ROOMS = {
         ("phase_index", "series", "status", "turning_points"),
         ("machine_motion",),
         ("history",),
-        ("slip_events", "tables"),
+        ("reach", "slip_events", "tables"),
     ),
     "contact": (
         ("roots", "secant", "sliding", "wave_modes", "wave_proof"),

@@ -15,7 +15,7 @@ from stickslip.friction import FromTable, PiecewiseLinearRate, Points
 from tests.messages import refused
 
 HEADINGS = [
-    ("slip_rate", 1.0),
+    ("slip_rate_m_per_s", 1.0),
     ("Slip rate (m/s)", 1.0),
     ("v (mm/s)", 1e-3),
     ("v [mm/s]", 1e-3),
@@ -112,9 +112,9 @@ TEXTS = [
     ("v,mu\n1,.5\n2,NaN\n", "line 3: friction must be finite, got 'nan'; leave out such rows"),
     ("v,mu\n-1,.5\n", "line 2: slip_rate must not be negative, got -1"),
     ("v,mu\n1,-.1\n", "line 2: friction must not be negative, got -0.1"),
-    ("v,mu\n1,.5\n\n# c\n0.5,.4\n", "line 5: slip_rate must ascend, but 0.5 follows 1; sort the rows"),
-    ("v,mu\n1,.5\n1,.4\n", "line 3: slip_rate must ascend, but 1 follows 1; keep one row of each, or their mean"),
-    ("v,u,mu\n1,1,.5\n2,2,.4\n", "slip and slip_rate are both there: choose one with along"),
+    ("v (m/s),mu\n1,.5\n\n# c\n0.5,.4\n", "line 5: slip_rate must ascend, but 0.5 follows 1; sort the rows"),
+    ("v (m/s),mu\n1,.5\n1,.4\n", "line 3: slip_rate must ascend, but 1 follows 1; keep one row of each, or their mean"),
+    ("v (m/s),u (m),mu\n1,1,.5\n2,2,.4\n", "slip and slip_rate are both there: choose one with along"),
     ("v,mu\n1,.5\n", "at least two points are needed, got 1"),
     ("", "line 1: no column 'friction'"),
 ]  # fmt: skip

@@ -84,12 +84,12 @@ def load(folder: Path, content: str | bytes, table: str = FILE, kind: str = "tab
 
 def test_tables_are_read_from_files(tmp_path: Path) -> None:
     wanted = FromTable(slip=[0.0, 0.1, 1.0], friction=[0.7, 0.6, 0.4])
-    assert load(tmp_path, "# measured\nslip, friction\n0, 0.7\n\n0.1,0.6\n1.0,0.4\n") == wanted
-    assert load(tmp_path, "\ufefftime,friction,slip\r\n1,0.7,0\r\n2,0.6,1e-1\r\n3,0.4,1\r\n") == wanted
-    assert load(tmp_path, "slip_rate,friction\n0,0.7\n1,0.6\n") == FromTable(rate=[0, 1], friction=[0.7, 0.6])
-    law = load(tmp_path, "slip_rate,friction\n0,0.7\n1,0.6\n", kind="piecewise-linear-rate")
+    assert load(tmp_path, "# measured\nslip (m), friction\n0, 0.7\n\n0.1,0.6\n1.0,0.4\n") == wanted
+    assert load(tmp_path, "\ufefftime,friction,slip (m)\r\n1,0.7,0\r\n2,0.6,1e-1\r\n3,0.4,1\r\n") == wanted
+    assert load(tmp_path, "slip_rate (m/s),friction\n0,0.7\n1,0.6\n") == FromTable(rate=[0, 1], friction=[0.7, 0.6])
+    law = load(tmp_path, "slip_rate (m/s),friction\n0,0.7\n1,0.6\n", kind="piecewise-linear-rate")
     assert law == PiecewiseLinearRate((0.0, 1.0), (0.7, 0.6))
-    law = load(tmp_path, "slip,friction\n-1,0.7\n1,0.6\n", f'{FILE}\ncounts = "net"')
+    law = load(tmp_path, "slip (m),friction\n-1,0.7\n1,0.6\n", f'{FILE}\ncounts = "net"')
     assert law.counts == "net"
 
 
@@ -99,12 +99,12 @@ BAD_FILES = [
     ("slip,fricton\n0,1\n", "line 1: no column 'friction' in the header; rename 'fricton'?"),
     ("0,0.7\n1,0.6\n", "line 1: no column 'friction'"),
     ("slips,friction\n0,1\n", "line 1: the header needs a column slip or slip_rate, got none; rename 'slips'?"),
-    ("slip,slip_rate,friction\n0,0,1\n", "line 1: the header needs a column slip or slip_rate, got both"),
-    ("slip,friction\n0,0.7\n", "line 2: at least two rows of numbers are needed, got 1"),
-    ("slip,friction\n", "line 1: at least two rows of numbers are needed, got 0"),
-    ("slip,friction\n0,0.7\n\n# so\n1,x\n", "line 5: friction must be a number, got text"),
-    ("slip,friction\n-1,0.7\n1,0.1\n", "slip[0] must be at least 0 where the path is counted"),
-    ("slip,friction\n" + "".join(f"{i},0.5\n" for i in range(10_002)), "more than 10000 rows"),
+    ("slip (m),slip_rate (m/s),friction\n0,0,1\n", "line 1: the header needs a column slip or slip_rate, got both"),
+    ("slip (m),friction\n0,0.7\n", "line 2: at least two rows of numbers are needed, got 1"),
+    ("slip (m),friction\n", "line 1: at least two rows of numbers are needed, got 0"),
+    ("slip (m),friction\n0,0.7\n\n# so\n1,x\n", "line 5: friction must be a number, got text"),
+    ("slip (m),friction\n-1,0.7\n1,0.1\n", "slip[0] must be at least 0 where the path is counted"),
+    ("slip (m),friction\n" + "".join(f"{i},0.5\n" for i in range(10_002)), "more than 10000 rows"),
 ]  # fmt: skip
 
 
@@ -132,7 +132,7 @@ def test_bad_files_are_refused_in_one_line_with_file_and_line(tmp_path: Path, co
 )
 def test_bad_tables_of_a_scenario_are_refused(tmp_path: Path, table: str, message: str) -> None:
     with refused(message):
-        load(tmp_path, "slip,friction\n0,1\n1,1\n", table)
+        load(tmp_path, "slip (m),friction\n0,1\n1,1\n", table)
 
 
 def test_a_text_without_a_folder_names_no_files() -> None:

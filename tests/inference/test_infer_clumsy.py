@@ -115,7 +115,10 @@ def test_marks_of_missing_numbers_are_left_out_and_told() -> None:
     """Programs write -999 where nothing was measured; a slip event, however large, lasts for more samples."""
     read = Record.read({**GOOD, "friction": np.where(np.isin(np.arange(len(CLOCK)), [7, 8, 300]), -999.0, FRICTION)})
     assert np.flatnonzero(np.isnan(read.measured["friction"])).tolist() == [7, 8, 300]
-    assert read.notes == ("friction is far beyond the rest in 3 lone samples, as at -999: left out",)
+    told = "-999 marks a missing number of friction in 3 rows", f"friction has no number in 3 of {len(CLOCK)} rows: left out"
+    assert read.notes == told
+    far = Record.read({**GOOD, "friction": np.where(np.isin(np.arange(len(CLOCK)), [7, 8, 300]), -700.0, FRICTION)})
+    assert far.notes == ("friction is far beyond the rest in 3 lone samples, as at -700: left out",)
     preload = np.where(np.arange(len(CLOCK)) > 380, FRICTION, 1e-4)
     assert np.isfinite(Record.read({**GOOD, "friction": preload}).measured["friction"]).all()
 

@@ -209,7 +209,7 @@ def test_greek_letters_are_printed_as_they_are_and_errors_name_what_was_not_unde
 
 
 def test_a_text_stops_at_the_most_rows_and_takes_no_more_memory_than_its_numbers() -> None:
-    short = "t,v\n" + "0,1\n" * 20_000
+    short = "t (s),v (m/s)\n" + "0,1\n" * 20_000
     with pytest.raises(ss.InputError, match="a, line 10002: more than 10000 rows"):
         read_text(short, ("time", "slip_rate"), "a", 10_000, raw=True)
     tracemalloc.start()

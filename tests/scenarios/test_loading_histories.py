@@ -125,28 +125,31 @@ def read_csv(folder: Path, csv: str, loading: str = LINEAR, **more: str) -> obje
 
 
 def test_a_data_file_is_read(tmp_path: Path) -> None:
-    csv = "# measured\ntime, ignored,pull_rate\n0,9,-1e-6\n\n2,9,3e-6\n"
+    csv = "# measured\ntime (s), ignored,pull_rate (m/s)\n0,9,-1e-6\n\n2,9,3e-6\n"
     problem = read_csv(tmp_path, csv.replace(", ", ","))
     assert problem.pull_rate == PiecewiseLinear((0.0, 2.0), (-1e-6, 3e-6))  # type: ignore[attr-defined]
     far = "[loading.far_stress]\nkind = 'steps'\n"
-    problem = read_csv(tmp_path, "far_stress,time\n5e6,0\n6e6,1\n", far, driver="driver_impedance = 1e6")
+    problem = read_csv(tmp_path, "far_stress (Pa),time (s)\n5e6,0\n6e6,1\n", far, driver="driver_impedance = 1e6")
     assert problem.far_stress == Steps((0.0, 1.0), (5e6, 6e6))  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(
     ("csv", "message"),
     [
-        ("time,rate\n0,1\n1,2\n", ": 'pull.csv', line 1: no column 'pull_rate' in the header; rename 'rate'?"),
-        ("time,pull_rate\n1,1\n0,2\n", ": 'pull.csv', line 3: time must ascend, but 0 follows 1; sort the rows"),
-        ("time,pull_rate\n-1,1\n0,2\n", ": 'pull.csv', line 2: time must not be negative, got -1"),
-        ("time,pull_rate\n0,nan\n1,2\n", ": 'pull.csv', line 2: pull_rate must be finite, got 'nan'; leave out such rows"),
+        ("time (s),rate\n0,1\n1,2\n", ": 'pull.csv', line 1: no column 'pull_rate' in the header; rename 'rate'?"),
+        ("time (s),pull_rate (m/s)\n1,1\n0,2\n", ": 'pull.csv', line 3: time must ascend, but 0 follows 1; sort the rows"),
+        ("time (s),pull_rate (m/s)\n-1,1\n0,2\n", ": 'pull.csv', line 2: time must not be negative, got -1"),
         (
-            "time,pull_rate\n0,1 m/s\n",
+            "time (s),pull_rate (m/s)\n0,nan\n1,2\n",
+            ": 'pull.csv', line 2: pull_rate must be finite, got 'nan'; leave out such rows",
+        ),
+        (
+            "time (s),pull_rate (m/s)\n0,1 m/s\n",
             ": 'pull.csv', line 2: pull_rate must be a number, got text; a unit belongs in the heading, as in pull_rate (m/s)",
         ),
-        ("time,pull_rate\n0,1\n", ": 'pull.csv', line 2: at least two rows of numbers are needed, got 1"),
+        ("time (s),pull_rate (m/s)\n0,1\n", ": 'pull.csv', line 2: at least two rows of numbers are needed, got 1"),
         (
-            "time,pull_rate\n" + "".join(f"{i},1\n" for i in range(10_001)),
+            "time (s),pull_rate (m/s)\n" + "".join(f"{i},1\n" for i in range(10_001)),
             ": 'pull.csv', line 10002: more than 10000 rows",
         ),
     ],
@@ -178,7 +181,7 @@ def test_mistakes_in_naming_a_data_file_are_refused_in_one_line(
     loading: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("pull.csv").write_text("time,pull_rate\n0,1\n1,2\n", encoding="utf-8")
+    Path("pull.csv").write_text("time (s),pull_rate (m/s)\n0,1\n1,2\n", encoding="utf-8")
     Path("my.toml").write_text(document(loading), encoding="utf-8")
     with pytest.raises(InputError) as caught:
         load_scenario("my.toml")

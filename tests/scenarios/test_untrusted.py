@@ -19,7 +19,7 @@ TABLE = GOOD.replace(
     '[friction]\nkind = "table"\nfile = "FILE"\n\n',
 )
 QUOTED = '"a" . '
-POINTS = "slip,friction\n0,0.7\n1,0.5\n"
+POINTS = "slip (m),friction\n0,0.7\n1,0.5\n"
 
 
 def refusal(text: str) -> str:
@@ -145,7 +145,7 @@ def test_points_may_lie_anywhere_for_a_reader_who_says_so(folder: Path, monkeypa
         assert load_scenario(of_file(folder, name)).problem.friction.kind == "table"
 
 
-@pytest.mark.parametrize("content", ["password hunter2\n", "slip,friction\n0,hunter2\n", "slip,friction,hunter2\n0,1,2\n"])
+@pytest.mark.parametrize("content", ["password hunter2\n", "slip (m),friction\n0,hunter2\n", "slip (m),friction,hunter2\n0,1,2\n"])
 def test_no_message_shows_what_a_file_holds(folder: Path, content: str) -> None:
     (folder / "points.csv").write_text(content)
     with pytest.raises(ss.InputError) as caught:

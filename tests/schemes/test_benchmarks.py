@@ -131,7 +131,11 @@ def test_a_right_series_is_judged_right_and_a_wrong_one_wrong(tmp_path: Path) ->
     rows = np.column_stack([found[name].values for name in ("time", "slip", "slip_rate", "traction")])
     for file, rate in (("loop.csv", 1.0), ("wrong.csv", 0.5)):
         np.savetxt(
-            tmp_path / file, rows * [1.0, rate, rate, 1.0], delimiter=",", header="time,slip,slip_rate,traction", comments=""
+            tmp_path / file,
+            rows * [1.0, rate, rate, 1.0],
+            delimiter=",",
+            header="time_s,slip_m,slip_rate_m_per_s,traction_Pa",
+            comments="",
         )
     right, wrong = (judge_benchmark(tmp_path / file, "loop").table.iloc[0] for file in ("loop.csv", "wrong.csv"))
     assert (right.rule, wrong.rule) == ("perfect-delay", "none")

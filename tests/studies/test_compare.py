@@ -70,7 +70,7 @@ def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> 
     path = fig6.to_csv(tmp_path / "both.csv")
     comment = [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
     assert comment[0].startswith(f"# stickslip {ss.__version__}: runs side by side")
-    assert "# slip (m): slip of the largest event" in comment
+    assert "# slip (m): slip of the largest event, negative if it slips back" in comment
     assert "# stiffness = 34300000000000.0" in comment
     read = pd.read_csv(path, comment="#")
     pd.testing.assert_frame_equal(read, fig6.table, check_exact=True)

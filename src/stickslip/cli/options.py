@@ -202,6 +202,8 @@ def axes_of(what: str) -> Any:
 
 CHANGES = 'Give a parameter of the scenario another value: "friction.alpha=2", "body.thickness=5 km"; may be repeated.'
 Changes = Annotated[list[str] | None, option(CHANGES, "--set", metavar="<name=value>", autocompletion=complete_vary)]
+COLUMN = 'Say which column is what, with its unit: load_point="Vert_disp (micron)", friction=5; may be repeated.'
+Columns = Annotated[list[str] | None, option(COLUMN, "--column", metavar="<name=heading>")]
 ScenarioName = Annotated[str, typer.Argument(help=SCENARIO, autocompletion=complete_scenario)]
 FigureFile = Annotated[Path | None, option("Save a figure (.png, .pdf or .svg).", "--figure", "-f", panel=FIGURES)]
 Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.", panel=FIGURES)]

@@ -114,6 +114,19 @@ def typed_values(texts: Iterable[str], where: str, example: str) -> dict[str, fl
     return values
 
 
+def typed_columns(texts: Iterable[str] | None, where: str) -> dict[str, str]:
+    """Return headings that were typed, each as NAME=HEADING, by the column that they are. Raises InputError."""
+    columns: dict[str, str] = {}
+    for text in texts or ():
+        name, equals, heading = (part.strip() for part in text.partition("="))
+        if not equals or not name or not heading:
+            raise InputError(f'{where} must be NAME=HEADING, as load_point="Vert_disp (micron)", got {shown(text)}')
+        if name in columns:
+            raise InputError(f"{where}: {shown(name)} is given twice")
+        columns[name] = heading
+    return columns
+
+
 def read_axis(problem: Problem, text: str, where: str) -> Axis:
     """Read an axis of the form NAME=LOW..HIGH[:POINTS][:log], with numbers in SI or with a unit.
 

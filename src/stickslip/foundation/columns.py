@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import has_unit as is_quantity
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import COLUMNS, FoundColumn, find, is_signed, note_units
+from stickslip.foundation.errors import InputError, warn
+from stickslip.foundation.headings import COLUMNS, FoundColumn, find, is_signed
+from stickslip.foundation.marks import marked, sentences
+from stickslip.foundation.named_columns import NamedColumns
+from stickslip.foundation.unit_doubts import doubts_of
 
 
 @dataclass(frozen=True)
@@ -30,10 +33,20 @@ class Table:
     """All headings, as they are written, with a unit in brackets if it stood in a row below them."""
     at_header: str = ""
     """The place of the headings for a message."""
+    notes: tuple[str, ...] = ()
+    """Sentences on what was passed over."""
+    doubts: tuple[str, ...] = ()
+    """Sentences on columns without a unit."""
 
     def at(self, i: int) -> str:
         """Return the place of row i for a message."""
         return f"{self.place}, {self.counted} {self.lines[i]}"
+
+    def warned(self) -> Table:
+        """Issue the doubts as warnings, once it is clear that the table is of use, and return it."""
+        for doubt in self.doubts:
+            warn(doubt)
+        return self
 
     def check_ascending(self, column: str) -> None:
         """Raise InputError, with the cure, unless the numbers of a column ascend."""
@@ -45,13 +58,15 @@ class Table:
             raise InputError(f"{self.at(int(wrong[0]) + 1)}: {column} must ascend, but {here:g} follows {before:g}; {cure}")
 
 
-def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = False) -> Table:
+def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = False, named: NamedColumns | None = None) -> Table:
     """Return those of the wanted columns that a DataFrame, or another mapping of headings to numbers, has, as numbers in SI.
 
-    If `raw`, NaN and negative numbers pass. Raises InputError.
+    If `raw`, NaN and negative numbers pass, and marks of missing numbers become NaN. `named` are headings that the user has named.
+    Raises InputError.
     """
-    headings = list(table)
+    headings, notes = list(table), list[str]()
     header = [str(heading) for heading in headings]
+    header = header if named is None else named.renamed(header, wanted, place)
     chosen = find(header, wanted, place)
     columns: dict[str, Floats] = {}
     without: dict[str, FoundColumn] = {}
@@ -69,16 +84,18 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = F
         _check_kind(kind, name, place)
         if numbers.ndim != 1:
             raise InputError(f"{place}: {name} must be a column of numbers, got an array of {numbers.ndim} dimensions")
+        if raw and numbers.ndim == 1 and (marks := marked(numbers)).any():
+            notes += sentences(numbers, marks, name)
+            numbers = np.where(marks, np.nan, numbers)
         columns[name] = scaled(numbers, factor)
     sizes = {name: len(numbers) for name, numbers in columns.items()}
     if len(set(sizes.values())) > 1:
         raise InputError(f"{place}: columns of different lengths: {', '.join(f'{n} has {size}' for n, size in sizes.items())}")
-    made = Table(columns, place, np.arange(max(sizes.values(), default=0)), "row", header, place)
+    made = Table(columns, place, np.arange(max(sizes.values(), default=0)), "row", header, place, tuple(notes))
     for name, numbers in ({} if raw else columns).items():
         for i in np.flatnonzero(~np.isfinite(numbers) | ((numbers < 0.0) & (not is_signed(name))))[:1].tolist():
             check_number(float(numbers[i]), name, made.at(i))
-    note_units(without, columns, place)
-    return made
+    return replace(made, doubts=doubts_of(without, columns, place, of_file=False))
 
 
 def _check_kind(kind: str, name: str, place: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,10 +10,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-import numpy as np
-
-from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError, meant, warn
+from stickslip.foundation.errors import InputError, meant
 from stickslip.foundation.units import plain_signs, si_factor, split_quantity, tabulated
 
 
@@ -57,7 +53,9 @@ COLUMNS: Mapping[str, HeadingColumn] = {
             *("effective normal stress", "eff normal stress", "effns"),
         ),
     ),
-    "time": HeadingColumn("s", ("t", "elapsed time", "time elapsed", "test time")),
+    "time": HeadingColumn(
+        "s", ("t", "elapsed time", "time elapsed", "test time", "timestamp", "timestamps", "time stamp", "time stamps")
+    ),
     "load_point": HeadingColumn("m", ("lp", "lpd", *_driven("displacement", "disp", "position")), signed=True),
     "load_rate": HeadingColumn("m/s", ("vlp", "v lp", *_driven("rate", "velocity", "speed")), signed=True),
     "rotation_rate": HeadingColumn(
@@ -133,18 +131,14 @@ TURNED: Mapping[str, str] = {
     **{"pull_rate": "rotation_rate", "far_stress": "torque"},
 }
 """Columns of a contact that slides, with those that take their place where it turns; both have the same headings."""
-LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point": 100.0, "load_rate": 100.0}
-"""Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
 MOST_COLUMNS = 1000
 """Largest number of columns of a table."""
 LONGEST = 120
 """Largest number of characters of a heading that is understood."""
-PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless")
+PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless", "unitless")
 """What people write in place of a unit for a pure number."""
 ONE_WORD = 5
 """A heading of several words with at least this many letters is also understood in one: "loadpoint", but not "sign" for "sig n"."""
-_OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa", "N": "kN"}
-"""Units that laboratories use in place of those of SI."""
 _HEADING = re.compile(r"(?P<name>[^()\[\]]*)(?:[(\[](?P<unit>[^()\[\]]*)[)\]])?\s*")
 _BETWEEN = re.compile(r"\s*[\s_,:/]\s*")
 _CAMEL = re.compile(r"(?<=[a-zα-ω])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -164,18 +158,18 @@ def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, 
     """Return what a header has of the wanted columns. Raises InputError for two of one kind, and for a unit that does not fit."""
     if len(header) > MOST_COLUMNS:
         raise InputError(f"{place}: more than {MOST_COLUMNS} columns: not a table of numbers")
-    understood = [_understood(cell, tuple(wanted)) for cell in header]
+    cells = [_understood(cell, tuple(wanted)) for cell in header]
     found = {}
     for column in wanted:
-        at = [i for i, one in enumerate(understood) if one is not None and one[0] == column]
-        exact = [i for i in at if plain(understood[i][1]) == plain(column)]  # type: ignore[index] # at has none that are None
+        at = [i for i, one in enumerate(cells) if one is not None and one[0] == column]
+        exact = [i for i in at if plain(cells[i][1]) == plain(column)]  # type: ignore[index] # at has none that are None
         at = exact if len(exact) == 1 else at
         if len(at) > 1:
             cure = "rename or remove one"
             cure = "of two clocks, write each with its columns to a file of its own" if column == "time" else cure
             raise InputError(f"{place}: columns {at[0] + 1} and {at[1] + 1} both are the {column}: {cure}")
         if at:
-            unit = understood[at[0]][2]  # type: ignore[index]
+            unit = cells[at[0]][2]  # type: ignore[index]
             found[column] = FoundColumn(at[0], factor_of(unit, column, f"{place}, column {at[0] + 1}"), unit)
     return {column: found[column] for column in wanted if column in found}
 
@@ -192,19 +186,48 @@ def _understood(heading: str, wanted: tuple[str, ...]) -> tuple[str, str, str | 
     A unit stands in brackets, or behind the name as in `slip_rate_m_per_s` and "tau MPa".
     """
     known = _by_heading(wanted)
-    name, unit = _parts(heading)
+    name, unit = split_heading(heading)
     fitting = known.get(plain(name), ())
     if fitting:
         unit = "rpm" if unit is None and "rpm" in plain(name) else unit
         best = next((one for one in fitting if len(fitting) > 1 and unit is not None and _fits(unit, one)), fitting[0])
         return best, name, unit
     if unit is None:
-        for cut in reversed(list(_BETWEEN.finditer(name))):
-            before, behind = name[: cut.start()], name[cut.end() :].replace("_per_", "/").replace("_", " ")
+        for before, behind in _cuts(name):
             for column in known.get(plain(before), ()):
-                if COLUMNS[column].unit != "1" and tabulated(_unit_text(behind)) is not None and _fits(behind, column):
+                if _is_unit_of(behind, column):
                     return column, before, behind
     return None
+
+
+def _cuts(name: str) -> Iterator[tuple[str, str]]:
+    """Yield what may be a name and the unit behind it, the shortest unit first."""
+    for cut in reversed(list(_BETWEEN.finditer(name))):
+        yield name[: cut.start()], name[cut.end() :].replace("_per_", "/").replace("_", " ")
+
+
+def _is_unit_of(unit: str, column: str) -> bool:
+    return _unit_of(column) != "1" and tabulated(_unit_text(unit)) is not None and _fits(unit, column)
+
+
+def _unit_of(column: str) -> str:
+    return COLUMNS.get(column, HeadingColumn("1")).unit
+
+
+def understood(heading: str, wanted: Sequence[str]) -> str | None:
+    """Return the column that a heading names among the wanted ones, or None."""
+    found = _understood(heading, tuple(wanted))
+    return found and found[0]
+
+
+def trailing_unit(heading: str, column: str) -> str | None:
+    """Return the unit that stands without brackets behind a name, as in Vert_disp_um, if it is one of the column's; else None."""
+    return next((unit for _, unit in _cuts(split_heading(heading)[0]) if _is_unit_of(unit, column)), None)
+
+
+def heading_of(name: str, unit: str | None) -> str:
+    """Return a name with its unit in brackets, if it has one."""
+    return name if unit is None else f"{name} ({unit})"
 
 
 @lru_cache(maxsize=64)
@@ -232,10 +255,10 @@ def plain(heading: str) -> str:
 
 def names_of(header: Sequence[str]) -> list[str]:
     """Return plain headings without their units in brackets."""
-    return [plain(_parts(cell)[0]) for cell in header]
+    return [plain(split_heading(cell)[0]) for cell in header]
 
 
-def _parts(heading: str) -> tuple[str, str | None]:
+def split_heading(heading: str) -> tuple[str, str | None]:
     """Return the name in a heading and the unit in brackets, or None; no name if it is too long for a heading."""
     if len(heading) > LONGEST:
         return "", None
@@ -288,7 +311,7 @@ def is_signed(column: str) -> bool:
 
 def example(column: str) -> str:
     """Return a heading for a column, with its unit in SI."""
-    unit = COLUMNS.get(column, HeadingColumn("1")).unit
+    unit = _unit_of(column)
     return column if unit == "1" else f"{column} ({unit})"
 
 
@@ -309,29 +332,6 @@ def missing(header: Sequence[str], column: str) -> str:
         if name.rpartition(" ")[2] in headings(column):
             return f"column {i + 1} is not the {column} itself, by its heading; if it is, write {example(column)} there"
     return f"rename {quoted(close)}?" if close != column else f"write it as {example(column)}"
-
-
-def note_units(chosen: Mapping[str, FoundColumn], columns: Mapping[str, Floats], place: str) -> None:
-    """Issue an `InputWarning` for a column without a unit that is hardly in SI.
-
-    That is so if another heading has a unit other than SI, or if its numbers are larger than any slip or slip rate. The ratio of
-    two stresses needs no unit if both have none.
-    """
-    for message in _unit_doubts(chosen, columns):
-        warn(f"{place}: {message}")
-
-
-def _unit_doubts(chosen: Mapping[str, FoundColumn], columns: Mapping[str, Floats]) -> Iterator[str]:
-    units = {name: found.unit for name, found in chosen.items()}
-    if units.get("shear_stress", "") is units.get("normal_stress", "") is None:
-        del units["shear_stress"], units["normal_stress"]
-    sized = {name: unit for name, unit in units.items() if COLUMNS.get(name, HeadingColumn("1")).unit != "1"}
-    foreign = any(chosen[name].factor != 1 for name in sized)
-    for name in (name for name, unit in sized.items() if unit is None):
-        if foreign or np.max(np.abs(columns[name]), initial=0.0) > LARGEST.get(name, math.inf):
-            si = COLUMNS[name].unit
-            cure = f"write its unit into the heading, as in {name} ({_OFTEN.get(si, si)})"
-            yield f"column {chosen[name].place + 1}, {name}, has no unit and is read in {si}; if it is in another, {cure}"
 
 
 def is_number(text: str) -> bool:

@@ -1,4 +1,4 @@
-"""Read named columns of numbers, with units in their headings, from delimited text.
+"""Read named columns of numbers, with units in their headings, from text: delimited, or in a format of `record_files`.
 
 A text is read by lines, so that memory is that of its numbers and no more. No message repeats a text that a file holds, because
 scenarios from somebody else may name files: messages name lines and columns.
@@ -6,13 +6,12 @@ scenarios from somebody else may name files: messages name lines and columns.
 
 from __future__ import annotations
 
-import csv
 import io
 import math
 import re
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain, islice, zip_longest
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
@@ -22,24 +21,19 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import open_bounded
 from stickslip.foundation.columns import Table, check_number, scaled
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import (
-    MOST_COLUMNS,
-    PURE,
-    FoundColumn,
-    count_named,
-    example,
-    factor_of,
-    find,
-    has_unit,
-    is_number,
-    note_units,
-)
+from stickslip.foundation.errors import InputError, warn
+from stickslip.foundation.headings import FoundColumn, example, find, is_signed
+from stickslip.foundation.marks import marked, sentences
+from stickslip.foundation.named_columns import NamedColumns
+from stickslip.foundation.record_files import form_of
+from stickslip.foundation.record_files.foreign import check_is_text, decoded
+from stickslip.foundation.record_files.sheet import PREAMBLE, Asked, Lines, Sheet
+from stickslip.foundation.unit_doubts import doubts_of
 
+FIRST_BYTES = 4096
+"""Number of bytes that tell what a file is."""
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
-PREAMBLE = 200
-"""Notes of an instrument may take this many lines before the header."""
 NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
 """What instruments and people write where a number is missing."""
 DECIMAL_COMMA = (
@@ -47,17 +41,18 @@ DECIMAL_COMMA = (
     "or in Python pass pandas.read_csv(FILE, sep=';', decimal=',')"
 )
 """The cure for decimal commas in a file whose columns are not separated by commas."""
-BLANKS = " "
-"""The separator of columns that stand apart by blanks."""
-XLOOK_WIDTH = 12
-"""Number of characters of a heading in text that xlook writes."""
 _COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
-_XLOOK = re.compile(r"\s*(col\s+\d+\s*)+")
-_WORD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^()\[\]]*[)\]])?|[(\[][^()\[\]]*[)\]]|[(\[]")
-_APART = re.compile(r"\s{2,}")
 
 
-def read_file(path: Path, wanted: Sequence[str], limits: tuple[int, int], *, raw: bool = False) -> Table:
+def read_file(
+    path: Path,
+    wanted: Sequence[str],
+    limits: tuple[int, int],
+    *,
+    raw: bool = False,
+    skip: bool = False,
+    named: NamedColumns | None = None,
+) -> Table:
     """Return those of the wanted columns that a text file has, as `read_text` does.
 
     `limits` are its largest size in bytes and its largest number of rows. Raises InputError.
@@ -65,11 +60,12 @@ def read_file(path: Path, wanted: Sequence[str], limits: tuple[int, int], *, raw
     name, (largest, most) = str(path) if str(path).isprintable() else ascii(str(path)), limits
     try:
         with open_bounded(path, largest) as stream:
-            mark = stream.read(2)
+            begin = stream.read(FIRST_BYTES)
+            check_is_text(begin)
             stream.seek(0)
-            encoding = "utf-16" if mark in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
-            with io.TextIOWrapper(stream, encoding) as text:
-                return _read(text, wanted, name, most, raw=raw)
+            encoding, errors = decoded(begin)
+            with io.TextIOWrapper(stream, encoding, errors) as text:
+                return _read(text, Asked(name, wanted, named or NamedColumns({}), most), raw=raw, skip=skip)
     except FileNotFoundError:
         raise InputError(f"{name}: no such file") from None
     except UnicodeError:
@@ -80,40 +76,49 @@ def read_file(path: Path, wanted: Sequence[str], limits: tuple[int, int], *, raw
         raise InputError(str(error) if str(error).startswith(name) else f"{name}: {error}") from None
 
 
-def read_text(text: str, wanted: Sequence[str], place: str, most: int, *, raw: bool = False) -> Table:
+def read_text(
+    text: str,
+    wanted: Sequence[str],
+    place: str,
+    most: int,
+    *,
+    raw: bool = False,
+    skip: bool = False,
+    named: NamedColumns | None = None,
+) -> Table:
     """Return those of the wanted columns that a text has, as numbers in SI.
 
-    The first line that is neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the
-    lines that follow names two of them, that line is the header, and those before it are notes. Units stand in the headings, or in
-    a row of their own below them. Columns are separated by tabs, semicolons or commas, whichever of them the header has, in this
-    order, or else by blanks. The text that xlook writes, with numbers of columns, names, units and counts, is understood.
+    Files of LabVIEW (.lvm), LAS and universal files are known by their first lines. In any other text the first line that is
+    neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the lines that follow names
+    two of them, that line is the header, and those before it are notes. Units stand in the headings, or in a row of their own below
+    them. Columns are separated by tabs, semicolons or commas, whichever of them the header has, in this order, or else by blanks.
+    The text that xlook writes, with numbers of columns, names, units and counts, is understood. `named` are headings that the user
+    has named, and `Table.doubts` name the columns without a unit.
 
     Raises InputError with a message of one line that names `place` and the line; also for more than `most` rows. If `raw`, cells
-    without a number become NaN, and no sign is refused.
+    without a number and marks of missing numbers, as -999.25, become NaN, `Table.notes` say so, and no sign is refused. If `skip`,
+    rows with such a mark are left out, with a warning. Otherwise they are refused.
     """
-    return _read(io.StringIO(text.lstrip("\ufeff"), newline=None), wanted, place, most, raw=raw)
+    asked = Asked(place, wanted, named or NamedColumns({}), most)
+    return _read(io.StringIO(text.lstrip("\ufeff"), newline=None), asked, raw=raw, skip=skip)
 
 
-def _read(stream: TextIO, wanted: Sequence[str], place: str, most: int, *, raw: bool) -> Table:
-    lines = _lines(stream, place)
-    begin = list(islice(lines, PREAMBLE))
-    head = _head(begin, wanted)
-    at_header = f"{place}, line {head.number}"
-    chosen = find(head.cells, wanted, at_header)
-    body, number = chain(begin[head.behind :], lines), head.behind
-    header = list(head.cells)
-    below = next(((i, line) for i, line in enumerate(begin[head.behind :]) if not _is_empty(line)), None)
-    if below is not None and _are_units(units := _split(below[1], head.separator), header, chosen):
-        header = [name if has_unit(name) else f"{name} ({_bare(unit)})" for name, unit in zip_longest(header, units, fillvalue="")]
-        chosen = find(header, wanted, at_header)
-        body, number = chain(begin[head.behind + below[0] + 1 :], lines), head.behind + below[0] + 1
+def _read(stream: TextIO, asked: Asked, *, raw: bool, skip: bool) -> Table:
+    more = _lines(stream, asked.place)
+    begin = list(islice(more, PREAMBLE))
+    sheet = form_of(begin)(Lines(begin, more), asked)
+    at_header = f"{asked.place}, line {sheet.line}"
+    chosen = find(sheet.header, asked.wanted, at_header)
     if not chosen:  # the caller says what is missing
-        return Table({}, place, np.array([head.number]), "line", header, at_header)
-    rows = _Rows(place, head.separator, len(header), chosen, raw)
-    at_lines, found = rows.read(body, number, most)
+        return Table({}, asked.place, np.array([sheet.line]), sheet.counted, sheet.header, at_header)
+    rows = _Rows(asked, sheet, chosen, raw)
+    at_lines, found = rows.read()
+    at_lines, found, notes = rows.without_marks(at_lines, found, skip)
     columns = {name: scaled(found[:, k], one.factor) for k, (name, one) in enumerate(chosen.items())}
-    note_units(chosen, columns, at_header)
-    return Table(columns, place, at_lines if len(at_lines) else np.array([head.number]), "line", header, at_header)
+    if not len(at_lines):
+        at_lines = np.array([sheet.line])
+    doubts = doubts_of(chosen, columns, at_header)
+    return Table(columns, asked.place, at_lines, sheet.counted, sheet.header, at_header, (*sheet.notes, *notes), doubts)
 
 
 def _lines(stream: TextIO, place: str) -> Iterator[str]:
@@ -126,148 +131,68 @@ def _lines(stream: TextIO, place: str) -> Iterator[str]:
         yield line.rstrip("\n")
 
 
-def _is_empty(line: str) -> bool:
-    """Return True for a line that is blank or a comment."""
-    text = line.lstrip()
-    return not text or text[0] == "#"
-
-
-class _Head(NamedTuple):
-    """The headings of a text, the number of their line, the separator of columns, and how many lines stand before the rows."""
-
-    cells: Sequence[str]
-    number: int
-    separator: str
-    behind: int
-
-
-def _head(lines: Sequence[str], wanted: Sequence[str]) -> _Head:
-    """Return the header among the first lines of a text; see `read_text`."""
-    rows = [i for i, line in enumerate(lines) if not _is_empty(line)]
-    xlook = next((i for i in rows if _XLOOK.fullmatch(lines[i])), None)
-    if xlook is not None and xlook + 2 < len(lines):
-        return _xlook_head(lines, xlook)
-    if not rows:
-        return _Head([""], 1, ",", len(lines))
-    heads = {i: _header_in(lines, i) for i in rows}
-    named = {i: count_named(head.cells[:MOST_COLUMNS], wanted) for i, head in heads.items()}
-    headers = [i for i in rows if named[i] > 1]
-    first = rows[0]
-    if named[first] == 0 and len(headers) == 1:
-        return heads[headers[0]]
-    comment = lines[first - 1].lstrip().lstrip("#") if first else ""
-    if named[first] == 0 and comment and all(map(is_number, _split(lines[first], heads[first].separator))):
-        header = _header_in([*lines[: first - 1], comment, *lines[first:]], first - 1)
-        if count_named(header.cells[:MOST_COLUMNS], wanted) > 1:  # headings behind a #, as numpy.savetxt writes them
-            return header
-    return heads[first]
-
-
-def _header_in(lines: Sequence[str], i: int) -> _Head:
-    """Return line i of a text as a header; blanks separate columns if they make as many headings as there are cells below."""
-    line = lines[i]
-    separator = next((mark for mark in "\t;," if mark in line), None)
-    if separator is None and len(line.split()) > 1:
-        below = next((len(one.split()) for one in lines[i + 1 : i + 4] if not _is_empty(one)), 0)
-        for cells in (_WORD.findall(line), _APART.split(line.strip())):
-            if len(cells) == below:
-                return _Head(cells, i + 1, BLANKS, i + 1)
-    return _Head(_split(line, separator or ","), i + 1, separator or ",", i + 1)
-
-
-def _xlook_head(lines: Sequence[str], i: int) -> _Head:
-    """Return the header of text from xlook: line i numbers the columns, and names, units and counts of records follow.
-
-    Names and units have twelve characters each and may touch each other. Rows begin with their number, which has no heading.
-    """
-    count = len(lines[i].split()) // 2
-    names, units = (_of_width(lines[i + k], count) for k in (1, 2))
-    behind = i + 4 if i + 3 < len(lines) and "recs" in lines[i + 3] else i + 3
-    cells = len(lines[behind].split()) if behind < len(lines) else count
-    numbered = [""] if cells == count + 1 else []
-    pure = [name if unit in PURE else f"{name} ({unit})" for name, unit in zip(names, units, strict=True)]
-    return _Head([*numbered, *pure], i + 2, BLANKS, behind)
-
-
-def _of_width(line: str, count: int) -> list[str]:
-    """Return the cells of a line that are separated by blanks, or, if these are too few, twelve characters wide."""
-    cells = line.split()
-    if len(cells) == count:
-        return cells
-    begin = max(len(line.rstrip()) - XLOOK_WIDTH * count, 0)
-    return [line[begin + XLOOK_WIDTH * k : begin + XLOOK_WIDTH * (k + 1)].strip() for k in range(count)]
-
-
-def _split(line: str, separator: str) -> list[str]:
-    if separator == BLANKS:
-        return line.split()
-    try:
-        return next(csv.reader([line], delimiter=separator), [])
-    except csv.Error:
-        return line.split(separator)
-
-
-def _are_units(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, FoundColumn]) -> bool:
-    """Return True if a row below the headings holds the units of the chosen columns, and contradicts none of the headings."""
-    cells = {name: _bare(row[one.place]) if one.place < len(row) else "" for name, one in chosen.items()}
-    try:
-        for name, cell in cells.items():
-            factor_of(cell, name, "")
-    except InputError:
-        return False
-    agrees = all(one.unit is None or cells[name] in header[one.place] for name, one in chosen.items())
-    return agrees and any(cell.casefold() not in PURE for cell in cells.values())
-
-
-def _bare(unit: str) -> str:
-    return unit.strip(" ()[]")
-
-
 class _Rows(NamedTuple):
-    """How the rows of a text are read: the place for messages, the separator, the number of headings, and the columns."""
+    """How the rows of a text are read: what is asked for, what the file is, and the columns; see `read_text` for `raw`."""
 
-    place: str
-    separator: str
-    width: int
+    asked: Asked
+    sheet: Sheet
     chosen: Mapping[str, FoundColumn]
     raw: bool
 
-    def read(self, lines: Iterator[str], number: int, most: int) -> tuple[NDArray[np.int64], Floats]:
+    def at(self, line: int) -> str:
+        """Return the place of a row for messages."""
+        return f"{self.asked.place}, {self.sheet.counted} {line}"
+
+    def read(self) -> tuple[NDArray[np.int64], Floats]:
         """Return the lines of the rows of a text, and their numbers as they are written, shape (rows, columns).
 
-        `number` lines stand before the rows. Raises InputError for the first row that cannot be read, and for one too many.
+        Raises InputError for the first row that cannot be read, and for one too many.
         """
-        at_lines, numbers = array("q"), array("d")
-        for at, row in self._split(lines, number):
+        at_lines, numbers, most = array("q"), array("d"), self.asked.most
+        for at, row in self.sheet.rows:
             if len(at_lines) == most:
-                raise InputError(f"{self.place}, line {at}: more than {most} rows")
+                raise InputError(f"{self.at(at)}: more than {most} rows")
             numbers.extend(self._numbers(row, at, first=not at_lines))
             at_lines.append(at)
         return np.array(at_lines), np.array(numbers).reshape(-1, len(self.chosen))
 
-    def _split(self, lines: Iterator[str], number: int) -> Iterator[tuple[int, list[str]]]:
-        """Yield the cells of lines that are neither blank nor comments, each with the number of its line."""
-        if self.separator == BLANKS:
-            yield from ((at, line.split()) for at, line in enumerate(lines, number + 1) if not _is_empty(line))
-            return
-        read = csv.reader(lines, delimiter=self.separator)
-        try:
-            for row in read:
-                if any(map(str.strip, row)) and not row[0].lstrip().startswith("#"):
-                    yield number + read.line_num, row
-        except csv.Error as error:
-            raise InputError(f"{self.place}, line {number + read.line_num}: {error}") from None
-
-    def _numbers(self, row: Sequence[str], at_line: int, *, first: bool) -> list[float]:
+    def _numbers(self, row: Sequence[str], line: int, *, first: bool) -> list[float]:
         """Return the numbers of the chosen columns in a row, the first one or another, in their unit. Raises InputError."""
-        at = f"{self.place}, line {at_line}"
-        if any(cell.strip() for cell in row[self.width :]):
-            hint = "" if self.separator != "," else "; decimal commas? Then separate columns by semicolons and write decimal points"
-            raise InputError(f"{at}: {len(row)} cells, but the header has {self.width}{hint}")
+        at, width = self.at(line), len(self.sheet.header)
+        if any(cell.strip() for cell in row[width:]):
+            raise InputError(f"{at}: {len(row)} cells, but the header has {width}{self.sheet.hint}")
         cells = {name: row[one.place].strip() if one.place < len(row) else "" for name, one in self.chosen.items()}
         if not self.raw:
-            return [check_number(_as_written(cell, name, at, first), name, at) for name, cell in cells.items()]
+            return [_as_written(cell, name, at, first) for name, cell in cells.items()]
         return [math.nan if cell.casefold() in NO_NUMBER else _as_written(cell, name, at, first) for name, cell in cells.items()]
+
+    def without_marks(
+        self, at_lines: NDArray[np.int64], found: Floats, skip: bool
+    ) -> tuple[NDArray[np.int64], Floats, tuple[str, ...]]:
+        """Return lines and numbers without marks of missing numbers, and sentences on those. Raises InputError; see `read_text`."""
+        notes, gone = list[str](), np.zeros(len(found), bool)
+        for k, name in enumerate(self.chosen):
+            marks = marked(found[:, k], self.sheet.null)
+            for i in np.flatnonzero(marks & (not self.raw) & (not skip))[:1].tolist():
+                what = f"{name} is {found[i, k]:.7g}, which marks a missing number"
+                raise InputError(f"{self.at(int(at_lines[i]))}: {what}; leave out such rows")
+            notes += sentences(found[:, k], marks, name)
+            found[marks, k] = math.nan
+            gone |= marks
+        if self.raw:
+            return at_lines, found, tuple(notes)
+        if gone.any():
+            warn(f"{self.asked.place}: {'; '.join(notes)}: left out")
+            at_lines, found = at_lines[~gone], found[~gone]
+        self._check(at_lines, found)
+        return at_lines, found, ()
+
+    def _check(self, at_lines: NDArray[np.int64], found: Floats) -> None:
+        """Raise InputError for the first number that is not finite, or is below 0 and must not be."""
+        signed = np.array([is_signed(name) for name in self.chosen])
+        for i in np.flatnonzero((~np.isfinite(found) | ((found < 0.0) & ~signed)).any(axis=1))[:1].tolist():
+            for k, name in enumerate(self.chosen):
+                check_number(float(found[i, k]), name, self.at(int(at_lines[i])))
 
 
 def _as_written(text: str, column: str, place: str, first: bool) -> float:

@@ -156,8 +156,29 @@ _ACCELERATIONS = {
 }
 """Units of acceleration whose names mean another thing elsewhere: g is also a gram, and pint's gal is a gallon."""
 _LOGGED = (
-    *("m", "mm", "cm", "km", "ft", "kft", "in", "s", "ms", "min", "hr", "kg", "rad", "deg", "rpm", "rev", "N", "kN", "MN"),
-    *("lb", "lbs", "lbf", "klb", "klbs", "klbf", "kip", "Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "Nm", "kNm", "daNm"),
+    *("m", "mm", "um", "cm", "km", "ft", "kft", "in", "s", "sec", "ms", "min", "hr", "kg", "rad", "deg", "rpm", "rev"),
+    *(
+        "N",
+        "kN",
+        "MN",
+        "lb",
+        "lbs",
+        "lbf",
+        "klb",
+        "klbs",
+        "klbf",
+        "kip",
+        "Pa",
+        "kPa",
+        "MPa",
+        "GPa",
+        "bar",
+        "psi",
+        "ksi",
+        "Nm",
+        "kNm",
+        "daNm",
+    ),
 )
 _CAPITALS = {name.upper(): name for name in _LOGGED}
 """What a unit in capitals means, as old loggers write it, where it means nothing else: MPA is never a thousandth of a pascal."""

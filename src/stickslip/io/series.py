@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import example, has_unit
+from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.text_columns import read_file
 from stickslip.schemes.contract import Series
 
@@ -21,16 +23,17 @@ IN_MPA = ("shear-stress", "h-shear-stress")
 """Headings without a unit that the SCEC benchmarks use for stress in MPa."""
 
 
-def read_series(path: str | Path, *, cells: int = 0) -> Series:
+def read_series(path: str | Path, *, cells: int = 0, columns: Mapping[str, str | int] | None = None) -> Series:
     """Read a series, named after the file; `cells` is the number of cells in the thickness, if it is known.
 
     Columns and units are understood as those of records (`stickslip.foundation.text_columns.read_text`): time, slip, slip rate, and
     traction or shear stress, which is in MPa under the headings of the SCEC benchmarks. Slip counts from t = 0. Of two lines with
-    the same time, as at a shock, the last one counts. Raises InputError if the file cannot be read, if a column is missing, if a
-    value is not a finite number, or if times do not ascend.
+    the same time, as at a shock, the last one counts. `columns` say what headings mean, as {"slip": "D (mm)"}. Raises InputError if
+    the file cannot be read, if a column is missing, if a value is not a finite number, or if times do not ascend.
     """
-    table = read_file(Path(path), tuple(CALLED), (LARGEST_FILE, MOST_SAMPLES), raw=True)
-    columns = {}
+    table = read_file(Path(path), tuple(CALLED), (LARGEST_FILE, MOST_SAMPLES), raw=True, named=NamedColumns(columns or {}))
+    in_mpa = any(heading.strip().casefold() in IN_MPA and not has_unit(heading) for heading in table.header)
+    found = {}
     for name, called in CALLED.items():
         if name not in table.columns:
             named = {"slip_rate": "slip rate", "shear_stress": "traction"}.get(name, name)
@@ -41,9 +44,11 @@ def read_series(path: str | Path, *, cells: int = 0) -> Series:
         values = table.columns[name]
         for row in np.flatnonzero(~np.isfinite(values))[:1]:
             raise InputError(f"{table.at(int(row))}: {name} is not a finite number")
-        columns[name] = values
-    if any(heading.strip().casefold() in IN_MPA and not has_unit(heading) for heading in table.header):
-        columns["shear_stress"] = 1e6 * columns["shear_stress"]
-    last = np.append(np.diff(columns["time"]) != 0.0, True)
-    time, slip, rate, traction = (values[last] for values in columns.values())
+        found[name] = values
+    if in_mpa:
+        found["shear_stress"] = 1e6 * found["shear_stress"]
+    else:  # the benchmarks say in which units their columns are
+        table.warned()
+    last = np.append(np.diff(found["time"]) != 0.0, True)
+    time, slip, rate, traction = (values[last] for values in found.values())
     return Series(time, slip, rate, traction, Path(path).stem, cells)

@@ -69,7 +69,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
         **_energies(history, begin, end),
     }
     pulses = Pulses.of(history, events)
-    columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece)).astype(float)
+    columns["fracture"] = np.asarray(np.bincount(pulses.event, pulses.fracture(history), len(begin.piece)), float)
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     before, smallest = extreme_tractions(history, events, pulses)
     columns["dynamic_drop"] = direction(columns["slip"]) * (before - smallest) + 0.0  # no -0.0
@@ -117,7 +117,7 @@ def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, F
 
 def direction(slip: ArrayLike) -> Floats:
     """Return -1 for slip back, otherwise 1."""
-    return np.where(np.asarray(slip) < 0.0, -1.0, 1.0)
+    return np.asarray(np.where(np.asarray(slip) < 0.0, -1.0, 1.0), float)
 
 
 def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> tuple[Floats, Floats]:

@@ -12,6 +12,7 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import missing
+from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import (
     LARGEST_SERIES,
     Choice,
@@ -24,6 +25,7 @@ from stickslip.foundation.quantities import (
     Text,
     fields_of,
 )
+from stickslip.foundation.record_files.foreign import text_in
 from stickslip.foundation.text_columns import read_text
 
 
@@ -151,13 +153,20 @@ ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
 
 
 def read_points(
-    name: str, folder: Path | None, columns: Mapping[str, str], where: str, along: str | None = None
+    name: str,
+    folder: Path | None,
+    columns: Mapping[str, str],
+    where: str,
+    along: str | None = None,
+    *,
+    named: Any = None,
 ) -> dict[str, list[float]]:
     """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by field.
 
     `columns` maps headings to fields. The last belongs to the dependent variable; exactly one other column must be there, or be
     named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
-    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.headings`).
+    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.headings`), and
+    `named` says what headings mean.
     Raises InputError with a message of one line that names the file and the line.
     """
     *others, value = columns
@@ -167,19 +176,20 @@ def read_points(
             raise InputError(f"{at} along: {shown(along)} is no column to go along; {nearest(str(along), others)}")
         columns = {column: columns[column] for column in (along, value)}
     try:
+        given = NamedColumns(named or {}, shows=False)
         text = _text(name, folder)
     except InputError as error:
         raise InputError(f"{where} {shown(name)}: {error}") from None
-    return _points_in(text, columns, f"{where}: {shown(name)}")
+    return _points_in(text, columns, f"{where}: {shown(name)}", given)
 
 
-def _points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
+def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedColumns) -> dict[str, list[float]]:
     """Return the numbers (SI) in CSV text by field, as `read_points` does.
 
     `file` is the name of the text in messages.
     """
     *others, value = columns
-    table = read_text(text, tuple(columns), file, LARGEST_SERIES)
+    table = read_text(text, tuple(columns), file, LARGEST_SERIES, named=named)
     found = [column for column in others if column in table.columns]
     if value not in table.columns:
         raise InputError(f"{table.at_header}: no column '{value}' in the header; {missing(table.header, value)}")
@@ -190,7 +200,7 @@ def _points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, li
     if count < 2:
         raise InputError(f"{table.at(-1)}: at least two rows of numbers are needed, got {count}")
     table.check_ascending(found[0])
-    return {columns[column]: numbers.tolist() for column, numbers in table.columns.items()}
+    return {columns[column]: numbers.tolist() for column, numbers in table.warned().columns.items()}
 
 
 def _text(name: str, folder: Path | None) -> str:
@@ -206,7 +216,7 @@ def _text(name: str, folder: Path | None) -> str:
             raise InputError(f"the file must be in the folder of the scenario; {hint}")
         if not path.is_file():
             raise InputError("no such file beside the scenario")
-        return read_bounded(path, LARGEST_DATA_FILE).decode("utf-8-sig")
+        return text_in(read_bounded(path, LARGEST_DATA_FILE))
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

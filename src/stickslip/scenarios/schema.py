@@ -260,8 +260,9 @@ def read_table(
         along = raw.get("along") if len(columns) > 2 else None
         if source.load_unit == TURNS:
             columns, along = {TURNED.get(column, column): key for column, key in columns.items()}, TURNED.get(str(along), along)
-        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along)
-        taken = {"file"} if along is None else {"file", "along"}
+        named = raw.get("columns")
+        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along, named=named)
+        taken = {"file", "columns"} if along is None else {"file", "columns", "along"}
         raw = {key: value for key, value in raw.items() if key not in taken} | points
     return _read_keys(keys_of(table, kind, states), raw, source, table)
 

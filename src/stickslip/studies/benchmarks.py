@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -141,6 +141,7 @@ def judge_series(
     *,
     tolerance: float = TOLERANCE,
     rtol: float = 1e-10,
+    columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
 ) -> Schemes:
     """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
@@ -153,6 +154,8 @@ def judge_series(
         As for `schemes`; by default the benchmark or the bundled scenario that has the name of the first series.
     tolerance : float
         Largest share by which a series that passes may be off; see `stickslip.studies.judgement.Judgement`.
+    columns : dict, optional
+        What headings of the files mean, as in {"slip": "D (mm)", "time": 1}.
 
     Returns
     -------
@@ -170,7 +173,7 @@ def judge_series(
     from stickslip.io.series import read_series
 
     given_series = [series] if isinstance(series, Series | str | Path) else list(series)
-    several = tuple(one if isinstance(one, Series) else read_series(one) for one in given_series)
+    several = tuple(one if isinstance(one, Series) else read_series(one, columns=columns) for one in given_series)
     if not several:
         raise InputError("judge_series: needs a series or more")
     if not 0.0 < tolerance < 1.0:
@@ -231,7 +234,12 @@ def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Pa
 
 
 def judge_benchmark(
-    file: str | Path, name: str | None = None, *, tolerance: float = TOLERANCE, progress: TextProgress | bool | None = None
+    file: str | Path,
+    name: str | None = None,
+    *,
+    tolerance: float = TOLERANCE,
+    columns: Mapping[str, str | int] | None = None,
+    progress: TextProgress | bool | None = None,
 ) -> Schemes:
     """Compare the series of another program, in a file that `stickslip.io.series.read_series` reads, with the exact solution.
 
@@ -239,4 +247,4 @@ def judge_benchmark(
     the name is unknown, or the file cannot be read.
     """
     scenario = benchmark_of(Path(file).stem if name is None else name).scenario
-    return judge_series(file, scenario, tolerance=tolerance, progress=progress)
+    return judge_series(file, scenario, tolerance=tolerance, columns=columns, progress=progress)

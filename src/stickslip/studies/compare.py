@@ -19,12 +19,14 @@ from stickslip.foundation.names import si_unit
 from stickslip.io.netcdf import read_solution
 from stickslip.observables.energetics import direction, extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
+from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.solution import Solution
+from stickslip.studies.reach_of_runs import reach_of_runs
 from stickslip.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
@@ -32,12 +34,16 @@ COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),
     "rule": ("", "selection rule"),
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
+    "end_slip": ("slip", "slip at the end of the run"),
+    "displacement": ("slip", "largest displacement from the start of the run, negative if it is back"),
     "events": ("", "slip events, see `Solution.events`"),
+    "wait": ("s", "time from the end of the first event to the start of the next; NaN if there is no next one"),
+    "next_slip": ("slip", "slip of that next event, negative if it slips back"),
     "pulses": ("", "maxima of the slip rate in the largest event, see `Solution.events`"),
-    "slip": ("slip", "slip of the largest event"),
+    "slip": ("slip", "slip of the largest event, negative if it slips back"),
     "peak_rate": ("slip_rate", "largest slip rate of the run"),
     "static_drop": ("load", "stiffness of the body times the slip of the largest event"),
-    "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
+    "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one in slip; negative if it slips back"),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate; it is smooth if there are none"),
     "load_unit": ("", "unit of the drops, which is that of the loads"),
@@ -81,12 +87,13 @@ def read_source(
 class Comparison(Study):
     """The result of `compare`: finished runs by name, and the `event` that the figure shows of each, in time since its start.
 
-    The event is a row of `Solution.events`; None shows whole runs. Raises InputError if there are fewer than two runs, or if a run
-    has no such event.
+    The event is a row of `Solution.events`; None shows whole runs. `scenario` is the title of the one that was run under every
+    selection rule, if the runs are those. Raises InputError if there are fewer than two runs, or if a run has no such event.
     """
 
     runs: dict[str, Solution]
     event: int | None = None
+    scenario: str = ""
 
     def __post_init__(self) -> None:
         if len(self.runs) < 2:
@@ -115,6 +122,12 @@ class Comparison(Study):
 
     def _lines(self) -> Iterator[str]:
         yield f"of {', '.join(self.runs)}"
+        yield self.reach_text
+
+    @property
+    def reach_text(self) -> str:
+        """The ranges of the slips at the end and of the largest displacements."""
+        return reach_of_runs(self.runs)
 
     def _shown_table(self) -> pd.DataFrame:
         return self.table.set_index("name").rename(columns=self._headings).T.rename_axis(columns=None)
@@ -129,6 +142,7 @@ class Comparison(Study):
 @for_users
 def compare(
     *sources: str | Path | Scenario | Solution,
+    rules: bool = False,
     names: Sequence[str] | None = None,
     event: int | None = None,
     duration: float | str | WithUnit | None = None,
@@ -142,6 +156,8 @@ def compare(
     *sources : str, Path, Scenario or Solution
         Scenarios (names of bundled ones, files, or `Scenario` objects) are run; solutions, also from files (.nc), are used as they
         are.
+    rules : bool
+        Run the one source under each selection rule; the runs are then called by their rules.
     names : sequence of str, optional
         Names of the runs, in the same order.
     event : int, optional
@@ -158,7 +174,8 @@ def compare(
     ------
     InputError
         If there are fewer than two runs, if a source is not a scenario or solution, if the number of names is wrong, if
-        `duration` or `rtol` is out of range or given with a solution, or if a run has no such event.
+        `duration` or `rtol` is out of range or given with a solution, if a run has no such event, or if `rules` is given with
+        several sources, or with one that follows a single rule.
     KeyboardInterrupt
         If the user presses Ctrl-C.
 
@@ -175,12 +192,13 @@ def compare(
      slab       1 0.0006       2
     block       1 0.0074       0
     """
-    if len(sources) < 2:
-        raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")
+    if len(sources) < 2 and not rules:
+        raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}; rules=True runs one under each rule")
     if rtol is not None:
         check_rtol(rtol, "compare", "rtol")
     lasts = None if duration is None else DURATION.check("compare", "duration", duration)
-    read = [read_source(source, lasts, rtol) for source in sources]
+    ruled = under_each_rule(sources) if rules else []
+    read = [read_source(source, lasts, rtol) for source in ruled or sources]
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):
         raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")
@@ -189,7 +207,45 @@ def compare(
         for name, source in zip(called, read, strict=True):
             tell(name)
             runs[name] = source.solution(None)
-    return Comparison(runs, event)
+    return Comparison(runs, event, title_of(ruled) if ruled else "")
+
+
+def under_each_rule(sources: Sequence[str | Path | Scenario | Solution]) -> list[Scenario]:
+    """Return the one scenario under each selection rule that it can be run with, named after the rule.
+
+    Raises InputError for several sources, and for a problem that follows a single rule.
+    """
+    if len(sources) != 1:
+        raise InputError(f"compare: every rule is that of one scenario, got {len(sources)} of them")
+    scenario = _scenario_of(sources[0])
+    rules = dict.fromkeys((*scenario.problem.rules, scenario.problem.rule))
+    if len(rules) < 2:
+        raise InputError(
+            "compare: under friction of slip and slip rate the folds move with slip, and only perfect-delay is followed there: "
+            "there are no rules to compare"
+        )
+    return [
+        replace(scenario, name=rule, problem=scenario.problem if rule == scenario.problem.rule else _under(scenario.problem, rule))
+        for rule in rules
+    ]
+
+
+def title_of(scenarios: Sequence[Scenario]) -> str:
+    """Return what the runs of one scenario under each selection rule are called together."""
+    return f"{scenarios[0].title or 'one problem'}: each selection rule"
+
+
+def _under(problem: Problem, rule: str) -> Problem:
+    return replace(problem, selection=rule)
+
+
+def _scenario_of(source: str | Path | Scenario | Solution) -> Scenario:
+    """Return the scenario of a source that `read_source` takes."""
+    if isinstance(source, Solution):
+        return source.scenario()
+    if not isinstance(source, Scenario) and Path(str(source)).suffix == ".nc":
+        return read_solution(Path(str(source))).scenario()
+    return all_slips_alike("compare", source if isinstance(source, Scenario) else load_scenario(source))
 
 
 def distinct(names: Sequence[str]) -> list[str]:
@@ -204,6 +260,8 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "name": name,
         "rule": problem.rule,
         "regime": solution.rule_influence.regime,
+        "end_slip": float(solution.slip()),
+        "displacement": solution.reach.largest,
         "events": len(events),
         "pulses": 0,
         "shocks": len(solution.shocks),
@@ -224,4 +282,5 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "static_drop": largest.static_drop,
         "dynamic_drop": float(direction(largest.slip)) * (before[n] - smallest[n]),
         "duration": events.duration.iloc[0],
+        **({"wait": events.recurrence[1] - events.duration[0], "next_slip": events.slip[1]} if len(events) > 1 else {}),
     }

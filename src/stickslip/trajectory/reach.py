@@ -13,7 +13,7 @@ from stickslip.trajectory.history import History, Positions
 
 DIGITS = 8
 """Number of significant digits of a slip in a summary, as in its tables."""
-SAME = 1e-12
+SAME = 1e-9
 """Relative difference of two displacements that is rounding."""
 
 
@@ -31,23 +31,28 @@ class Reach:
             return self
         return Reach(self.end, other.largest, other.time)
 
-    def text(self, problem: Problem) -> str:
+    def text(self, problem: Problem, digits: int = DIGITS) -> str:
         """Return the slip at the end and the largest displacement, in one line."""
         unit, name = problem.unit_of("slip"), name_of("slip", problem.load_unit)
-        largest = f"largest {'rotation' if unit == 'rad' else 'displacement'}"
-        now = f"{name} at the end {shown_slip(problem.initial_slip + self.end, unit)}"
+        largest = largest_of(unit)
+        now = f"{name} at the end {shown_slip(problem.initial_slip + self.end, unit, digits)}"
         if not self.largest:
             return f"{now}, {largest} {shown_slip(0.0, unit)}: nothing slips"
         if problem.initial_slip:
-            now += f", {shown_slip(self.end, unit)} from the start"
+            now += f", {shown_slip(self.end, unit, digits)} from the start"
         if abs(self.largest - self.end) <= SAME * abs(self.largest):
             return f"{now}, which is the {largest}"
-        return f"{now}; {largest} {shown_slip(self.largest, unit)}, at {brief(self.time, 's')}"
+        return f"{now}; {largest} {shown_slip(self.largest, unit, digits)}, at {brief(self.time, 's')}"
 
 
-def shown_slip(value: float, unit: str) -> str:
+def largest_of(unit: str) -> str:
+    """Return what the largest displacement is called where slip has this unit."""
+    return f"largest {'rotation' if unit == 'rad' else 'displacement'}"
+
+
+def shown_slip(value: float, unit: str, digits: int = DIGITS) -> str:
     """Return a slip for readers; an angle also in turns if it has one or more."""
-    return brief(value, unit, DIGITS) + (in_turns(value) if unit == "rad" else "")
+    return brief(value, unit, digits) + (in_turns(value) if unit == "rad" else "")
 
 
 def reach_of(history: History) -> Reach:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.options import FigureFile, option
+from stickslip.cli.options import Columns, FigureFile, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError, nearest
 
@@ -23,6 +23,7 @@ def benchmark(
     folder: Annotated[Path | None, option("Get: where the files go (by default here).")] = None,
     out: Annotated[Path | None, option("Judge: save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     tolerance: Annotated[float, option("Judge: the largest share by which a series that passes may be off.")] = 0.05,
+    column: Columns = None,
     figure: FigureFile = None,
     look: FigureLook,
 ) -> None:
@@ -45,7 +46,7 @@ def benchmark(
     """
     if action not in ACTIONS:
         raise InputError(f"benchmark: there is nothing called {ascii(action)[:60]}; {nearest(action, ACTIONS)}")
-    of_judge = {"--name": name, "--out": out, "--figure": figure}
+    of_judge = {"--name": name, "--out": out, "--column": column, "--figure": figure}
     of_others = (of_judge if action != "judge" else {}) | ({"--folder": folder} if action != "get" else {})
     wrong = next((typed for typed, value in of_others.items() if value is not None), None)
     if wrong is not None:
@@ -63,7 +64,7 @@ def benchmark(
         return
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
-    if not _judge(Path(what), name, tolerance, (out, figure, look)):
+    if not _judge(Path(what), name, tolerance, column, (out, figure, look)):
         raise typer.Exit(1)
 
 
@@ -74,15 +75,23 @@ def _list() -> None:
     print_numbers(console(), ("name", "asks for"), [[name, one.asks] for name, one in BENCHMARKS.items()], text=2)
 
 
-def _judge(file: Path, name: str | None, tolerance: float, results: tuple[Path | None, Path | None, FigureLook]) -> bool:
+def _judge(
+    file: Path,
+    name: str | None,
+    tolerance: float,
+    column: list[str] | None,
+    results: tuple[Path | None, Path | None, FigureLook],
+) -> bool:
     """Judge a series, show and write what comes out, and return True if it passes."""
     from stickslip.cli.output.studies import show_schemes, tables_of
+    from stickslip.cli.overrides import typed_columns
     from stickslip.run.progress import progress_line
     from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
 
     asked = benchmark_of(file.stem if name is None else name)
+    columns = typed_columns(column, "benchmark: --column")
     with progress_line("benchmark") as tell:
-        study = judge_benchmark(file, asked.name, tolerance=tolerance, progress=tell)
+        study = judge_benchmark(file, asked.name, tolerance=tolerance, columns=columns, progress=tell)
     show_schemes(asked.scenario, study)
     out, figure, look = results
     announce(*write_files(*tables_of(study, out), (figure, drawing(study.plot, look))))

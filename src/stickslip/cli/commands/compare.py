@@ -14,12 +14,14 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     from stickslip.studies.compare import Comparison
 
-RUNS = "Two or more: TOML files, bundled names, files of `run --out` (.nc), - for standard input."
+RUNS = "Two or more: TOML files, bundled names, files of `run --out` (.nc), - for standard input. With --rules one."
+RULES = "Run the one scenario under each selection rule: wait until the next event, slip and jumps."
 
 
 def compare(
     runs: Annotated[list[str], typer.Argument(help=RUNS, autocompletion=complete_source)],
     *,
+    rules: Annotated[bool, typer.Option("--rules", help=RULES)] = False,
     out: Annotated[Path | None, table_of("run")] = None,
     figure: FigureFile = None,
     look: FigureLook,
@@ -29,16 +31,19 @@ def compare(
 ) -> None:
     r"""Compare runs: one table, and one figure of slip, slip rate and traction against time.
 
-    The table gives for each run its selection rule and regime, the number of
-    slip events, the largest one with its stress drops, the duration of the
+    The table gives for each run its selection rule and regime, the slip at its
+    end and its largest displacement, the number of slip events, the largest one with its stress drops, the duration of the
     first one, and the number of jumps of the slip rate. Slabs can be compared
     with blocks: drops are then in Pa and N, and the figure shows friction over
     the normal load. Runs of very different lengths are drawn
     over the share of their own time; late events are best seen with --event.
+    With --rules one scenario is run under each selection rule, and the table
+    says how long the contact then waits until its next event.
 
     \b
       stickslip compare fig6-block-reconstructed fig6-slab --figure fig6.png
       stickslip compare second-event-maxwell second-event-maximal --event 1
+      stickslip compare second-event-maxwell --rules --figure rules.png
       stickslip compare mine.toml yesterday.nc --out table.csv
 
     Exit code: 0 done, 1 a run failed, 2 unusable input, 130 interrupted.
@@ -47,28 +52,31 @@ def compare(
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
-    found = _compared(runs, duration, rtol, event)
+    found = _compared(runs, duration, rtol, event, rules=rules)
     show_comparison(found)
     announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
     if not all(solution.status.ok for solution in found.runs.values()):
         raise typer.Exit(1)
 
 
-def _compared(names: list[str], duration: str | None, rtol: float | None, event: int | None) -> Comparison:
+def _compared(names: list[str], duration: str | None, rtol: float | None, event: int | None, *, rules: bool) -> Comparison:
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.problem.run_quantities import check_rtol
     from stickslip.run.progress import progress_line
     from stickslip.scenarios.schema import read_duration
-    from stickslip.studies.compare import Comparison, distinct, read_source
+    from stickslip.studies.compare import Comparison, distinct, read_source, title_of, under_each_rule
 
-    if len(names) < 2:
-        raise InputError(f"compare: needs two runs or more, got {len(names)}; `stickslip new --list` lists the bundled ones")
+    if len(names) < 2 and not rules:
+        cure = "--rules runs one under each selection rule; `stickslip new --list` lists the bundled ones"
+        raise InputError(f"compare: needs two runs or more, got {len(names)}; {cure}")
     length = read(read_duration, duration, "compare", "duration")
     tolerance = read(check_rtol, rtol, "compare", "rtol")
-    sources = [read_source(load(name, "compare") if name == STDIN else name, length, tolerance) for name in names]
+    given = [load(name, "compare") if name == STDIN else name for name in names]
+    chosen = under_each_rule(given) if rules else []
+    sources = [read_source(one, length, tolerance) for one in chosen or given]
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
         with progress_line(f"{name}:") as report:
             runs[name] = source.solution(report)
-    return Comparison(runs, event)
+    return Comparison(runs, event, title_of(chosen) if chosen else "")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import SCENARIO, Changes, argument, complete_scenario, option
+from stickslip.cli.options import SCENARIO, Changes, Columns, argument, complete_scenario, option
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ def explore(
     sensor: Annotated[
         str, typer.Option(help="Where shear was measured: contact, or spring (load cell of a block).", rich_help_panel=BEHIND)
     ] = "contact",
+    column: Columns = None,
     port: Annotated[int | None, option(PORT, min=0, max=65535, metavar="<int>", panel=SERVER)] = None,
     address: Annotated[str, option(ADDRESS, panel=SERVER)] = "127.0.0.1",
     allow_origin: Annotated[list[str] | None, option(ALLOW_ORIGIN, panel=SERVER)] = None,
@@ -85,21 +86,21 @@ def explore(
         if not _HOST.fullmatch(name):
             raise InputError(f"explore: --allow-origin must be NAME or NAME:PORT, got {name[:60]!a}")
     endpoint = Endpoint(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
-    behind = None if record is None else _behind(record, begin, end, sensor, loaded.problem)
+    behind = None if record is None else _behind(record, {"begin": begin, "end": end}, column, sensor, loaded.problem)
     start(setting, endpoint, browser=not no_browser, say=typer.echo, behind=behind)
 
 
-def _behind(record: Path, begin: str | None, end: str | None, sensor: str, problem: Problem) -> Backdrop:
+def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None, sensor: str, problem: Problem) -> Backdrop:
     """Return the record that is drawn behind all runs. Raises InputError."""
+    from stickslip.cli.overrides import typed_columns
     from stickslip.explorer.model.answer import Backdrop
     from stickslip.foundation.quantities import Quantity
     from stickslip.inference.record.record import Record
     from stickslip.scenarios.entries import typed_number
 
     time = Quantity("s", "time of the record")
-    ends = {"begin": begin, "end": end}
     found = {name: time.check("explore", name, typed_number(text)) for name, text in ends.items() if text is not None}
-    return Backdrop.of(Record.read(record, **found), sensor, problem)
+    return Backdrop.of(Record.read(record, **found, columns=typed_columns(column, "explore: --column")), sensor, problem)
 
 
 def _write(folder: Path, scenario: str | None, changes: list[str] | None, record: Path | None) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import Changes, FigureFile, complete_fitted, complete_table, complete_template, option
+from stickslip.cli.options import Changes, Columns, FigureFile, complete_fitted, complete_table, complete_template, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, gathered
@@ -44,6 +44,7 @@ def fit(
         ),
     ] = None,
     changes: Changes = None,
+    column: Columns = None,
     out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
     figure: FigureFile = None,
     look: FigureLook,
@@ -72,7 +73,7 @@ def fit(
         --set "body.normal_force=50 kN" --set "pull_rate=1 mm/s"
     """
     from stickslip import friction
-    from stickslip.cli.overrides import typed_values
+    from stickslip.cli.overrides import typed_columns, typed_values
     from stickslip.friction import Points
     from stickslip.scenarios.text_of_files import is_scenario_name
 
@@ -85,7 +86,7 @@ def fit(
     values = typed_values(changes or (), "fit: --set", '"body.normal_force=50 kN"')
     if values and out is None:
         raise InputError("fit: --set belongs to --out, which takes its body and loading from --body")
-    points = Points.read(data)
+    points = Points.read(data, columns=typed_columns(column, "fit: --column"))
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
         from stickslip.scenarios.templates import with_law

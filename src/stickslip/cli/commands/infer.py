@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import ACCURACY, RESULTS, Changes, FigureFile, ScenarioName, complete_table, is_data, option
+from stickslip.cli.options import ACCURACY, RESULTS, Changes, Columns, FigureFile, ScenarioName, complete_table, is_data, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_folder, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -39,6 +39,7 @@ def infer(
     *,
     free: Annotated[str, typer.Option(help=FREE)],
     changes: Changes = None,
+    column: Columns = None,
     begin: Annotated[str | None, option("Take the record from this time on (s, or with a unit).", "--from")] = None,
     end: Annotated[str | None, option("Take the record up to this time.", "--to")] = None,
     by_what: Annotated[str, option(BY, "--by")] = "samples",
@@ -95,6 +96,7 @@ def infer(
       stickslip infer a.toml data.csv --free a,b --held-out 0.3 --compare b.toml
       stickslip infer mine.toml data.csv --free a,b --scenario-out best.toml
       stickslip infer mine.toml data.csv --free a,b --report fitted
+      stickslip infer mine.toml rig.lvm --free a,b --column "load_point=Ram (mm)"
 
     After Ctrl-C the command shows and saves the best numbers so far.
     With --checkpoint a command that was killed is typed again, and its samples go on.
@@ -130,10 +132,11 @@ def infer(
         raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
     chosen = load(scenario, "infer", changes)
     compared = [(one := load(name, "infer"), _free_of(name, one, compare_free or free)) for name in compare or ()]
-    found = _inferred(chosen, data, free, options)
+    records = _records(data, column)
+    found = _inferred(chosen, records, free, options)
     show_inference(chosen, found)
     others = [
-        _inferred(one, data, names, options | dict.fromkeys(("priors", "bounds", "begin_at", "checkpoint")))
+        _inferred(one, records, names, options | dict.fromkeys(("priors", "bounds", "begin_at", "checkpoint")))
         for one, names in compared
     ]
     if others:
@@ -148,7 +151,16 @@ def infer(
         raise typer.Exit(1)
 
 
-def _inferred(scenario: Any, data: list[str], free: str, options: dict[str, Any]) -> Inference:
+def _records(data: list[str], column: list[str] | None) -> list[Any]:
+    """Return the records as they were typed, or read, if the user says what their columns are. Raises InputError."""
+    from stickslip.cli.overrides import typed_columns
+    from stickslip.inference.record.record import Record
+
+    columns = typed_columns(column, "infer: --column")
+    return [Record.read(one, columns=columns) for one in data] if columns else list(data)
+
+
+def _inferred(scenario: Any, data: list[Any], free: str, options: dict[str, Any]) -> Inference:
     from stickslip.cli.output.studies import as_options
     from stickslip.inference.infer import infer as study
     from stickslip.run.progress import progress_line

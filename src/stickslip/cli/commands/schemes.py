@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from stickslip.cli.options import Changes, Duration, FigureFile, Rtol, ScenarioName, option
+from stickslip.cli.options import Changes, Columns, Duration, FigureFile, Rtol, ScenarioName, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -26,6 +26,7 @@ def schemes(
     search: Annotated[str | None, option(SEARCH)] = None,
     courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
     files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
+    column: Columns = None,
     out: Annotated[Path | None, option("Save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     figure: FigureFile = None,
     look: FigureLook,
@@ -61,7 +62,9 @@ def schemes(
         needless = {"--scheme": scheme, "--nx": nx, "--search": search, "--courant": courant}
         if given := [name for name, value in needless.items() if value is not None]:
             raise InputError(f"schemes: {given[0]} is for schemes of stickslip: leave it out with --series, which judges a file")
-        study = _judged(chosen, files)
+        study = _judged(chosen, files, column)
+    elif column:
+        raise InputError("schemes: --column says what the columns of a file of --series are")
     else:
         study = _study(chosen, scheme or "all", _cells("25,50,100,200" if nx is None else nx), search or "stick-first", courant)
     show_schemes(chosen, study)
@@ -90,9 +93,11 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
         return study(scenario, None, names, cells, courant=courant, progress=tell, **how)  # type: ignore[arg-type]
 
 
-def _judged(scenario: Scenario, files: list[Path]) -> Schemes:
+def _judged(scenario: Scenario, files: list[Path], column: list[str] | None) -> Schemes:
+    from stickslip.cli.overrides import typed_columns
     from stickslip.run.progress import progress_line
     from stickslip.studies.benchmarks import judge_series
 
+    columns = typed_columns(column, "schemes: --column")
     with progress_line("schemes") as tell:
-        return judge_series(files, scenario, rtol=scenario.rtol, progress=tell)
+        return judge_series(files, scenario, rtol=scenario.rtol, columns=columns, progress=tell)

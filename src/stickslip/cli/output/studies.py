@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
 from stickslip.foundation.names import si_unit
-from stickslip.foundation.show import clean, number, with_unit
+from stickslip.foundation.show import brief, clean, number, with_unit
+from stickslip.trajectory.reach import shown_slip
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -33,12 +34,39 @@ _ARGUMENT = re.compile(
 def show_comparison(found: Comparison) -> None:
     """Print the settings and the results of each run on standard output."""
     screen, rows = console(), found.table.to_dict("records")
+    say(screen, clean(found.scenario or f"{len(rows)} runs side by side"), style="bold")
+    say(screen, clean(found.reach_text))
+    screen.print()
+    if found.scenario:
+        _show_rules(screen, found, rows)
+        return
     words = ("rule", "regime", "status")
-    print_numbers(screen, ("", *words), [[clean(row["name"]), *(str(row[name]) for name in words)] for row in rows], text=4)
+    ends = [[shown_slip(row[name], si_unit("slip", row["load_unit"])) for name in ("end_slip", "displacement")] for row in rows]
+    settings = [[clean(row["name"]), *(str(row[name]) for name in words), *end] for row, end in zip(rows, ends, strict=True)]
+    print_numbers(screen, ("\n", *(f"\n{word}" for word in words), "slip at\nthe end", "largest\ndisplacement"), settings, text=4)
     screen.print()
     slip, rate = (si_unit(name, *found.table.load_unit) for name in ("slip", "slip_rate"))
     sizes = (f"largest\nslip\n{slip}", "its\npulses", f"peak\nrate\n{rate}", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
     print_numbers(screen, ("", "events", *sizes, "shocks"), [_sizes(row) for row in rows], text=1)
+
+
+def _show_rules(screen: Console, found: Comparison, rows: Sequence[Mapping[Hashable, Any]]) -> None:
+    """Print what each selection rule makes of one scenario: the wait until the next event, slips and jumps."""
+    headings = ("rule", "wait until\nnext event", "its\nslip", "slip at\nthe end", "largest\ndisplacement", "\nevents", "\njumps")
+    slips = ("next_slip", "end_slip", "displacement")
+    lines = []
+    for row in rows:
+        unit = si_unit("slip", row["load_unit"])
+        sizes = ["-" if math.isnan(row[name]) else shown_slip(row[name], unit) for name in slips]
+        wait = "-" if math.isnan(row["wait"]) else brief(row["wait"], "s")
+        lines.append([row["name"], wait, *sizes, str(row["events"]), str(row["shocks"])])
+    print_numbers(screen, headings, lines, text=1)
+    screen.print()
+    missing = sum(math.isnan(row["wait"]) for row in rows)
+    if missing:
+        say(screen, f"- : no next event within {brief(max(run.duration for run in found.runs.values()), 's')}")
+    if all(line[1:] == lines[0][1:] for line in lines):
+        say(screen, "these numbers are the same under every rule")
 
 
 def _sizes(row: Mapping[Hashable, Any]) -> list[str]:

@@ -11,13 +11,14 @@ import pandas as pd
 
 from stickslip.contact.uniqueness import Uniqueness
 from stickslip.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
-from stickslip.explorer.model.words import several, short
+from stickslip.explorer.model.words import DIGITS, several, short
 from stickslip.foundation.names import si_unit
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.problem import Problem
 from stickslip.solution.interval import last_large_event
 from stickslip.solution.solution import Solution
+from stickslip.trajectory.reach import largest_of
 
 MOST_EVENTS = 500
 """Pulses are sought in at most this many slip events: each takes a millisecond, and among more, single ones would not be seen."""
@@ -127,6 +128,7 @@ def key_numbers(found: Findings, contact: Uniqueness, motion: BodyCurves) -> tup
 
     return (
         KeyNumber("slip in all", found.total_slip, length),
+        KeyNumber(largest_of(length), found.solution.reach.largest, length),
         KeyNumber("slip events", float(len(found.events)), "1"),
         KeyNumber("slip of the largest event", of("slip"), length),
         KeyNumber("pulses of the largest event", of("pulses"), "1"),
@@ -162,7 +164,7 @@ CAUSES = {
 
 def sentence(found: Findings, contact: Uniqueness, influence: RuleInfluence) -> str:
     """Return the sentence on a run; its parts end with full stops."""
-    parts = (_regime(found.solution.problem, contact, influence), _motion(found), _jumped(found), _rule(influence))
+    parts = (_regime(found.solution.problem, contact, influence), _reach(found), _motion(found), _jumped(found), _rule(influence))
     return " ".join(f"{part[0].upper()}{part[1:]}." for part in parts if part)
 
 
@@ -193,6 +195,12 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
     if abs(ratio - 1.0) > NEAR:
         return f"; {word} = {own} is {ratio:.4g} times {limit}"
     return f"; {word} is {'above' if ratio > 1.0 else 'below'} {limit} by {abs(ratio - 1.0):.2g} of it"
+
+
+def _reach(found: Findings) -> str:
+    """Return the slip at the end and the largest displacement, if there is any."""
+    reach = found.solution.reach
+    return reach.text(found.solution.problem, DIGITS).replace(" um", " µm") if reach.largest else ""
 
 
 def _motion(found: Findings) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks, zero_line
+from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks, set_title, zero_line
 from stickslip.figures.style import LINE_COLOURS, axis_text, nearly_flat, styled, time_unit
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 """Line styles; the next one is taken when all colours are used up."""
+MARKERS = "osD^v<>P"
+"""Marks on the lines, one kind for each run, at places of its own: where lines lie on one another each is still told."""
+EACH = 6
+"""Number of marks on a line."""
+WIDEST, THINNEST = 2.6, 1.1
+"""Widths (points) of the first line and of the last, which lies on it: the edges of the wider one are seen."""
 APART = 20.0
 """If the durations differ by more than this factor, each run is drawn against time divided by its own duration."""
 FAR_APART = 300.0
@@ -117,14 +123,41 @@ def draw(study: Comparison, **place: Unpack[Place]) -> Figure:
     for axes, row in zip(grid[:, 0], ROWS, strict=True):
         _draw_row(axes, study, found, row, size)
     marks = grid[0, 0].get_lines()[: len(study.runs)]
-    for mark, (name, (start, end)) in zip(marks, found.spans.items(), strict=True):
-        mark.set_label(f"{name} ({_lasting(end - start)})" if found.shares else name)
+    for mark, name in zip(marks, found.spans, strict=True):
+        mark.set_label(_label(study, found, name))
     add_legend(grid[0, 0], marks)
     letter_panels(grid[:, 0])
     since = "" if study.event is None else " since each event began"
     grid[-1, 0].set_xlabel(f"time{since}" + (", as a share of each run's own (see legend)" if found.shares else f" $t$ ({unit})"))
     figure.align_ylabels()
+    set_title(figure, study.scenario)
     return figure
+
+
+def _look(k: int, count: int) -> dict[str, Any]:
+    """Return the look of line k of `count`: colour, dashes, marks and a width, each of which tells it from the others."""
+    width = WIDEST - (WIDEST - THINNEST) * k / max(count - 1, 1)
+    marks = {"marker": MARKERS[k % len(MARKERS)], "markersize": 4.5, "markeredgecolor": "white", "markeredgewidth": 0.5}
+    return marks | {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k % len(DASHES)], "linewidth": width}
+
+
+def _places(time: Floats, values: Floats, k: int, count: int) -> list[int]:
+    """Return the points of line k of `count` that are marked: evenly spaced in time, between the marks of the other lines."""
+    shares = (np.arange(EACH) + (k + 0.5) / count) / EACH
+    known = np.flatnonzero(np.isfinite(values))
+    if not len(known):
+        return []
+    found = np.searchsorted(time[known], time[0] + shares * (time[-1] - time[0]))
+    return [int(place) for place in np.unique(known[np.minimum(found, len(known) - 1)])]
+
+
+def _label(study: Comparison, found: RunLines, name: str) -> str:
+    """Return what the legend says of a run: how long it lasts where that differs, and the wait that its selection rule makes."""
+    start, end = found.spans[name]
+    if found.shares:
+        return f"{name} ({_lasting(end - start)})"
+    waits = study.table.set_index("name").wait
+    return f"{name} (waits {_lasting(waits[name])})" if study.scenario and waits[name] > 0.0 else name
 
 
 def _lasting(length: float) -> str:
@@ -150,10 +183,8 @@ def _draw_row(axes: Axes, study: Comparison, found: RunLines, row: str, size: fl
     log = row != "traction" and len(tops) > 1 and max(tops) > FAR_APART * min(tops)
     unit, scale = (units, 1.0) if log else readable_unit(units, *heights)
     for k, ((time, _), values) in enumerate(zip(lines, heights, strict=True)):
-        look = {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k // len(LINE_COLOURS) % len(DASHES)]}
         magnitudes = np.where(values != 0.0, np.abs(values), np.nan) if log else values / scale
-        # Later lines are thinner, so that runs with the same curve all stay visible.
-        axes.plot(time / size, magnitudes, linewidth=max(2.0 - 0.3 * k, 1.0), **look)
+        axes.plot(time / size, magnitudes, **_look(k, len(lines)), markevery=_places(time, magnitudes, k, len(lines)))
     symbol = f"|{symbol}|" if log else symbol
     if log:
         # Two decades below the smaller run; rest has no place on the axis.

@@ -17,6 +17,7 @@ from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS, headings, missing, names_of
+from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Choice, NumberSeries, Quantity, declare
 from stickslip.foundation.text_columns import read_file, read_text
@@ -56,22 +57,26 @@ class Points(CheckedArguments):
     slips_in: str = ""
 
     @classmethod
-    def read(cls, source: Any) -> Points:
+    def read(cls, source: Any, *, columns: Mapping[str, str | int] | None = None) -> Points:
         """Read points from a CSV file, or from columns of numbers by their headings, in the order of the source.
 
         The columns are `friction` with `slip`, `slip_rate` or both. `shear_stress` and `normal_stress` may take the place of
         friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are in SI. With a unit of an angle, as in
         "v (rpm)", the points are those of a contact that turns, and `torque` over `normal_torque` may be friction. `u`, `v`, `mu`,
         `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before the headings are skipped.
-        Points, and a law given by points, are taken as they are. Raises InputError if the file or the columns cannot be used; the
-        message is one line with the place and the cure.
+        Points, and a law given by points, are taken as they are. `columns` say what headings mean, as in {"slip_rate": "Kanal 3
+        (mm/s)"}: a heading with or without its unit, or the number of a column. Rows with a mark of a missing number, as -999.25,
+        are left out, with a warning. Raises InputError if the file or the columns cannot be used; the message is one line with the
+        place and the cure.
         """
         if isinstance(source, Points):
+            if columns:
+                raise InputError(f"{source.name}: columns name the headings of a source, and these points have been read already")
             return source
-        table, slips_in = _table_in(source)
-        columns = table.columns
-        note_percent(columns["friction"], table.place)
-        return cls(columns["friction"], columns.get("slip"), columns.get("slip_rate"), table.place, slips_in)
+        table, slips_in = _table_in(source, NamedColumns(columns or {}))
+        found = table.columns
+        note_percent(found["friction"], table.place)
+        return cls(found["friction"], found.get("slip"), found.get("slip_rate"), table.place, slips_in)
 
     @property
     def has(self) -> tuple[Along, ...]:
@@ -142,7 +147,7 @@ def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Fl
 
 def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
     """Return the points in the text of a CSV file, called `name` in messages, as `read_table` does."""
-    return _joined(_complete(read_text(text, WANTED, name, MOST_POINTS))[0])
+    return _joined(_complete(read_text(text, WANTED, name, MOST_POINTS, skip=True))[0])
 
 
 def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floats]:
@@ -156,17 +161,17 @@ def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floa
     return found[0], table.columns[found[0]], table.columns["friction"]
 
 
-def _table_in(source: Any) -> tuple[Table, str]:
+def _table_in(source: Any, named: NamedColumns | None = None) -> tuple[Table, str]:
     """Return the columns of a source, which has friction and at least one variable, and `Points.slips_in`. Raises InputError."""
     if isinstance(source, PiecewiseLaw):
         places, friction = source.points
         source = {"slip_rate" if source.knot_variable == "rate" else "slip": places, "friction": friction}
     if isinstance(source, Mapping) or hasattr(source, "columns"):
-        return _complete(read_mapping(source, WANTED, "points"))
+        return _complete(read_mapping(source, WANTED, "points", named=named))
     if not isinstance(source, str | os.PathLike):
         wanted = "a CSV file, a DataFrame, or a mapping of headings to numbers"
         raise InputError(f"points must be {wanted}, got {shown(source)}")
-    return _complete(read_file(as_path("points", source), WANTED, (LARGEST_FILE, MOST_POINTS)))
+    return _complete(read_file(as_path("points", source), WANTED, (LARGEST_FILE, MOST_POINTS), skip=True, named=named))
 
 
 def _complete(table: Table) -> tuple[Table, str]:
@@ -191,7 +196,7 @@ def _complete(table: Table) -> tuple[Table, str]:
         raise InputError(f"{table.place}: at least two points are needed, got {len(found['friction'])}")
     for numbers in found.values():
         numbers.flags.writeable = False
-    return table, "rad" if angles else ""
+    return table.warned(), "rad" if angles else ""
 
 
 def _ratio(shear: Floats, normal: Floats, table: Table) -> Floats:

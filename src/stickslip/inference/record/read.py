@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, warn
 from stickslip.foundation.headings import DRILL_FLOOR, TURNED, find, missing, names_of, quoted
+from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
 from stickslip.inference.record.doubts import checked
@@ -39,7 +40,7 @@ FEW = 6
 
 
 class _Columns(NamedTuple):
-    """Columns (SI) by name, on one clock and sorted by time; their place, and the headings that were ignored."""
+    """Columns (SI) by name, on one clock and sorted by time; place, ignored headings, and doubts about units."""
 
     columns: dict[str, Floats]
     place: str
@@ -47,14 +48,17 @@ class _Columns(NamedTuple):
     header: tuple[str, ...]
     passed: tuple[str, ...]
     notes: list[str]
+    doubts: tuple[str, ...] = ()
 
 
-def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
+def read_record(source: Any, beside: Any = None, later: float = 0.0, columns: Any = None) -> Record:
     """Read a record as `Record.read` describes, the whole of it. Raises InputError."""
     source, beside, later = _two_in(source) if beside is None else (source, beside, later)
-    read = _ordered(source)
+    named = NamedColumns(columns or {}, optional=beside is not None)
+    read = _ordered(source, named)
     if beside is not None:
-        read = _joined(read, _ordered(beside), later)
+        read = _joined(read, _ordered(beside, named), later)
+        named.check_used(read.place)
     found, notes = read.columns, read.notes
     _take_ratio(found, "shear_stress", "normal_stress")
     _take_ratio(found, "shear_force", "normal_force")
@@ -68,6 +72,8 @@ def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
     for name, values in deviations.items():
         if not (np.isfinite(values) & (values > 0.0)).all():
             raise InputError(f"{read.place}: {name}_deviation must be above 0 in each row")
+    for doubt in read.doubts:
+        warn(doubt)
     driven = {name: found.get(name) for name in LOADING}
     normal = next((name for name in NORMAL if name in found), "")
     return checked(
@@ -94,9 +100,9 @@ def _two_in(source: Any) -> tuple[Any, Any, float]:
     return first, file if at else second, LATER.check("record", "@", typed_number(seconds)) if at else 0.0
 
 
-def _ordered(source: Any) -> _Columns:
+def _ordered(source: Any, named: NamedColumns) -> _Columns:
     """Return the columns of a source in order of time. Raises InputError."""
-    table = _table_in(source)
+    table = _table_in(source, named)
     used = {one.place for one in find(table.header, WANTED, table.place).values()}
     passed = tuple(heading for i, heading in enumerate(table.header) if i not in used and heading.strip())
     at_header = table.at_header or table.place
@@ -104,17 +110,18 @@ def _ordered(source: Any) -> _Columns:
         motion = not {"slip", "slip_rate"}.isdisjoint(table.columns)
         cure = "points of friction without time are for `stickslip fit`" if motion else missing(table.header, "time")
         raise InputError(f"{at_header}: no column 'time'; {cure}{_there(passed)}")
-    notes: list[str] = []
-    return _Columns(_in_order(dict(table.columns), table.place, notes), table.place, at_header, tuple(table.header), passed, notes)
+    notes = list(table.notes)
+    columns = _in_order(dict(table.columns), table.place, notes)
+    return _Columns(columns, table.place, at_header, tuple(table.header), passed, notes, table.doubts)
 
 
-def _table_in(source: Any) -> Table:
+def _table_in(source: Any, named: NamedColumns) -> Table:
     """Return the known columns of a source. Raises InputError."""
     if isinstance(source, Mapping) or hasattr(source, "columns"):
-        return read_mapping(source, WANTED, "record", raw=True)
+        return read_mapping(source, WANTED, "record", raw=True, named=named)
     if not isinstance(source, str | os.PathLike):
         raise InputError(f"infer: record must be a CSV file, a DataFrame, or a mapping of headings to numbers, got {shown(source)}")
-    return read_file(as_path("infer: record", source), WANTED, (LARGEST_FILE, MOST_SAMPLES), raw=True)
+    return read_file(as_path("infer: record", source), WANTED, (LARGEST_FILE, MOST_SAMPLES), raw=True, named=named)
 
 
 def _there(passed: tuple[str, ...]) -> str:
@@ -170,7 +177,8 @@ def _joined(first: _Columns, second: _Columns, later: float) -> _Columns:
     named = ", ".join(name for name in other.columns if name != "time")
     told = f"{named} of {other.place} {'are' if ',' in named else 'is'} taken at the times of {main.place}"
     notes = [*first.notes, *second.notes, told + (f", {inside.sum()} of {len(time)} samples" if not inside.all() else "")]
-    return _Columns(columns, place, place, first.header + second.header, first.passed + second.passed, notes)
+    doubts = first.doubts + second.doubts
+    return _Columns(columns, place, place, first.header + second.header, first.passed + second.passed, notes, doubts)
 
 
 def _take_ratio(found: dict[str, Floats], shear: str, normal: str) -> None:

@@ -67,26 +67,36 @@ class Record(CheckedArguments):
 
     @classmethod
     def read(
-        cls, source: Any, begin: float | None = None, end: float | None = None, *, beside: Any = None, later: float = 0.0
+        cls,
+        source: Any,
+        begin: float | None = None,
+        end: float | None = None,
+        *,
+        beside: Any = None,
+        later: float = 0.0,
+        columns: Mapping[str, str | int] | None = None,
     ) -> Record:
         """Read a record.
 
         Parameters
         ----------
         source : str, Path, DataFrame, mapping or Record
-            A text file, or columns of numbers by their headings: `time` with any of `friction`, `shear_stress`, `shear_force`,
-            `torque`, `slip` and `slip_rate`, and with `load_point` (displacement) or `load_rate` of the machine. Shear stress with
-            `normal_stress`, shear force with `normal_force`, and torque with `normal_torque` give friction; `surface_torque`
-            (STOR) is the torque at a drive, `weight_on_bit` (SWOB) presses a bit; `rotation_rate` (rpm)
-            with `radius` gives the load rate. Without a radius the machine turns the contact itself, and slip may be in deg or rad
-            and its rate in rpm: such a record is of a body that turns. Headings may carry units, as in "tau (MPa)".
-            "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
+            A text file (CSV, or as LabVIEW, LAS and universal files are), or columns of numbers by their headings: `time` with any
+            of `friction`, `shear_stress`, `shear_force`, `torque`, `slip` and `slip_rate`, and with `load_point` (displacement) or
+            `load_rate` of the machine. Shear stress with `normal_stress`, shear force with `normal_force`, and torque with
+            `normal_torque` give friction; `surface_torque` (STOR) is the torque at a drive, `weight_on_bit` (SWOB) presses a bit;
+            `rotation_rate` (rpm) with `radius` gives the load rate. Without a radius the machine turns the contact itself, and slip
+            may be in deg or rad and its rate in rpm: such a record is of a body that turns. Headings may carry units, as in
+            "tau (MPa)". "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
         begin, end : float, optional
             First and last time to use (s, as in the record).
         beside : str, Path, DataFrame or mapping, optional
             A second source with a clock of its own and other columns, such as the load point.
         later : float
             Delay of the zero of the second clock behind that of the first (s).
+        columns : dict, optional
+            What headings of the source mean, as in {"load_point": "Vert_disp (micron)", "friction": 5}: a heading with or without
+            its unit, or the number of a column. A unit given here counts before that of the file.
 
         Raises
         ------
@@ -94,10 +104,12 @@ class Record(CheckedArguments):
             If the record cannot be used; the message is one line with the place and the cure.
         """
         if isinstance(source, Record):
+            if columns:
+                raise InputError(f"{source.name}: columns name the headings of a source, and a record has been read already")
             return source.part(begin, end)
         from stickslip.inference.record.read import read_record
 
-        return read_record(source, beside, later).part(begin, end)
+        return read_record(source, beside, later, columns).part(begin, end)
 
     def part(self, begin: float | None = None, end: float | None = None) -> Record:
         """Return the samples between two times (s, as in the record). Raises InputError if there are fewer than two."""
