@@ -48,6 +48,9 @@ class UnknownAttributeError(AttributeError):
         if attribute in ("replace", "set", "update", "copy") and is_dataclass(owner):
             hint = "dataclasses.replace(it, NAME=VALUE) makes another"
         who = owner.__name__ if isinstance(owner, ModuleType) else type(owner).__name__
+        inside = [getattr(owner, one) for one in public] if isinstance(owner, ModuleType) else []
+        homes = [one.__name__ for one in inside if isinstance(one, ModuleType) and attribute in getattr(one, "__all__", ())]
+        hint = f"it is {homes[0]}.{attribute}" if homes else hint
         return f"{who} has no attribute {ascii(attribute)[:60]}; {hint}"
 
 
