@@ -124,16 +124,14 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: PROBLEM.replace(pull_rate=2), "dataclasses.replace"),
     (lambda: ss.sweep("fig6-slab", {"alpha": [1, 2]}, quantities=["displacement"]), "did you mean ... slip"),
     (lambda: ss.sweep("fig6-slab", alpha=[1, 2]), "unknown argument 'alpha'"),
-]
-"""Calls, and what the one line of their error has; where a wanted text has " ... ", its parts stand in this order."""
-WAITING: list[tuple[Callable[[], Any], str]] = [
     (lambda: ss.Slab(**STATED), "did you mean ... ElasticSlab"),
     (lambda: ss.Block(1, 1, 1), "did you mean ... SpringBlock"),
     (lambda: ss.friction.RateState, "did you mean ... RateAndState"),
     (lambda: ss.friction.Stribeck, "did you mean ... ExponentialStribeck"),
-    (lambda: ss.infer, "did you mean ... studies"),
+    (lambda: ss.infer, "it is stickslip.studies.infer"),
+    (lambda: ss.HyperbolicRate, "it is stickslip.friction.HyperbolicRate"),
 ]
-"""The same, of synonyms."""
+"""Calls, and what the one line of their error has; where a wanted text has " ... ", its parts stand in this order."""
 
 
 def refusal(call: Callable[[], Any]) -> str:

@@ -121,7 +121,7 @@ WORDS = [
     (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "stress_drop"], "did you mean 'first_traction_drop' or 'first_static_drop'?"),
     (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "n_events"], "did you mean 'events'?"),
     (["run", "newmark"], "did you mean 'sliding-block-shaken'?"),
-    (["run", "block"], "it is a starter: `stickslip new block > mine.toml` writes it"),
+    (["run", "block"], "`stickslip new block > block.toml` writes one to start from"),
     (["new", "axis"], "did you mean 'reversing-axis'"),
     (["new", "slab", "--friction", "rsf"], "did you mean 'rate-and-state'?"),
     (["new", "slab", "--friction", "stribeck"], "did you mean 'exponential-stribeck' or 'power-stribeck'?"),

@@ -16,7 +16,7 @@ from stickslip.cli.overrides import load
 from stickslip.scenarios.templates import template
 
 TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_name("clumsy.toml").read_text(encoding="utf-8"))
-GROUPS = [group for name, group in TABLE.items() if name not in ("si", "waiting")]
+GROUPS = [group for name, group in TABLE.items() if name != "si"]
 REFUSED: dict[str, str] = {typed: wanted for group in GROUPS for typed, wanted in group.get("refused", {}).items()}
 ANSWERED: dict[str, str] = {typed: wanted for group in GROUPS for typed, wanted in group.get("answered", {}).items()}
 MOST_NAMES = 8

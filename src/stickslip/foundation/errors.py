@@ -48,6 +48,9 @@ class UnknownAttributeError(AttributeError):
         if attribute in ("replace", "set", "update", "copy") and is_dataclass(owner):
             hint = "dataclasses.replace(it, NAME=VALUE) makes another"
         who = owner.__name__ if isinstance(owner, ModuleType) else type(owner).__name__
+        inside = [getattr(owner, one) for one in public] if isinstance(owner, ModuleType) else []
+        homes = [one.__name__ for one in inside if isinstance(one, ModuleType) and attribute in getattr(one, "__all__", ())]
+        hint = f"it is {homes[0]}.{attribute}" if homes else hint
         return f"{who} has no attribute {ascii(attribute)[:60]}; {hint}"
 
 
@@ -188,5 +191,6 @@ def _nearest_end(name: str, known: Sequence[str], listed: str) -> str:
     ends = Counter(map(last, known))
     close = same(name, known) or [full for full in known if last(full) in meant(name, ends)] if "." not in name else []
     if not close:
-        return _elsewhere(name) + nearest(name, known, listed=listed)
+        hint = nearest(name, known, listed=listed)
+        return hint if hint.startswith("did") else _elsewhere(name) + hint
     return did_you_mean(last(full) if ends[last(full)] == 1 else full for full in close[:MOST_MEANT])

@@ -11,18 +11,35 @@ from stickslip.foundation.show import brief
 from stickslip.inference.record.record import Record
 from stickslip.problem.problem import Problem
 
+LONG, LEVEL = 2.0, 0.1
+"""A torque is level if it spreads by less than this share of its median over so many two-way travel times (both 1)."""
 OTHER = 0.2
 """A weight on the bit is told if it differs from that of the problem by more than this share (1)."""
 
 
-def about_drive(problem: Problem, record: Record, sensor: str, start: str | None) -> Iterator[str]:
+def is_level_at_first(record: Record, problem: Problem) -> bool:
+    """Return True if the drive turns from the first sample on, under a torque that hardly changes while waves go to and fro.
+
+    A string that is started from rest is wound up meanwhile, and one that sticks and slips lets its torque rise and fall.
+    """
+    of_rate = not problem.friction.states and not problem.friction.depends_on_slip
+    if not of_rate or record.shear is None or record.load_rate is None or not record.load_rate[0]:
+        return False
+    first = record.measured[record.shear][record.clock <= LONG * problem.body.two_way_time]
+    first = first[np.isfinite(first)]
+    return len(first) > 2 and float(np.ptp(first)) < LEVEL * abs(float(np.median(first)))
+
+
+def about_drive(problem: Problem, record: Record, sensor: str, start: str | None, begins: str) -> Iterator[str]:
     """Yield sentences on what a record says of the drive of a body with waves that turns."""
     body = problem.body
     if problem.load_unit != TURNS or not body.has_waves:
         return
     if record.shear == "surface_torque" or (sensor == "drive" and record.shear is not None):
         yield "the torque is that at the drive, which waves from the bit reach later"
-        if start is None:
+        if start is None and begins == "steady":
+            yield "the run begins in steady turning, because the torque is level at first: --start problem is another way"
+        elif start is None:
             yield "the run begins as the problem says, because a torque at the drive is not the load at the bit"
     elif record.shear == "torque":
         yield "the torque is taken as that at the bit: sensor='drive' takes it as that at the drive, as a heading STOR does"

@@ -130,6 +130,8 @@ def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
         return replace(problem, **rates, **none)
     pull = rates.get("pull_rate", problem.pull_rate)
     rate = pull.first if isinstance(pull, LoadingHistory) else pull
+    if not law.states and not law.depends_on_slip and rate != 0.0:
+        return replace(problem, **rates, **none | {"initial_rate": "steady"})
     if not law.states or law.sticks or rate == 0.0 or not hasattr(law, "steady_coefficient"):
         unit = problem.unit_of("slip_rate")
         raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} {unit}: start='record'")

@@ -238,7 +238,8 @@ def _refuse(model: Model) -> None:
         try:
             problem = model.at(model.begin, i)
         except InputError as error:
-            raise InputError(f"infer: the problem cannot begin: {str(error).removeprefix('Problem: ')}") from None
+            why = str(error).removeprefix("Problem: ").removeprefix("infer: ")
+            raise InputError(f"infer: the problem cannot begin: {why}") from None
         run = simulate(problem, model.parts[i].duration, model.rtol, max_pieces=model.max_pieces)
         if not run.status.ok:
             raise InputError(f"infer: no run reaches the end of the record: {run.status.message}; give other values or bounds")

@@ -16,7 +16,7 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
-from stickslip.inference.fit.at_drive import about_drive
+from stickslip.inference.fit.at_drive import about_drive, is_level_at_first
 from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.inference.fit.model import Model, is_at_driver
 from stickslip.inference.fit.part import Part
@@ -71,14 +71,15 @@ def parts_of(
         observed = _observed(record, observe, problem, sensor)
         away = problem.body.has_waves and record.shear is not None and is_at_driver(record.shear, sensor)
         begins = start or ("steady" if problem.friction.states and not problem.friction.sticks else "record")
-        begins = "problem" if start is None and begins == "record" and (record.shear is None or away) else begins
+        if start is None and begins == "record" and (record.shear is None or away):
+            begins = "steady" if away and is_level_at_first(record, problem) else "problem"
         if record.clock[-1] <= 0.0:
             raise InputError(f"{record.name}: the record has no duration")
         pressing, told = _pressing(problem, record) if pressed else (None, tuple(_uneven(problem, record)))
         found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins, pressing, away))
         before = f"{record.name}: " if len(records) > 1 else ""
         said = [*record.notes, *told, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
-        said += about_drive(problem, record, sensor, start)
+        said += about_drive(problem, record, sensor, start, begins)
         if loading is None:
             said.append("the record has no load point: the loading is that of the problem")
         notes += [before + one for one in said]
