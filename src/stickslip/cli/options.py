@@ -70,12 +70,12 @@ def complete_fitted(incomplete: str) -> list[str]:
     return found
 
 
-TABLES = (".csv", ".txt", ".tsv", ".dat")
+TABLES = (".csv", ".txt", ".tsv", ".dat", ".lvm", ".las", ".uff", ".unv")
 """How the names of tables of numbers end."""
 
 
 def complete_table(incomplete: str) -> list[str]:
-    """Return the CSV files and folders that begin with what is typed."""
+    """Return the tables and folders that begin with what is typed."""
     return _files(incomplete, TABLES)
 
 
