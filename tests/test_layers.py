@@ -40,7 +40,8 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "lazy_names", "memory", "names", "units"),
+        ("lazy_names", "locks"),
+        ("arguments", "atomic_write", "determined", "memory", "names", "units"),
         ("conversion", "headings", "netcdf_file"),
         ("axis", "columns", "quantities"),
         ("other_values", "show", "text_columns"),
