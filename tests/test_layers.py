@@ -40,7 +40,8 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "lazy_names", "marks", "memory", "units"),
+        ("lazy_names", "locks"),
+        ("arguments", "atomic_write", "determined", "marks", "memory", "units"),
         ("given",),
         ("names",),
         ("headings", "meant", "netcdf_file"),
