@@ -19,7 +19,7 @@ from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
 from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.inference.certainty.directions import IDLE
-from stickslip.inference.certainty.drifting import TRENDS, Offer, lacking, needed, offered, said, with_number
+from stickslip.inference.certainty.drifting import TRENDS, Offer, lacking, needed, offered, said, with_number, without_number
 from stickslip.inference.certainty.kept_walk import KeptWalk
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
 from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
@@ -410,7 +410,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
         tell("what the record determines")
         sure = certainty_of(found)
         if finished and wishes.trend == "auto" and wishes.by == "samples" and wishes.parts is None:
-            found, sure, words = _drifting(model, found, sure, offer, wishes=wishes, tell=tell)
+            found, sure, words = _drifting(found, sure, offer, wishes, tell)
         found = _idle_as_given(found, sure)
         if wishes.max_time is None:
             progress.limit = math.inf  # how long the rest takes is known beforehand
@@ -430,37 +430,33 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
 
 
 def _drifting(
-    model: Model, found: Estimate, sure: Certainty, offer: Offer | None, *, wishes: Wishes, tell: Tell
+    found: Estimate, sure: Certainty, offer: Offer | None, wishes: Wishes, tell: Tell
 ) -> tuple[Estimate, Certainty, list[str]]:
-    """Return a fit without the drift that was offered if it does not need it, and with a drift that it lacks, and sentences.
-
-    `model` is that with which the search began.
-    """
-    kept = list[Offer]()
-    if offer is not None:
-        if needed(found, sure, offer.name):
-            kept = [offer]
-        elif (fewer := _without(offer.name, model, found, wishes, tell)).finished:
-            found, sure = fewer, certainty_of(fewer)
+    """Return a fit with the drifts that it lacks, and without those offered that it does not need, and sentences on them."""
+    offers = [] if offer is None else [offer]
     for _ in range(2):  # with slip, and with time
         if (lacked := lacking(found, sure.slopes)) is None:
             break
         tell(f"{lacked.why}: {lacked.name} is free, too")
-        more = _estimated(with_number(found, lacked), replace(wishes, starts=1), tell)
+        more = _from_its_end(with_number(found, lacked.name), found, wishes, tell)
         more_sure = certainty_of(more)
         if not more.finished or not needed(more, more_sure, lacked.name):
             break
-        found, sure, kept = more, more_sure, [*kept, lacked]
-    return found, sure, [text for one in kept for text in said(one, found, sure)]
+        found, sure, offers = more, more_sure, [*offers, lacked]
+    for one in list(offers):
+        if not needed(found, sure, one.name):
+            fewer = _from_its_end(without_number(found, one.name), found, wishes, tell)
+            if fewer.finished:
+                found, sure = fewer, certainty_of(fewer)
+                offers.remove(one)
+    return found, sure, [text for one in offers for text in said(one, found, sure)]
 
 
-def _without(name: str, model: Model, end: Estimate, wishes: Wishes, tell: Tell) -> Estimate:
-    """Return the best fit of a model without one of its free numbers, searched from where a search with it has ended."""
-    values = dict(zip([one.label for one in end.model.free], end.model.values(end.searched), strict=True))
-    fewer = [one for one in model.free if one.name != name]
-    begun = tuple(replace(one, start=values[one.label], given=None) for one in fewer)
-    found = _estimated(model.with_(free=begun), replace(wishes, starts=1), tell)
-    return replace(found, model=found.model.with_(free=tuple(fewer)))
+def _from_its_end(model: Model, end: Estimate, wishes: Wishes, tell: Tell) -> Estimate:
+    """Return the best fit of a model that begins where another search has ended, with the starts of that search."""
+    found = _estimated(model, replace(wishes, starts=1), tell)
+    first = {one.label: one for one in end.model.free}
+    return replace(found, model=found.model.with_(free=tuple(first.get(one.label, one) for one in found.model.free)))
 
 
 def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:

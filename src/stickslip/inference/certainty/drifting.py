@@ -83,13 +83,24 @@ def lacking(found: Estimate, slopes: Floats) -> Offer | None:
     return None
 
 
-def with_number(found: Estimate, offer: Offer) -> Model:
-    """Return the model of a fit with one more free number, and the numbers of the fit where the search begins."""
+def with_number(found: Estimate, name: str) -> Model:
+    """Return the model of a fit with one more free number; the search begins where the fit has ended."""
+    model = _begun(found)
+    (new,) = with_scale(read_free(model.problem, [name], {}), scales_of(model.parts[0], model.problem))
+    shared, own = ([one for one in model.free if (one.part is None) is alike] for alike in (True, False))
+    return model.with_(free=(*shared, new, *own))
+
+
+def without_number(found: Estimate, name: str) -> Model:
+    """Return the model of a fit without one of its free numbers; the search begins where the fit has ended."""
+    model = _begun(found)
+    return model.with_(free=tuple(one for one in model.free if one.name != name))
+
+
+def _begun(found: Estimate) -> Model:
     model = found.model
-    (new,) = with_scale(read_free(model.problem, [offer.name], {}), scales_of(model.parts[0], model.problem))
-    begun = [replace(one, start=v, given=None) for one, v in zip(model.free, model.values(found.searched), strict=True)]
-    own = [one for one in begun if one.part is not None]
-    return model.with_(free=(*(one for one in begun if one.part is None), new, *own), step=Model.step, unsure={}, memory={})
+    free = [replace(one, start=v, given=None) for one, v in zip(model.free, model.values(found.searched), strict=True)]
+    return model.with_(free=tuple(free), step=Model.step, unsure={}, memory={})
 
 
 def _size(found: Estimate, sure: Certainty, name: str) -> tuple[float, float]:

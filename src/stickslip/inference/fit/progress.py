@@ -34,7 +34,7 @@ class OutOfTime(KeyboardInterrupt):
 class SearchProgress:
     """The progress of a search as a line of text after each run: its phase, what the best run leaves, the number of runs.
 
-    After `limit` (s of processor time, by `clock`) it raises OutOfTime, once.
+    After `limit` (s of processor time, by `clock`) it raises OutOfTime, once, and not before a first trial has succeeded.
     """
 
     tell: Tell
@@ -45,6 +45,7 @@ class SearchProgress:
     least: float = math.inf
     """Root mean square of the residuals of the best run so far, in standard deviations of the noise of neighbouring samples."""
     looks: str = ""
+    succeeded: bool = False
     begun: float = field(default=math.nan)
     _looked: float = -math.inf
     _better: tuple[Model, Floats] | None = None
@@ -62,7 +63,7 @@ class SearchProgress:
         self.runs += 1
         left = f", {self.left}" if self.left else ""
         self.tell(f"{self.phase}{left}, {self.runs} runs so far")
-        if self.clock() - self.begun > self.limit:
+        if self.succeeded and self.clock() - self.begun > self.limit:
             over, self.limit = self.limit, math.inf
             left = f"; {self.left}" if self.left else ""
             more = f"bounds and a nearer start make it shorter, max_time={2.0 * over:.6g} gives it twice the time"
@@ -78,7 +79,10 @@ class SearchProgress:
 
     def tried(self, model: Model, searched: Floats, residual: Floats) -> None:
         """Take notice of the residuals of a trial, and look at those of the best one from time to time."""
-        if model.smooth or model.of_means or not len(residual) or np.all(np.abs(residual) >= FAILED):
+        if not len(residual) or np.all(np.abs(residual) >= FAILED):
+            return
+        self.succeeded = True
+        if model.smooth or model.of_means:
             return
         size = math.sqrt(float(np.mean(np.square(residual))))
         if size < BETTER * self.least:

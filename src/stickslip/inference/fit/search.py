@@ -103,10 +103,12 @@ def light(model: Model) -> Model:
 def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Tell, best: Best) -> list[tuple[float, Floats]]:
     """Return the minima that searches from several starts reach, best first. Raises InputError if no run succeeds."""
     first = [model.begin] if np.array_equal(model.begin, model.given) else [model.begin, model.given]
-    known = sorted(((cost, x) for x in first if np.isfinite(cost := _cost(model, x, loss))), key=lambda one: one[0])
-    screened = []
-    if known:
-        best.cost, best.searched = known[0]
+    known, screened = list[tuple[float, Floats]](), []
+    for x in first:
+        cost = _cost(model, x, loss)
+        if np.isfinite(cost):
+            known = sorted([*known, (cost, x)], key=lambda one: one[0])
+            best.cost, best.searched = known[0]
     if starts > 1 or not known:
         drawn = _drawn(model, SCREENED * max(starts - 1, 2), seed)
         for i, x in enumerate(drawn):

@@ -170,7 +170,8 @@ def _drift(found: Residuals, total: float, time: Floats) -> _Try:
     gain = _count(found, _memory(kept[kind])) * math.log(max(left.values()) / left[kind])
     if gain >= APART:
         return _regressed(found, total, kind, ways[kind], lambda c: float(c[0]), tried=2)
-    return _regressed(found, total, "drift", ways["drift with time"], lambda c: float(c[0]), tried=2)
+    per_second = _regressed(found, total, "drift", ways["drift with time"], lambda c: float(c[0])).look.size
+    return _regressed(found, total, "drift", ways[kind], lambda _: per_second, tried=2)
 
 
 def _count(found: Residuals, memory: Memory) -> float:
@@ -220,8 +221,7 @@ def _larger(found: Residuals, total: float, kind: str, chosen: NDArray[np.bool_]
     def sure() -> bool:
         from scipy.stats import f
 
-        rest = found.only(~chosen)
-        share = _count(rest, _memory(rest)) / max(len(rest.values), 1)
+        share = _count(found, _memory(found)) / max(len(found.values), 1)
         freedom = [max(1.0, share * len(one)) for one in (inside, outside)]
         return bool(f.sf(ratio, *freedom) < CHANCE)
 
