@@ -19,6 +19,7 @@ from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
 from stickslip.inference.record.doubts import checked
 from stickslip.inference.record.record import LOADING, MEASURED, Record
+from stickslip.inference.record.repeats import without_repeats
 from stickslip.scenarios.entries import typed_number
 
 LARGEST_FILE = 500_000_000
@@ -103,7 +104,8 @@ def _ordered(source: Any) -> _Columns:
     if "time" not in table.columns:
         raise InputError(f"{at_header}: no column 'time'; {missing(table.header, 'time')}{_there(passed)}")
     notes: list[str] = []
-    return _Columns(_in_order(dict(table.columns), table.place, notes), table.place, at_header, tuple(table.header), passed, notes)
+    columns = without_repeats(_in_order(dict(table.columns), table.place, notes), notes)
+    return _Columns(columns, table.place, at_header, tuple(table.header), passed, notes)
 
 
 def _table_in(source: Any) -> Table:
