@@ -11,6 +11,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.show import brief
 from stickslip.inference.fit.free import SERVO, Free, Prior
 from stickslip.inference.fit.part import Part, approached
 from stickslip.inference.record.corners import EVENLY, corners_of, jumps_of
@@ -30,6 +31,16 @@ def with_asides(part: Part, number: int) -> Part:
     jumps = () if part.pressing is None else jumps_of(part.pressing, part.record.clock)
     part = replace(part, loading=part.loading if corners is None else corners.rate, corners=corners, jumps=jumps)
     return replace(part, asides=(*_of_drive(part, number), *_of_pressing(part, number)))
+
+
+def rounded(part: Part) -> Iterable[str]:
+    """Yield a sentence on the servo that a load point shows."""
+    if part.corners is not None and part.corners.seen:
+        servo, spread = brief(part.corners.servo, "s", 3), brief(part.corners.spread, "s", 2)
+        yield (
+            f"the load point shows a servo: after each of {len(part.corners.unsure)} steps its rate approaches the new one as "
+            f"exp(-t/servo), with a servo of {servo} ± {spread}"
+        )
 
 
 def _of_drive(part: Part, number: int) -> Iterable[Free]:

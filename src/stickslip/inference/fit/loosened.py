@@ -10,7 +10,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.inference.fit.free import Free
 from stickslip.inference.fit.model import Model
 
-FELT = 0.2
+FELT = 0.3
 """A number counts if its standard deviation changes the residuals by this many standard deviations in all."""
 MOST = 24
 """Largest number of such numbers that are free in a fit."""

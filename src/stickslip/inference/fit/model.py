@@ -216,7 +216,8 @@ class Model:
     def jacobian(self, searched: Floats, *, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
         """Return the derivatives of all residuals with respect to the searched numbers, by differences.
 
-        A number of one part needs runs of that part only. If the run on one side fails, the difference is taken on the other.
+        A number of one part needs runs of that part only, and one that was not asked for a step to one side. If the run on one side
+        fails, the difference is taken on the other.
         """
         lows, highs = self.limits
         base = [self.part_residual(searched, i) for i in range(len(self.parts))]
@@ -226,7 +227,7 @@ class Model:
         steps = np.broadcast_to(self.step, len(self.free))
         for column, one in enumerate(self.free):
             stepped = []
-            for side in sides:
+            for side in sides[:1] if one.aside else sides:
                 x = searched.copy()
                 x[column] = min(max(x[column] + side * float(steps[column]), lows[column]), highs[column])
                 stepped.append(x)

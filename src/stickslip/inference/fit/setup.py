@@ -16,7 +16,7 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
-from stickslip.inference.fit.asides import with_asides
+from stickslip.inference.fit.asides import rounded, with_asides
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
@@ -74,6 +74,7 @@ def parts_of(
         pressing, told = _pressing(problem, record) if pressed else (None, tuple(_uneven(problem, record)))
         rate = None if loading is None else loading.rate
         found.append(with_asides(Part(record, rate, observed, sensor, begins, pressing), len(found)))
+        told = (*told, *rounded(found[-1]))
         before = f"{record.name}: " if len(records) > 1 else ""
         said = [*record.notes, *told, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
         if loading is None:

@@ -20,7 +20,9 @@ COARSE = 0.1
 SURE = 6.0
 """Repeats are more than chance makes, by this many standard deviations."""
 TURNS = 0.35
-"""Noise turns from rising to falling, or back, in at least this share of its samples: 2/3 if white, 1/2 as a random walk."""
+"""Noise bends up and down in turn in at least this share of its samples: in about 2/3 of them if it is white or a random walk."""
+LONG, EVEN = 2.0, 0.9
+"""A logger repeats a sample this often at most, in the median; or new values come at one distance, in this share of them."""
 MOVES = (0.8, 1.25)
 """A steady motion goes on after a repeat as if it had not stopped: by this factor, in the median, on the way missed."""
 STEPS = 1.5
@@ -32,41 +34,57 @@ MOVING = (*LOADING, "rotation", "rotation_rate")
 def repeats_in(values: Floats) -> NDArray[np.bool_]:
     """Return True for samples that repeat the one before them exactly, if noise or a steady motion would not do so."""
     equal = np.append(False, values[1:] == values[:-1])
-    count = int(equal.sum())
     begins = np.flatnonzero(equal & ~np.append(False, equal[:-1]))
     fresh = values[~equal & np.isfinite(values)]
     if len(begins) < max(FEWEST, SHARE * len(values)) or len(fresh) < max(4, LEVELS * len(values)):
         return np.zeros(len(values), bool)
+    if not _is_regular(equal, begins):
+        return np.zeros(len(values), bool)
     change = np.diff(fresh)
-    usual = float(np.median(np.abs(change)))
-    bends = np.abs(np.diff(change))
-    exact = 16.0 * float(np.max(np.abs(fresh))) * float(np.finfo(float).eps)
-    digit = float(np.min(bends[bends > exact], initial=usual)) if (bends > exact).any() else usual
+    usual, bends = float(np.median(np.abs(change))), np.diff(change)
+    bends = bends[np.abs(bends) > 16.0 * float(np.max(np.abs(fresh))) * float(np.finfo(float).eps)]
+    digit = float(np.min(np.abs(bends), initial=usual))
     by_chance = CHANCE * digit / max(usual, 1e-300)
-    turns = float(np.mean(change[1:] * change[:-1] < 0.0))
-    if turns > TURNS and by_chance < COARSE:
+    noisy = len(bends) > 0.5 * len(fresh) and float(np.mean(bends[1:] * bends[:-1] < 0.0)) > TURNS
+    if noisy and by_chance < COARSE:
         expected = by_chance * len(values)
-        return equal if count > expected + SURE * np.sqrt(expected) + FEWEST else np.zeros(len(values), bool)
+        return equal if equal.sum() > expected + SURE * np.sqrt(expected) + FEWEST else np.zeros(len(values), bool)
     return _missed_way(values, equal, begins, digit)
 
 
+def _is_regular(equal: NDArray[np.bool_], begins: NDArray[np.intp]) -> bool:
+    """Return True for few and short repeats, or for new values at even distances; a contact that sticks rests for longer."""
+    lengths = _lengths(equal, begins)
+    if 2 * int(equal.sum()) < len(equal):
+        return float(np.median(lengths)) <= LONG
+    apart = np.diff(np.flatnonzero(~equal))
+    return float(np.mean(np.abs(apart - np.median(apart)) <= 1.0)) > EVEN
+
+
+def _lengths(equal: NDArray[np.bool_], begins: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the numbers of repeats in each run of them."""
+    ends = np.flatnonzero(equal & ~np.append(equal[1:], False))
+    return np.asarray(ends - begins + 1)
+
+
 def _missed_way(values: Floats, equal: NDArray[np.bool_], begins: NDArray[np.intp], digit: float) -> NDArray[np.bool_]:
-    """Return True for repeats in a steady motion: it then goes on as far as it would have come."""
-    found, shares = np.zeros(len(values), bool), list[float]()
-    for first in begins.tolist():
-        last = first
-        while last + 1 < len(values) and equal[last + 1]:
-            last += 1
+    """Return True for repeats in a steady motion, which then goes on as far as it would have come; rests are longer."""
+    lengths = _lengths(equal, begins)
+    shares, counted = list[float](), list[int]()
+    for first, length in zip(begins.tolist(), lengths.tolist(), strict=True):
+        last = first + length - 1
         if first < 2 or last + 2 >= len(values):
             continue
-        before, jump, after = (values[k + 1] - values[k] for k in (first - 2, last, last + 1))
-        if not before * after > 0.0 or not abs(jump) > STEPS * digit:
-            continue
-        share = float(jump / ((last - first + 2) * 0.5 * (before + after)))
-        shares.append(share)
-        found[first : last + 1] = 2.0 * abs(share - 1.0) < 1.0
-    sure = len(shares) >= FEWEST and MOVES[0] < float(np.median(shares)) < MOVES[1]
-    return found if sure else np.zeros(len(values), bool)
+        before, jump, after = (float(values[k + 1] - values[k]) for k in (first - 2, last, last + 1))
+        if before * after > 0.0 and abs(jump) > STEPS * digit:
+            shares.append(jump / ((length + 1) * 0.5 * (before + after)))
+            counted.append(length)
+    if len(shares) < FEWEST or not MOVES[0] < float(np.median(shares)) < MOVES[1]:
+        return np.zeros(len(values), bool)
+    found, longest = equal.copy(), 1 + 2 * float(np.median(counted))
+    for first, length in zip(begins.tolist(), lengths.tolist(), strict=True):
+        found[first : first + length] = length <= longest
+    return found
 
 
 def without_repeats(found: dict[str, Floats], notes: list[str]) -> dict[str, Floats]:
