@@ -12,7 +12,7 @@ from stickslip.inference.record.repeats import repeats_in
 from tests.inference.laboratory import correlated
 from tests.problems import Floats
 
-TIME: Floats = np.arange(500) * 0.1
+TIME = np.linspace(0.0, 49.9, 500)
 
 
 def held(values: Any, which: Any) -> Floats:

@@ -52,7 +52,8 @@ def _of_drive(part: Part, number: int) -> Iterable[Free]:
         SERVO, time, corners.servo, 0.0, corners.servo + 10.0 * corners.spread, False, prior, number, corners.spread, aside=True
     )
     for k, unsure in enumerate(corners.unsure):
-        yield _later(f"{STEP}{k + 1}", unsure, FARTHEST * unsure, number)
+        if unsure > 0.0:
+            yield _later(f"{STEP}{k + 1}", unsure, FARTHEST * unsure, number)
 
 
 def _of_pressing(part: Part, number: int) -> Iterable[Free]:

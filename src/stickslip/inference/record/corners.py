@@ -20,6 +20,8 @@ SHORT = 8
 """A part of a load point with at most this many samples belongs to the change of rate between the parts beside it."""
 SHARE = 0.1
 """So does a longer one of at most this share of the parts beside it."""
+NEARLY = 0.25
+"""A part counts as shorter by this factor if its rate is nearly that of a part beside it."""
 CLEAR = 0.1
 """A change of rate counts if it is at least this share of the largest rate."""
 EVENLY = 1.0 / math.sqrt(12.0)
@@ -41,10 +43,11 @@ class Corners:
     """Changes of a pull rate in steps, and how well they are known.
 
     `rate` has a step for each change, at the time (s) where straight lines through the load point meet. `unsure` are the standard
-    deviations of these times (s). A servo may round the corners: the rate approaches each new value as exp(-t/servo), and the load
-    point comes to the same lines. `servo` (s) fits the load point best, with the standard deviation `spread`. `seen` is True if the
-    load point itself shows it: without a servo, the lines do not follow it. `keeps` is False if the load point turns so sharply
-    that it may be what the machine was told, and not what it did: a servo then comes later than it.
+    deviations of these times (s), 0 for changes that are too small to count. A servo may round the corners: the rate approaches
+    each new value as exp(-t/servo), and the load point comes to the same lines. `servo` (s) fits the load point best, with the
+    standard deviation `spread`. `seen` is True if the load point itself shows it: without a servo, the lines do not follow it.
+    `keeps` is False if the load point turns so sharply that it may be what the machine was told, and not what it did: a servo then
+    comes later than it.
     """
 
     rate: Steps
@@ -89,7 +92,7 @@ def _collapsed(rate: Steps, clock: Floats) -> list[_Change]:
     ends = np.append(starts[1:], max(float(clock[-1]), float(starts[-1])))
     count, lasts = np.diff(np.searchsorted(clock, np.append(starts, np.inf))), ends - starts
     found = []
-    for i, j in pairwise(_plateaus(count, lasts)):
+    for i, j in pairwise(_plateaus(count, lasts, values)):
         begin, end, before, after = float(ends[i]), float(starts[j]), float(values[i]), float(values[j])
         at = end - (float(values[i + 1 : j] @ lasts[i + 1 : j]) - before * (end - begin)) / (after - before)
         if not begin - (end - begin) <= at <= end + (end - begin):
@@ -98,12 +101,17 @@ def _collapsed(rate: Steps, clock: Floats) -> list[_Change]:
     return found
 
 
-def _plateaus(count: NDArray[np.intp], lasts: Floats) -> list[int]:
-    """Return the numbers of the parts that are neither short nor much shorter than the parts beside them."""
+def _plateaus(count: NDArray[np.intp], lasts: Floats, values: Floats) -> list[int]:
+    """Return the numbers of the parts that are neither short nor much shorter than the parts beside them.
+
+    A part whose rate is nearly that of a part beside it, as that of the end of an approach, may be longer.
+    """
+    least = CLEAR * float(np.max(np.abs(values)))
     kept = [i for i in range(len(lasts)) if count[i] > SHORT or i in (0, len(lasts) - 1)]
     while len(kept) > 2:
         beside = [max(lasts[i], lasts[j]) for i, j in zip(kept[:-2], kept[2:], strict=True)]
-        share = lasts[kept[1:-1]] / beside
+        change = np.abs(np.diff(values[kept]))
+        share = lasts[kept[1:-1]] / beside * np.where(np.minimum(change[1:], change[:-1]) > least, 1.0, NEARLY)
         if share.min() > SHARE:
             break
         del kept[1 + int(np.argmin(share))]
@@ -139,7 +147,10 @@ def _rounded(record: Record, sharp: Steps, changes: list[_Change], spacing: floa
         reach *= 2.0
     if not fit.follows:
         return None
-    unsure = tuple(2.0 * noise / abs(one.after - one.before) / math.sqrt(_fewest(time, one, edges)) for one in changes)
+    unsure = tuple(
+        2.0 * noise / abs(one.after - one.before) / math.sqrt(_fewest(time, one, edges)) if _is_clear(one, changes) else 0.0
+        for one in changes
+    )
     return Corners(sharp, unsure, fit.servo, fit.spread, fit.seen, keeps=fit.seen or fit.spread > SHARP * spacing)
 
 
