@@ -38,6 +38,7 @@ class FittedRecord(StudyWithDataset):
     sentence each. `profiles` of the likelihood, the `walk` through the posterior distribution and `windows` are there if the user
     asked for them. `windows` has one row for each shorter part of the record: begin, end (s since the first sample), samples, and
     each free number (SI). `asked` are the options that were given, by name.
+    `unresolved` are sentences on steps and jumps of the loading that happen between two samples.
     """
 
     estimate: Estimate
@@ -48,6 +49,7 @@ class FittedRecord(StudyWithDataset):
     walk: PosteriorWalk | None = None
     windows: pd.DataFrame | None = None
     asked: Mapping[str, Any] = field(default_factory=dict)
+    unresolved: tuple[str, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -56,13 +58,13 @@ class FittedRecord(StudyWithDataset):
 
     @property
     def free(self) -> tuple[Free, ...]:
-        """The free numbers, those of single parts last."""
-        return self.model.free
+        """The free numbers that were asked for, those of single parts last."""
+        return tuple(one for one in self.model.free if not one.aside)
 
     @property
     def values(self) -> dict[str, float]:
         """The best values of the free numbers (SI), by name."""
-        return dict(zip([one.label for one in self.free], self.model.values(self.estimate.searched), strict=True))
+        return dict(zip([one.label for one in self.free], self.model.values(self.estimate.searched), strict=False))
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -115,7 +117,7 @@ class FittedRecord(StudyWithDataset):
     def correlation(self) -> pd.DataFrame:
         """Correlations of the searched numbers, which are logarithms where numbers are positive; NaN if not determined."""
         labels = [one.label for one in self.free]
-        return pd.DataFrame(self.certainty.correlation, labels, labels)
+        return pd.DataFrame(self.certainty.correlation[: len(labels), : len(labels)], labels, labels)
 
     def best_of(self, part: int = 0) -> Problem:
         """Return the problem with the best numbers, under the loading of a part; 0 is the first."""

@@ -22,6 +22,8 @@ from stickslip.inference.certainty.directions import IDLE
 from stickslip.inference.certainty.drifting import TRENDS, Offer, lacking, needed, offered, said, with_number, without_number
 from stickslip.inference.certainty.kept_walk import KeptWalk
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
+from stickslip.inference.certainty.unresolved import unresolved
+from stickslip.inference.fit.asides import with_servo
 from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
 from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
 from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
@@ -362,7 +364,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     chosen = read_free(
         problem, names, hints_of(problem, parts[0]), bounds=wishes.bounds, priors=wishes.priors, start=wishes.begin_at
     )
-    chosen = with_scale(chosen, scales_of(parts[0], problem))
+    chosen = with_servo(with_scale(chosen, scales_of(parts[0], problem)), parts)
     own = list[Free]()
     if wishes.parts == "rests":
         own = own_of(problem, parts, wishes.each)
@@ -405,13 +407,14 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
         tell(f"{offer.why}: {offer.name} is free, too")
     found = _estimated(model, wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
-    walk, finished, ended, words = None, found.finished, found.ended, list[str]()
+    walk, finished, ended, words, between = None, found.finished, found.ended, list[str](), list[str]()
     try:
         tell("what the record determines")
         sure = certainty_of(found)
         if finished and wishes.trend == "auto" and wishes.by == "samples" and wishes.parts is None:
             found, sure, words = _drifting(found, sure, offer, wishes, tell)
         found = _idle_as_given(found, sure)
+        between = unresolved(found.model, found.searched) if finished else between
         if wishes.max_time is None:
             progress.limit = math.inf  # how long the rest takes is known beforehand
         if finished and wishes.windows:
@@ -426,7 +429,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
     except KeyboardInterrupt as stop:
         finished, ended = False, str(stop)
     found = replace(found, finished=finished, ended=ended)
-    return Inference(found, sure, whole, tuple(words), tuple(profiles), walk, windows)
+    return Inference(found, sure, whole, tuple(words), tuple(profiles), walk, windows, unresolved=tuple(between))
 
 
 def _drifting(
@@ -475,8 +478,10 @@ def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:
     tell(f"all {len(model.parts)} parts")
     found = estimate(begun, 1, wishes.loss, wishes.seed, tell)
     others = [begun.with_(free=with_shared(x)).begin for x in few.others]
+    others = [np.append(x, found.searched[len(x) :]) for x in others]
     others = [x for x in others if found.cost(x) < found.cost(found.searched) + COMPETES]
-    return replace(found, model=found.model.with_(free=model.free), others=tuple(others))
+    asides = [one for one in found.model.free if one.aside]
+    return replace(found, model=found.model.with_(free=(*model.free, *asides)), others=tuple(others))
 
 
 def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:

@@ -211,6 +211,7 @@ def warnings_of(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on doubts about the numbers as a whole."""
     if not study.estimate.finished:
         yield f"these are the best numbers so far: {study.estimate.ended}" if study.estimate.ended else INTERRUPTED
+    yield from study.unresolved
     yield from _misfit(study)
     yield from looks_left(study)
 
@@ -230,7 +231,9 @@ def looks_left(study: FittedRecord) -> Iterator[str]:
 def minima_of(study: FittedRecord) -> Iterator[str]:
     """Yield a sentence on each other minimum that competes with the best one."""
     for x in study.estimate.others:
-        values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=True)]
+        values = [
+            f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=False)
+        ]
         yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import stickslip as ss
 from stickslip.figures.studies import inference as figures
 from stickslip.foundation.names import name_of
-from stickslip.foundation.show import about_time, number, sentence
+from stickslip.foundation.show import about_time, brief, number, sentence
 from stickslip.inference.inference import Inference, in_shown_unit, minima_of, noise_of, ranking, record_of, warnings_of
 from stickslip.problem.given_units import in_given_units
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
@@ -45,6 +45,7 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
         law=study.best.friction.kind,
         body=study.best.body.kind,
         warnings=list(warnings_of(study)),
+        left=_left(study),
         known=list(_known(study)),
         about=[sentence(text) for text in (*record_of(study), *study.about_samples, *study.about)],
         tables=[table for table in (_numbers(study, own=False), _numbers(study, own=True)) if table],
@@ -58,6 +59,14 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
         digits=DIGITS,
     )
     return save_text(folder / PAGE, page)
+
+
+def _left(study: Inference) -> str:
+    """Return what is left of a record that its run follows: white noise, or noise that is correlated."""
+    if study.features is not None:
+        return "it has the mean features of the events"
+    longest = max((memory.time for memory in study.model.memory.values()), default=0.0)
+    return f"what is left remembers itself for {brief(longest, 's', 3)}" if longest > 0.0 else "what is left looks like noise"
 
 
 def _title(study: Inference) -> str:

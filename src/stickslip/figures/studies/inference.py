@@ -105,6 +105,7 @@ def _means(features: pd.DataFrame) -> dict[str, xr.Variable]:
 
 def _numbers(study: Inference) -> dict[str, xr.Variable]:
     free, table = study.free, study.table
+    covariance = study.certainty.covariance[: len(free), : len(free)]
     contents = {
         "number": xr.Variable("number", np.array([one.label for one in free])),
         "unit": xr.Variable("number", np.array([one.declared.unit for one in free])),
@@ -112,8 +113,8 @@ def _numbers(study: Inference) -> dict[str, xr.Variable]:
         "shared": xr.Variable("number", np.array([one.part is None for one in free], np.int8)),
         "logarithmic": xr.Variable("number", np.array([one.log for one in free], np.int8)),
         "scale": xr.Variable("number", np.array([one.scale for one in free])),
-        "searched": xr.Variable("number", study.estimate.searched),
-        "covariance": xr.Variable(("number", "other"), study.certainty.covariance, {"long_name": "of searched numbers"}),
+        "searched": xr.Variable("number", study.estimate.searched[: len(free)]),
+        "covariance": xr.Variable(("number", "other"), covariance, {"long_name": "of searched numbers"}),
     }
     for name in ("value", "uncertainty", "low", "high", "start"):
         contents[name] = xr.Variable("number", table[name].to_numpy(float), {"long_name": name})

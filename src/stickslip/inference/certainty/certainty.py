@@ -13,6 +13,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import UNSEEN as DETERMINED
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.show import brief
+from stickslip.inference.certainty.bends import rough_words
 from stickslip.inference.certainty.directions import IDLE, better_known, null_directions, told, without
 from stickslip.inference.fit.estimate import Estimate
 from stickslip.inference.fit.free import Free
@@ -81,13 +82,14 @@ def certainty_of(found: Estimate) -> Certainty:
     """
     x = found.searched
     model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)
-    slopes, smooth_notes = _slopes(model, x)
+    slopes, rough, rough_rows = _slopes(model, x)
     rest = model.residual(x)
     count = np.sqrt(weights(rest, found.loss))
     rest, slopes = rest * count, slopes * count[:, None]
     low, high = model.limits
     idle = np.linalg.norm(slopes, axis=0) < IDLE
-    on_bound = ~idle & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
+    shown = np.array([not one.aside for one in model.free])
+    on_bound = ~idle & shown & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
     inner = np.flatnonzero(~on_bound & ~idle)
     covariance, excess, uneven = np.zeros((len(x), len(x))), np.ones(len(x)), dict[str, Unevenness]()
     moves = null_directions(model, x, slopes[:, inner], inner) if len(inner) else np.zeros((0, 0))
@@ -104,8 +106,9 @@ def certainty_of(found: Estimate) -> Certainty:
     notes = [f"{model.free[i].label} has no influence on what is fitted: fix it" for i in np.flatnonzero(idle)]
     values = model.values(x)
     notes += [_bound_note(model.free[i], values[i], at_low=bool(x[i] - low[i] < AT_BOUND)) for i in np.flatnonzero(on_bound)]
-    notes += _words(model, np.array(values), (slopes, moves, covariance, correlation), inner, NORMAL)
-    notes += [text for i, text in smooth_notes.items() if i in inner]
+    inner = inner[shown[inner]]  # what was not asked for is last
+    notes += _words(model, np.array(values), (slopes, moves[: len(inner)], covariance, correlation), inner, NORMAL)
+    notes += rough_words(model, x, [model.free[i].label for i in rough if i in inner], rough_rows)
     return Certainty(covariance, widths, correlation, on_bound, tuple(notes), slopes, excess, uneven)
 
 
@@ -172,28 +175,23 @@ def _bound_note(free: Free, value: float, *, at_low: bool) -> str:
     return f"{free.label} lies on the {end} end of {why}, {brief(value, free.declared.unit)}: no value inside fits better"
 
 
-def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
-    """Return the derivatives of the residuals, and a sentence for each number whose change does not change them smoothly.
+def _slopes(model: Model, x: Floats) -> tuple[Floats, list[int], NDArray[np.bool_]]:
+    """Return the derivatives of the residuals, the numbers whose change does not change them smoothly, and the rows where.
 
     If a jump of the run passes a sample within the step of the differences, this sample has no derivative. Its row is then 0: the
     sample does not add to the curvature, which makes intervals too wide rather than too narrow.
     """
     if model.of_means:
-        return model.jacobian(x), {}
+        by = model.jacobian(x)
+        return by, [], np.zeros(len(by), bool)
     right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
     right, left = np.where(right.any(axis=0), right, left), np.where(left.any(axis=0), left, right)  # a limit leaves one side only
     size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)
     seen = np.linalg.norm(right + left, axis=0) > 2.0 * IDLE  # any other column is only noise of the runs
     rough = (apart > 0.5 * size) & (size > 1e-3 * np.max(size, axis=0, initial=0.0)) & seen
-    notes = {}
-    for i in range(len(x)):
-        total = float(np.linalg.norm(0.5 * (right[:, i] + left[:, i])))
-        if total > 0.0 and float(np.linalg.norm(apart[:, i])) > ROUGH * total:
-            notes[i] = (
-                f"the run does not change smoothly with {model.free[i].label}, as where a slip event passes a sample; "
-                "such samples are left out of its interval, which is rough: a profile tells more"
-            )
-    return np.where(rough.any(axis=1)[:, None], 0.0, 0.5 * (right + left)), notes
+    total = np.linalg.norm(0.5 * (right + left), axis=0)
+    bent = np.flatnonzero((total > 0.0) & (np.linalg.norm(apart, axis=0) > ROUGH * total)).tolist()
+    return np.where(rough.any(axis=1)[:, None], 0.0, 0.5 * (right + left)), bent, rough.any(axis=1)
 
 
 @dataclass(frozen=True)

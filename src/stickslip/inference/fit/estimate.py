@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.foundation.arrays import Floats
+from stickslip.inference.fit.loosened import loosened, settled
 from stickslip.inference.fit.memory import Memory, memory_of
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
@@ -71,14 +72,17 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
         minima = searched_minima(thin, starts, loss, seed, tell=tell, best=best)
         searched = _at_jumps(model, [x for _, x in minima], loss, tell)
         best.cost, best.searched = np.inf, searched
-        found = _with_noise(model, searched, loss, tell, best)
+        loose = loosened(model, searched)
+        found = Estimate(loose.model, loose.whole(searched), loss=loss)
+        best.searched = found.searched
+        found = _with_noise(found.model, found.searched, loss, tell, best)
         misses = any(size > ROUGH * model.sizes[name] for name, size in found.model.sizes.items())
         if starts > 1 and misses and is_rough(found.model, found.searched) and not told_by(found.model, found.searched):
             tell("polishing without derivatives")
             better = polished(found.model, found.searched, loss)
             if found.cost(better) < found.cost(found.searched) - COMPETES:
                 found = _with_noise(model, better, loss, tell, best)
-        return replace(found, others=_competing(found.model, found.searched, [x for _, x in minima[1:]], thin.every))
+        return replace(found, others=_competing(found.model, found.searched, [loose.whole(x) for _, x in minima[1:]], thin.every))
     except KeyboardInterrupt as stop:
         if not len(best.searched):
             raise
@@ -171,6 +175,8 @@ LEAST = 10
 
 def windows_of(found: Estimate, tell: Tell) -> pd.DataFrame:
     """Return the numbers fitted to shorter parts of a record, one row each, the whole record first."""
+    model, searched = settled(found.model, found.searched)
+    found = replace(found, model=model, searched=searched)
     labels = [one.label for one in found.model.free]
     rows = [(0.0, found.model.parts[0].duration, found.model.samples, *found.model.values(found.searched))]
     for shares in list(product(KEPT_BEFORE, KEPT_AFTER))[1:]:

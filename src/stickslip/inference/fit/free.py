@@ -51,7 +51,7 @@ class Free:
 
     The search works on the logarithm of a positive number (`log`), and otherwise in steps of `scale` (SI). `part` is the one part
     of the record that the number belongs to, or None. `bounded` is True if the user gave the limits. `given` is the value in the
-    problem if the search starts from another one.
+    problem if the search starts from another one. `aside` is True for what is not known of the loading, and was not asked for.
     """
 
     name: str
@@ -65,6 +65,7 @@ class Free:
     scale: float = 1.0
     bounded: bool = False
     given: float | None = None
+    aside: bool = False
 
     def begun_at(self, value: float) -> Free:
         """Return the number with another starting value; its former one becomes a second start."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.inference.fit.asides import moved
 from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
 from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
 from stickslip.inference.fit.part import Part, approached, changed, not_begun
@@ -83,8 +84,10 @@ class Model:
         values = self.values(searched)
         own = {one.name: v for one, v in zip(self.free, values, strict=True) if one.part in (None, part)}
         first = {name: v for name, v in own.items() if name not in (LOAD, STATE)}
-        begun = self.parts[part].begun(changed(self.problem, first, not_begun))
-        if own.get(SERVO, 0.0) > 0.0:
+        asked = any(one.name == SERVO and one.part is None for one in self.free)
+        this = moved(self.parts[part], own, asked=asked)
+        begun = this.begun(changed(self.problem, first, not_begun))
+        if this.loading is None and own.get(SERVO, 0.0) > 0.0:
             begun = replace(begun, pull_rate=approached(begun.pull_rate, own[SERVO]))
         return changed(begun, {name: v for name, v in own.items() if name in (LOAD, STATE)})
 
@@ -114,7 +117,7 @@ class Model:
         for name in this.observed:
             values = measured(run, name, this.sensor, time)
             if name in JUMPING:
-                values = spread(values, time, self._jumps(run, part, name), self.blur)
+                values = spread(values, time, self.jumps(run, part, name), self.blur)
             if name == "friction":
                 values = values + shift
             elif name in SHEAR:
@@ -122,7 +125,8 @@ class Model:
             found[name] = values
         return found
 
-    def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
+    def jumps(self, run: Solution, part: int, name: str) -> Jumps:
+        """Return the jumps of a quantity in a run that move as its numbers change: those of slip events."""
         this, least = self.parts[part], SEEN * self.sizes.get(name, 0.0)
         step = self.every * this.record.clock[-1] / max(len(this.record) - 1, 1)
         breaks = breaks_of(run, is_at_driver(name, this.sensor))[1:-1]
@@ -138,7 +142,7 @@ class Model:
                 continue
             time = part.record.clock[:: self.every] - self._own(searched, i).get(DELAY, 0.0)
             for name in part.observed:
-                jumps = model._jumps(run, i, name) if name in JUMPING else None
+                jumps = model.jumps(run, i, name) if name in JUMPING else None
                 if jumps is not None and len(jumps.time):
                     added[i, name] = unsure(time, self.data(i, name)[:: self.every], jumps)
         return self.with_(unsure=added)
@@ -217,7 +221,8 @@ class Model:
     def jacobian(self, searched: Floats, *, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
         """Return the derivatives of all residuals with respect to the searched numbers, by differences.
 
-        A number of one part needs runs of that part only. If the run on one side fails, the difference is taken on the other.
+        A number of one part needs runs of that part only, and one that was not asked for a step to one side. If the run on one side
+        fails, the difference is taken on the other.
         """
         lows, highs = self.limits
         base = [self.part_residual(searched, i) for i in range(len(self.parts))]
@@ -227,7 +232,7 @@ class Model:
         steps = np.broadcast_to(self.step, len(self.free))
         for column, one in enumerate(self.free):
             stepped = []
-            for side in sides:
+            for side in sides[:1] if one.aside else sides:
                 x = searched.copy()
                 x[column] = min(max(x[column] + side * float(steps[column]), lows[column]), highs[column])
                 stepped.append(x)

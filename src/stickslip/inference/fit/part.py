@@ -14,7 +14,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity
+from stickslip.inference.fit.free import Free
 from stickslip.inference.fit.turns import changes_of
+from stickslip.inference.record.corners import Corners
 from stickslip.inference.record.loading import later, loading_of
 from stickslip.inference.record.noise import first_value, noise_of
 from stickslip.inference.record.record import Record
@@ -34,7 +36,8 @@ class Part:
     `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block, "drive" for one at the
     driver; `is_away` is True if waves are on their way from the contact to where shear is measured. `start` says how the
     run begins: in "steady" sliding, as the "record" does, or as the "problem" says. `pressing` is the normal load since the first
-    sample (Pa or N), or None for the problem's own.
+    sample (Pa or N), or None for the problem's own. `corners` say how well the steps of the loading are known, and `jumps` number
+    the straight parts of the normal load in which it jumps between two samples; `asides` are what is not known of both.
     """
 
     record: Record
@@ -44,6 +47,9 @@ class Part:
     start: str = "problem"
     pressing: PiecewiseLinear | None = None
     is_away: bool = False
+    corners: Corners | None = None
+    jumps: tuple[int, ...] = ()
+    asides: tuple[Free, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -107,7 +113,8 @@ class Part:
         """Return the part that begins `begin` (s) later, with that piece of the record and its own motion of the load point."""
         loading = loading_of(record) if self.loading is not None else None
         pressing = None if self.pressing is None else later(self.pressing, begin)
-        return replace(self, record=record, loading=None if loading is None else loading.rate, pressing=pressing)
+        rate = None if loading is None else loading.rate
+        return replace(self, record=record, loading=rate, pressing=pressing, corners=None, jumps=(), asides=())
 
     def first_load(self, normal: float) -> tuple[float, float]:
         """Return the load at the first sample and its standard error, for a normal load (all in Pa, N or N m)."""

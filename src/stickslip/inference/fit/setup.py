@@ -16,6 +16,7 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
+from stickslip.inference.fit.asides import rounded, with_asides
 from stickslip.inference.fit.at_drive import about_drive, is_level_at_first
 from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.inference.fit.model import Model, is_at_driver
@@ -63,7 +64,7 @@ def parts_of(
         raise InputError(f"infer: {what} is not fitted: leave it out")
     if start is not None and start not in STARTS:
         raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
-    found, notes = [], []
+    found, notes = list[Part](), []
     for given in records:
         record = given.of_motion(problem.unit_of("slip"), type(problem.body).__name__)
         record = record.driven_as_measured() if "drive_rate" in _split(observe) else record
@@ -76,7 +77,9 @@ def parts_of(
         if record.clock[-1] <= 0.0:
             raise InputError(f"{record.name}: the record has no duration")
         pressing, told = _pressing(problem, record) if pressed else (None, tuple(_uneven(problem, record)))
-        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins, pressing, away))
+        rate = None if loading is None else loading.rate
+        found.append(with_asides(Part(record, rate, observed, sensor, begins, pressing, away), len(found)))
+        told = (*told, *rounded(found[-1]))
         before = f"{record.name}: " if len(records) > 1 else ""
         said = [*record.notes, *told, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
         said += about_drive(problem, record, sensor, start, begins)

@@ -20,6 +20,7 @@ from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
 from stickslip.inference.record.doubts import checked
 from stickslip.inference.record.record import LOADING, MEASURED, SHEAR, Record
+from stickslip.inference.record.repeats import without_repeats
 from stickslip.scenarios.entries import typed_number
 
 LARGEST_FILE = 500_000_000
@@ -111,7 +112,7 @@ def _ordered(source: Any, named: NamedColumns) -> _Columns:
         cure = "points of friction without time are for `stickslip fit`" if motion else missing(table.header, "time")
         raise InputError(f"{at_header}: no column 'time'; {cure}{_there(passed)}")
     notes = list(table.notes)
-    columns = _in_order(dict(table.columns), table.place, notes)
+    columns = without_repeats(_in_order(dict(table.columns), table.place, notes), notes)
     return _Columns(columns, table.place, at_header, tuple(table.header), passed, notes, table.doubts)
 
 
