@@ -139,7 +139,11 @@ SLAB = ss.Problem(ss.ElasticSlab(2700.0, 3000.0, 3000.0, 50e6), ss.friction.Coul
         (SLAB, {"observe": "drive_rate"}, r"drive_rate in rad, where slip of a contact of ElasticSlab is in m"),
         (TRUE, {"parts": "rests"}, r"parts='rests' begins each run with the load at the contact, which a sensor at the drive does"),
         (TRUE, {"sensor": "top"}, r"infer: sensor 'top' is unknown; allowed: contact, drive, spring"),
-        (TRUE, {"sensor": "spring"}, r"infer: sensor 'spring' is the load cell .* of a block, which a string has not: 'drive'\?"),
+        (
+            TRUE,
+            {"sensor": "spring"},
+            r"infer: sensor 'spring' is the load cell .* of a block: a string has none; sensor 'drive' is one at its driver",
+        ),
         (TRUE, {"observe": "torque"}, r"infer: observe: the record has no 'torque'; did you mean 'surface_torque'"),
     ],
 )

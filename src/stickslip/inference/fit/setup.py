@@ -55,7 +55,8 @@ def parts_of(
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
         noun = problem.body.noun
-        raise InputError(f"infer: sensor 'spring' is the load cell behind the spring of a block, which a {noun} has not: 'drive'?")
+        own = f"a {noun} has none; sensor 'drive' is one at its driver"
+        raise InputError(f"infer: sensor 'spring' is the load cell behind the spring of a block: {own}")
     if problem.driver_changes:
         raise InputError("infer: a driver that changes is not fitted: leave driver_reflection out")
     if problem.ground is not None or problem.one_way:
