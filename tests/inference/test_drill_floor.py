@@ -147,6 +147,7 @@ SLAB = ss.Problem(ss.ElasticSlab(2700.0, 3000.0, 3000.0, 50e6), ss.friction.Coul
         (SLAB, {}, r"the loads of a slab are in Pa, and surface_torque in N m"),
         (SLAB, {"observe": "drive_rate"}, r"drive_rate in rad, where slip of a contact of ElasticSlab is in m"),
         (TRUE, {"parts": "rests"}, r"parts='rests' begins each run with the load at the contact, which a sensor at the drive does"),
+        (TRUE, {"by": "features"}, r"features are those of slip events, and waves from many of them are in the torque at a drive"),
         (TRUE, {"sensor": "top"}, r"infer: sensor 'top' is unknown; allowed: contact, drive, spring"),
         (
             TRUE,

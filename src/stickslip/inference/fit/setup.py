@@ -228,7 +228,7 @@ def at_rests(part: Part) -> list[Part]:
         raise InputError(f"{record.name}: parts='rests' needs shear, whose drops are the slip events")
     if part.is_away:
         why = "begins each run with the load at the contact, which a sensor at the drive does not measure"
-        raise InputError(f"{record.name}: parts='rests' {why}: fit the samples, or by='features'")
+        raise InputError(f"{record.name}: parts='rests' {why}: fit the samples as one part")
     arrests = arrests_in(record.measured[name])
     if not len(arrests):
         raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
