@@ -71,6 +71,15 @@ def test_columns_of_a_drill_floor_that_no_fit_needs_are_named_by_what_they_are()
     assert read.normal == pytest.approx(np.full(TIME.size, 97e3), rel=1e-12)
 
 
+@pytest.mark.parametrize("speed", ["rpm", "RPM", "rev/min"])
+def test_units_in_a_row_below_the_mnemonics_are_read(speed: str, tmp_path: Path) -> None:
+    rows = [f"{t:.7g},{torque:.9g},{turn:.9g}" for t, torque, turn in zip(TIME, LOG["STOR (kft.lbf)"], LOG["RPM"], strict=True)]
+    (tmp_path / "floor.csv").write_text("\n".join(["TIME,STOR,RPM", f"s,kft.lbf,{speed}", *rows]))
+    read = Record.read(tmp_path / "floor.csv")
+    assert read.measured["surface_torque"] == pytest.approx(LOG["STOR (kft.lbf)"] * KFT_LBF, rel=1e-8)
+    assert read.load_rate == pytest.approx(LOG["RPM"] * RPM, rel=1e-8)
+
+
 def within(found: Any, name: str, true: float, widest: float) -> None:
     """Assert that a number is found to within four of its standard errors, which are small."""
     row = found.table.loc[name]
@@ -138,8 +147,13 @@ SLAB = ss.Problem(ss.ElasticSlab(2700.0, 3000.0, 3000.0, 50e6), ss.friction.Coul
         (SLAB, {}, r"the loads of a slab are in Pa, and surface_torque in N m"),
         (SLAB, {"observe": "drive_rate"}, r"drive_rate in rad, where slip of a contact of ElasticSlab is in m"),
         (TRUE, {"parts": "rests"}, r"parts='rests' begins each run with the load at the contact, which a sensor at the drive does"),
+        (TRUE, {"by": "features"}, r"features are those of slip events, and waves from many of them are in the torque at a drive"),
         (TRUE, {"sensor": "top"}, r"infer: sensor 'top' is unknown; allowed: contact, drive, spring"),
-        (TRUE, {"sensor": "spring"}, r"infer: sensor 'spring' is the load cell .* of a block, which a string has not: 'drive'\?"),
+        (
+            TRUE,
+            {"sensor": "spring"},
+            r"infer: sensor 'spring' is the load cell .* of a block: a string has none; sensor 'drive' is one at its driver",
+        ),
         (TRUE, {"observe": "torque"}, r"infer: observe: the record has no 'torque'; did you mean 'surface_torque'"),
     ],
 )

@@ -49,8 +49,8 @@ def explore(
         problem three round trips of the waves in a slab, or three periods of a block.
     record : str, Path, DataFrame, mapping or Record, optional
         A laboratory record that is drawn behind the runs, as `studies.infer` reads it: the page says how far each run is from it.
-    sensor : {"contact", "spring"}
-        Where the shear of the record was measured: at the contact, or by a load cell behind the spring of a block.
+    sensor : {"contact", "spring", "drive"}
+        Where the shear of the record was measured: at the contact, by a load cell behind the spring of a block, or at the driver.
 
     Returns
     -------

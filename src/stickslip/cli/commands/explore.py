@@ -38,7 +38,7 @@ def explore(
     begin: Annotated[str | None, option("Take the record from this time on, as `infer` did.", "--from", panel=BEHIND)] = None,
     end: Annotated[str | None, option("Take the record up to this time.", "--to", panel=BEHIND)] = None,
     sensor: Annotated[
-        str, typer.Option(help="Where shear was measured: contact, or spring (load cell of a block).", rich_help_panel=BEHIND)
+        str, typer.Option(help="Where shear was measured: contact, spring (load cell of a block) or drive.", rich_help_panel=BEHIND)
     ] = "contact",
     column: Columns = None,
     port: Annotated[int | None, option(PORT, min=0, max=65535, metavar="<int>", panel=SERVER)] = None,

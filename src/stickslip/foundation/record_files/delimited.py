@@ -137,11 +137,12 @@ def _are_units(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, F
     """Return True if a row below the headings holds the units of the chosen columns, and contradicts none of the headings."""
     cells = {name: _bare(row[one.place]) if one.place < len(row) else "" for name, one in chosen.items()}
     try:
-        for name, cell in cells.items():
-            factor_of(cell, name, "")
+        factors = {name: factor_of(cell, name, "") for name, cell in cells.items()}
     except InputError:
         return False
-    agrees = all(one.unit is None or cells[name] in header[one.place] for name, one in chosen.items())
+    agrees = all(
+        one.unit is None or cells[name] in header[one.place] or factors[name] == one.factor for name, one in chosen.items()
+    )
     return agrees and any(cell.casefold() not in PURE for cell in cells.values())
 
 

@@ -117,6 +117,9 @@ def by_features(parts: Sequence[Part], observe: Sequence[str] | str | None) -> t
     wanted = [one.strip() for one in observe.split(",")] if isinstance(observe, str) else observe
     found, notes = list[Part](), list[str]()
     for part in parts:
+        if part.is_away:
+            why = "are those of slip events, and waves from many of them are in the torque at a drive at once"
+            raise InputError(f"{part.record.name}: features {why}: fit the samples")
         record, said = events_of(part)
         names = _chosen(wanted, record)
         if len(record) < len(names) + SPARE:

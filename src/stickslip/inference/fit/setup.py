@@ -56,7 +56,8 @@ def parts_of(
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
         noun = problem.body.noun
-        raise InputError(f"infer: sensor 'spring' is the load cell behind the spring of a block, which a {noun} has not: 'drive'?")
+        own = f"a {noun} has none; sensor 'drive' is one at its driver"
+        raise InputError(f"infer: sensor 'spring' is the load cell behind the spring of a block: {own}")
     if problem.driver_changes:
         raise InputError("infer: a driver that changes is not fitted: leave driver_reflection out")
     if problem.ground is not None or problem.one_way:
@@ -231,7 +232,7 @@ def at_rests(part: Part) -> list[Part]:
         raise InputError(f"{record.name}: parts='rests' needs shear, whose drops are the slip events")
     if part.is_away:
         why = "begins each run with the load at the contact, which a sensor at the drive does not measure"
-        raise InputError(f"{record.name}: parts='rests' {why}: fit the samples, or by='features'")
+        raise InputError(f"{record.name}: parts='rests' {why}: fit the samples as one part")
     arrests = arrests_in(record.measured[name])
     if not len(arrests):
         raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
