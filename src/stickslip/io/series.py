@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import example, has_unit
+from stickslip.foundation.headings import example, has_unit, is_of_scec
 from stickslip.foundation.text_columns import read_file
 from stickslip.schemes.contract import Series
 
@@ -42,7 +42,8 @@ def read_series(path: str | Path, *, cells: int = 0) -> Series:
         for row in np.flatnonzero(~np.isfinite(values))[:1]:
             raise InputError(f"{table.at(int(row))}: {name} is not a finite number")
         columns[name] = values
-    if any(heading.strip().casefold() in IN_MPA and not has_unit(heading) for heading in table.header):
+    spelled = any(heading.strip().casefold() in IN_MPA and not has_unit(heading) for heading in table.header)
+    if spelled and not is_of_scec(table.header):  # else its unit is known already
         columns["shear_stress"] = 1e6 * columns["shear_stress"]
     last = np.append(np.diff(columns["time"]) != 0.0, True)
     time, slip, rate, traction = (values[last] for values in columns.values())
