@@ -65,7 +65,7 @@ def test_cycles_of_a_block_are_all_alike_and_known(direction: int) -> None:
     run = ss.simulate(problem, 4.5 * cycle.slip / pull, rtol=1e-13)
     events = run.catalogue(0.0)
     assert len(events) == 5
-    assert events.slip.to_numpy() == pytest.approx(np.full(5, cycle.slip), rel=1e-11, abs=0.0)
+    assert events.slip.to_numpy() == pytest.approx(np.full(5, direction * cycle.slip), rel=1e-11, abs=0.0)
     assert (events.end - events.start).to_numpy() == pytest.approx(np.full(5, cycle.duration), rel=1e-10, abs=0.0)
     assert np.diff(events.start) == pytest.approx(np.full(4, cycle.slip / pull), rel=1e-11, abs=0.0)
     assert float(run.slip(run.duration)) == pytest.approx(direction * 5 * cycle.slip, rel=1e-11, abs=0.0)

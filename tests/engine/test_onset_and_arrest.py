@@ -39,7 +39,7 @@ class Known:
         problem, far = self.problem, self.problem.far_stress
         opposite = None if far is None else replace(far, values=tuple(-value for value in far.values))
         turned = replace(problem, pull_rate=-problem.pull_rate, initial_load=-problem.initial_load, far_stress=opposite)
-        return replace(self, problem=turned, before=-self.before, after=-self.after)
+        return replace(self, problem=turned, slip=-self.slip, before=-self.before, after=-self.after)
 
 
 def known_block(static: float = 0.6, dynamic: float = 0.5, wait: float = 0.5, pull: float = 0.01, count: int = 4) -> Known:

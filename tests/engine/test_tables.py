@@ -123,7 +123,7 @@ def slip_of(history: History, event: PlainEvent) -> float:
     for n, low, high in event.stretches:
         pace = Polynomial([history.store.speed[n], 2.0 * history.store.bend[n]])
         total += float((Polynomial(history.store.rate[n]) * pace).integ(lbnd=low)(high))
-    return abs(total)
+    return total
 
 
 def plain_pulses(event: PlainEvent) -> int:

@@ -72,7 +72,7 @@ def test_under_a_law_of_slip_a_thrown_block_stops_where_its_energy_is_spent(name
         work = quad(lambda u: float(law.coefficient(u)), 0.0, slip, epsabs=1e-13, points=[min(0.1, slip), min(0.3, slip)])[0]
         return 0.5 * BLOCK.mass * rate**2 + load * slip - 0.5 * BLOCK.stiffness * slip**2 - BLOCK.normal_load * float(work)
 
-    assert run.events.slip[0] == pytest.approx(brentq(left, 1e-6, 5.0, xtol=1e-14), rel=1e-9)
+    assert run.events.slip[0] == pytest.approx(way * brentq(left, 1e-6, 5.0, xtol=1e-14), rel=1e-9)
 
 
 @BOTH_WAYS

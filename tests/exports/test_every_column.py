@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
@@ -256,3 +257,16 @@ def test_friction_is_drawn_over_the_normal_load_of_its_moment() -> None:
     axes = run.plot.friction(start=float(run.events.start[0]) + 1e-6, end=slides).axes[0]  # type: ignore[union-attr]
     line = next(one for one in axes.get_lines() if len(one.get_xdata()) > 100)
     assert np.asarray(line.get_ydata(), float) == pytest.approx(0.4, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["slab", "block"])
+def test_the_text_of_the_scec_is_read_back_in_its_unit(kind: str, tmp_path: Path) -> None:
+    """As a record, too: its heading "shear-stress" has no unit, which is MPa by the layout."""
+    run = run_of(kind)
+    shear = "shear_stress" if kind == "slab" else "shear_force"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        table = read_file(run.to_scec(tmp_path / "a.txt", 10.0), ("time", "slip", "slip_rate", shear), (10**6, 1000), raw=True)
+    time = table.columns["time"]
+    np.testing.assert_allclose(table.columns[shear], run.traction(time), rtol=1e-11)
+    np.testing.assert_allclose(table.columns["slip_rate"], run.slip_rate(time), rtol=1e-11)

@@ -131,6 +131,8 @@ TURNED: Mapping[str, str] = {
     **{"pull_rate": "rotation_rate", "far_stress": "torque"},
 }
 """Columns of a contact that slides, with those that take their place where it turns; both have the same headings."""
+OF_SCEC = {"t": "s", "slip": "m", "slip-rate": "m/s", "shear-stress": "MPa"}
+"""Units of columns that have none in their headings where the headings are those of the SCEC benchmarks."""
 MOST_COLUMNS = 1000
 """Largest number of columns of a table."""
 LONGEST = 120
@@ -159,6 +161,9 @@ def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, 
     if len(header) > MOST_COLUMNS:
         raise InputError(f"{place}: more than {MOST_COLUMNS} columns: not a table of numbers")
     cells = [_understood(cell, tuple(wanted)) for cell in header]
+    if is_of_scec(header):
+        units = [OF_SCEC.get(cell.strip().removeprefix("h-")) for cell in header]
+        cells = [one and (*one[:2], unit or one[2]) for one, unit in zip(cells, units, strict=True)]
     found = {}
     for column in wanted:
         at = [i for i, one in enumerate(cells) if one is not None and one[0] == column]
@@ -172,6 +177,12 @@ def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, 
             unit = cells[at[0]][2]  # type: ignore[index]
             found[column] = FoundColumn(at[0], factor_of(unit, column, f"{place}, column {at[0] + 1}"), unit)
     return {column: found[column] for column in wanted if column in found}
+
+
+def is_of_scec(header: Sequence[str]) -> bool:
+    """Return True if a header has time, slip rate and stress as the SCEC benchmarks spell them, whose stress is in MPa."""
+    names = {cell.strip().removeprefix("h-") for cell in header}
+    return {"t", "slip-rate", "shear-stress"} <= names
 
 
 def count_named(cells: Sequence[str], wanted: Sequence[str]) -> int:

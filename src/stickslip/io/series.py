@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import example, has_unit
+from stickslip.foundation.headings import example, has_unit, is_of_scec
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.text_columns import read_file
 from stickslip.schemes.contract import Series
@@ -45,9 +45,9 @@ def read_series(path: str | Path, *, cells: int = 0, columns: Mapping[str, str |
         for row in np.flatnonzero(~np.isfinite(values))[:1]:
             raise InputError(f"{table.at(int(row))}: {name} is not a finite number")
         found[name] = values
-    if in_mpa:
+    if in_mpa and not is_of_scec(table.header):  # else its unit is known already
         found["shear_stress"] = 1e6 * found["shear_stress"]
-    else:  # the benchmarks say in which units their columns are
+    if not in_mpa:  # the benchmarks say in which units their columns are
         table.warned()
     last = np.append(np.diff(found["time"]) != 0.0, True)
     time, slip, rate, traction = (values[last] for values in found.values())

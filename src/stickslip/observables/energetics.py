@@ -13,7 +13,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from stickslip.bodies import OfLayers, as_waves
 from stickslip.foundation.arrays import Floats
@@ -42,8 +41,8 @@ ENERGETICS_COLUMNS = {
     "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
     "static_drop": EVENT_COLUMNS["static_drop"].about,
-    "dynamic_drop": ("load", "traction_before less the smallest traction while it slips; negative if it slips back"),
-    "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
+    "dynamic_drop": ("load", "traction_before less the smallest traction while it slips, both against the slip"),
+    "overshoot": ("1", "size of static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / size of slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
@@ -72,7 +71,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     columns["fracture"] = np.asarray(np.bincount(pulses.event, pulses.fracture(history), len(begin.piece)), float)
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     before, smallest = extreme_tractions(history, events, pulses)
-    columns["dynamic_drop"] = direction(columns["slip"]) * (before - smallest) + 0.0  # no -0.0
+    columns["dynamic_drop"] = before - smallest
     table = pd.DataFrame(columns | _ratios(history, columns))
     return table[list(ENERGETICS_COLUMNS)]
 
@@ -115,11 +114,6 @@ def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, F
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
-def direction(slip: ArrayLike) -> Floats:
-    """Return -1 for slip back, otherwise 1."""
-    return np.asarray(np.where(np.asarray(slip) < 0.0, -1.0, 1.0), float)
-
-
 def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> tuple[Floats, Floats]:
     """Return two tractions against the slip of each event (Pa, block: N): before it, and the smallest of its pulses."""
     smallest = np.full(len(events.pulses), np.inf)
@@ -128,11 +122,11 @@ def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> t
 
 
 def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:
-    drop, rounding = direction(columns["slip"]) * columns["dynamic_drop"], DROP_ROUNDING * history.problem.normal
+    drop, rounding = columns["dynamic_drop"], DROP_ROUNDING * history.problem.normal
     with np.errstate(invalid="ignore", divide="ignore"):
         waves = columns["waves"]
         return {
-            "overshoot": np.where(drop > rounding, columns["static_drop"] / columns["dynamic_drop"] - 1.0, np.nan),
+            "overshoot": np.where(drop > rounding, np.abs(columns["static_drop"]) / drop - 1.0, np.nan),
             "apparent_stress": waves / np.abs(columns["slip"]),
             "efficiency": waves / (waves + columns["heat"]),
             "radiation_efficiency": waves / (waves + columns["fracture"]),

@@ -17,7 +17,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.io.netcdf import read_solution
-from stickslip.observables.energetics import direction, extreme_tractions
+from stickslip.observables.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
@@ -43,7 +43,10 @@ COLUMNS = {
     "slip": ("slip", "slip of the largest event, negative if it slips back"),
     "peak_rate": ("slip_rate", "largest slip rate of the run"),
     "static_drop": ("load", "stiffness of the body times the slip of the largest event"),
-    "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one in slip; negative if it slips back"),
+    "dynamic_drop": (
+        "load",
+        "traction at rest before the largest event minus the smallest one while it slips, both against the slip",
+    ),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate; it is smooth if there are none"),
     "load_unit": ("", "unit of the drops, which is that of the loads"),
@@ -280,7 +283,7 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "pulses": int(largest.pulses),
         "slip": largest.slip,
         "static_drop": largest.static_drop,
-        "dynamic_drop": float(direction(largest.slip)) * (before[n] - smallest[n]),
+        "dynamic_drop": before[n] - smallest[n],
         "duration": events.duration.iloc[0],
         **({"wait": events.recurrence[1] - events.duration[0], "next_slip": events.slip[1]} if len(events) > 1 else {}),
     }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -96,10 +95,6 @@ class Ensemble(RunsCompared):
         of the time from the undisturbed event to the nearer of its two neighbours.
         """
         return self._shared[0]
-
-    def _about(self) -> Iterable[str]:
-        """Return the units of the columns of the table, for its file."""
-        return (f"start and recurrence in s, slip in {self.problem.unit_of('slip')}, negative if it is back; {self.text}",)
 
     @property
     def has(self) -> NDArray[np.bool_]:
