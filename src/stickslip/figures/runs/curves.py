@@ -238,7 +238,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
     """Draw the friction coefficient, against time beside the load over the normal load, or against slip or slip rate."""
     normal, slip = readings.problem.normal, readings.curves[0]
     time, (load, traction) = readings.curves_together(("load", "traction"), *span)
-    if against != "time":
+    if against != "time" and readings.problem.friction.sticks:
         time, (load, traction) = _with_events(readings, span, time, (load, traction))
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
     traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
