@@ -195,3 +195,19 @@ def test_numbers_of_a_fit_are_shown_in_the_unit_of_their_kind() -> None:
     assert thickness.unit == "m", "a thickness of 0.01 inch is not read in feet"
     assert (distance.low, distance.high, distance.start) == pytest.approx([2.5e-4 / 0.0254, 2.6e-4 / 0.0254, 1e-4 / 0.0254])
     assert in_shown_unit("friction.distance", row) is row
+
+
+def test_a_record_of_the_ground_in_g_is_shown_in_g(tmp_path: Path) -> None:
+    rows = [f"{0.01 * k:.2f},{0.3 * np.sin(0.3 * k):.4f}" for k in range(200)]
+    (tmp_path / "quake.csv").write_text("\n".join(["time (s),acceleration (g)", *rows]))
+    text = ss.load_scenario("sliding-block-shaken").source
+    table = text[text.index("[loading.ground_acceleration]") : text.index("[initial]")]
+    shaken = '[loading.ground_acceleration]\nkind = "piecewise-linear"\nfile = "quake.csv"\n\n'
+    (tmp_path / "mine.toml").write_text(text.replace(table, shaken))
+    scenario = ss.load_scenario(tmp_path / "mine.toml")
+    assert units_given(scenario.problem)["m/s^2"] == ("g", 9.80665)
+    again = read_scenario(scenario.to_toml(), "again")
+    assert again.problem == scenario.problem
+    assert units_given(again.problem) == units_given(scenario.problem)
+    values = scenario.problem.ground_acceleration.values
+    assert values == pytest.approx([9.80665 * float(row.split(",")[1]) for row in rows], rel=1e-12)

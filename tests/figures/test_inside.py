@@ -241,3 +241,12 @@ def test_times_outside_the_run_are_refused(run: ss.Solution, start: float | None
     for draw in (inside.space_time_data, animation.data):
         with pytest.raises(ss.InputError, match=text):
             draw(run, start, end)
+
+
+def test_characteristics_that_would_cover_the_image_are_left_out(run: ss.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
+    dataset = inside.space_time_data(run)
+    crossings = int(np.isfinite(dataset.front_time.values[:, 1:]).sum())
+    for most, shown in ((crossings, True), (crossings - 1, False)):
+        monkeypatch.setattr(inside, "MOST_CROSSINGS", most)
+        figure = inside.draw_space_time(dataset)
+        assert (bool(figure.axes[0].lines), bool(figure.legends)) == (shown, shown)

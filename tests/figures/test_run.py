@@ -297,3 +297,18 @@ def test_stresses_far_from_zero_are_not_drawn_from_zero() -> None:
 
 def test_panels_have_letters_in_their_order() -> None:
     assert [axes.get_title(loc="left") for axes in draw(run("velocity-steps-block")).axes] == ["(a)", "(b)", "(c)", "(d)", "(e)"]
+
+
+@pytest.mark.parametrize("name", ["granite-slab", "direct-shear-block"])
+def test_friction_against_slip_goes_through_each_event(name: str) -> None:
+    """In fast slip it is the dynamic coefficient all the way: a line from one event to the next would cut the corners."""
+    run = ss.simulate(name)
+    law = run.problem.friction
+    axes = run.plot.friction().axes[0]
+    slip, friction = axes.lines[0].get_xydata().T
+    for event in run.events[:-1].itertuples():
+        first, last = (run.slip(one) / size_of(axes.get_xlabel()) for one in (event.start, event.end))
+        inside = (slip > first + 0.02 * (last - first)) & (slip < last - 0.02 * (last - first))
+        assert inside.sum() >= 20
+        assert friction[inside] == pytest.approx(np.full(inside.sum(), law.dynamic), rel=1e-9)
+    assert (friction.max(), friction.min() < law.dynamic) == (pytest.approx(law.static), True)

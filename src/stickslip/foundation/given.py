@@ -7,15 +7,17 @@ or drawn meanwhile: `names.readable_unit` and `show` ask `preferred`.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
-from stickslip.foundation.units import si_factor
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.units import si_factor, to_si
 
 PLACE = "place"
 """Stands for "m" where a length is one inside a body: a thickness in feet says nothing of slip."""
@@ -65,6 +67,20 @@ def as_given(number: float, amount: float, unit: str, si: str) -> float:
     size = si_factor(unit, si)
     is_metric = size in _TENS and not (si == TORQUE or _TRADES.search(unit))
     return number if size == 1 or is_metric else Given(number, amount, unit)
+
+
+def column_given(numbers: list[float], unit: str, si: str) -> list[float]:
+    """Return the numbers (in `si`) of a column that was given in a unit; one of them remembers it, for all."""
+    with suppress(InputError):
+        size = float(si_factor(unit, si))
+        for i, number in enumerate(numbers):
+            near = number / size
+            tried = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+            same = (one for one in tried if to_si(one, unit, si) == number)
+            amount = next(same, None) if number else None
+            if amount is not None:
+                return [*numbers[:i], as_given(number, amount, unit, si), *numbers[i + 1 :]]
+    return numbers
 
 
 def display_name(unit: str, si: str) -> str:

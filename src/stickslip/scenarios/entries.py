@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.given import Given
-from stickslip.foundation.headings import missing
+from stickslip.foundation.given import Given, column_given
+from stickslip.foundation.headings import COLUMNS, find, missing
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import (
     LARGEST_SERIES,
@@ -208,7 +208,11 @@ def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedCol
     if count < 2:
         raise InputError(f"{table.at(-1)}: at least two rows of numbers are needed, got {count}")
     table.check_ascending(found[0])
-    return {columns[column]: numbers.tolist() for column, numbers in table.warned().columns.items()}
+    points = {columns[column]: numbers.tolist() for column, numbers in table.warned().columns.items()}
+    unit = find(table.header, (value,), file)[value].unit
+    if unit is not None:
+        points[columns[value]] = column_given(points[columns[value]], unit, COLUMNS[value].unit)
+    return points
 
 
 def _text(name: str, folder: Path | None) -> str:

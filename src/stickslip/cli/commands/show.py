@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 RESULT = "A file or folder of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
 QUANTITY = "Of a sweep, draw this quantity: by default the first."
 CSV = "Save as CSV: the curves of a run at 1001 times, the slip events of a catalogue, or the members of a sweep (.csv)."
-SCENARIO_ONLY = "Print the scenario of the results instead, as TOML with every value in SI."
+SCENARIO_ONLY = "Print the scenario of the results instead, as TOML, in SI or in the units that were given."
 
 
 def show(

@@ -251,7 +251,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
     slip = readings.curves[0]
     names: tuple[Curve, ...] = ("load", "traction", "normal_load")
     time, values = readings.curves_together(names, *span)
-    if against != "time":
+    if against != "time" and readings.problem.friction.sticks:
         time, values = _with_events(readings, span, time, dict(zip(names, values, strict=True)))
     load, traction, normal = values
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)

@@ -39,6 +39,8 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
     time_name, time_size = readable_unit("s", solution.times)
     place_name, place_size = readable_unit("m", solution.slab.y, of=PLACE)
     times, size = solution.times / time_size, np.abs(solution.middle_line(solution.slip_rate))
+    rate_name, rate_size = readable_unit("m/s", size, log=True)
+    size = size / rate_size
     largest = float(size.max()) or 1.0
     image = axes[0].pcolormesh(
         times,
@@ -49,7 +51,7 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
         shading="nearest",
         rasterized=True,
     )
-    figure.colorbar(image, ax=axes[0], label="slip rate (m/s)", extend="min")
+    figure.colorbar(image, ax=axes[0], label=f"slip rate ({rate_name})", extend="min")
     _mark_echoes(axes[0], solution, time_size)
     at = " at z = 0" if solution.slab.is_plane else ""
     axes[0].set_ylabel(axis_text(f"along the contact{at}", "y", place_name))
@@ -150,12 +152,14 @@ def _draw_maps(
     place_name, place_size = readable_unit("m", solution.slab.y, of=PLACE)
     edges = [0.5 * sign * size / place_size for size in solution.slab.extent for sign in (-1.0, 1.0)]
     extent = np.array(edges) - np.repeat(solution.slab.spacing, 2) / (2.0 * place_size)
-    fastest = float(np.abs(solution.slip_rate[shown]).max()) or 1.0
-    colours = (LogNorm(fastest * 10.0**-DECADES, fastest), Normalize(solution.slip[shown].min(), solution.slip[shown].max()))
+    rates, slips = np.abs(solution.slip_rate[shown]), solution.slip[shown]
+    units = readable_unit("m/s", rates, log=True), readable_unit("m", slips)
+    fields = np.abs(solution.slip_rate) / units[0][1], solution.slip / units[1][1]
+    fastest = float(rates.max()) / units[0][1] or 1.0
+    colours = (LogNorm(fastest * 10.0**-DECADES, fastest), Normalize(slips.min() / units[1][1], slips.max() / units[1][1]))
+    labels = [f"{name} ({unit})" for name, (unit, _) in zip(("slip rate", "slip"), units, strict=True)]
     drawn = []
-    for axis, field, norm, label in zip(
-        axes, (np.abs(solution.slip_rate), solution.slip), colours, ("slip rate (m/s)", "slip (m)"), strict=True
-    ):
+    for axis, field, norm, label in zip(axes, fields, colours, labels, strict=True):
         image = axis.imshow(np.zeros(solution.slab.shape).T, origin="lower", extent=tuple(extent), norm=norm, cmap="magma")
         figure.colorbar(image, ax=axis, label=label, location="bottom", extend="min" if axis is axes[0] else "neither")
         axis.set(xlabel=axis_text("along the contact", "y", place_name), facecolor=RESTS)

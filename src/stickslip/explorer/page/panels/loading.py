@@ -64,6 +64,7 @@ def plots(stage: Stage) -> dict[str, Any]:
     found = {name: stage.plot(name, "time", name, text, left=NARROW, bare=True) for name, text in TEXTS.items()}
     for name, drawn in found.items():
         source = stage.source(name, "time", name, "low", "high")
+        drawn.yaxis[0].ticker.desired_num_ticks = 3  # what shakes goes to and fro: of two ticks, zero would be one
         band = drawn.varea(x="time", y1="low", y2="high", source=source, fill_alpha=0.3)
         paint(band.glyph, fill_color="load")
         paint(drawn.line("time", name, source=source, line_width=1.6).glyph, line_color="load")
