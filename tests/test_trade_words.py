@@ -189,7 +189,7 @@ def test_a_table_and_a_kind_by_the_name_of_a_trade_are_answered_with_ours(ours: 
 
 def test_a_key_of_another_body_is_told_with_that_of_this_one() -> None:
     text = template("block").replace("normal_force =", "normal_stress =")
-    with pytest.raises(InputError, match="it is a key of elastic-slab, .*, and not of this kind; did you mean 'normal_force'?"):
+    with pytest.raises(InputError, match=r"it is a key of elastic-slab, .*, and not of this kind; did you mean 'normal_force'\?"):
         read_scenario(text, "mine.toml")
 
 
