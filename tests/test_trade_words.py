@@ -91,6 +91,10 @@ def test_a_word_whose_meaning_is_not_here_is_not_taken_for_one_that_is_spelled_a
 WORDS = [
     (["plot"], "did you mean 'run' or 'show'?"),
     (["list"], "did you mean 'new'?"),
+    (["help"], "did you mean `stickslip --help`?"),
+    (["version"], "did you mean `stickslip --version`?"),
+    (["RUN", "fig6-slab"], "did you mean 'run'?"),
+    (["find", "fig6-slab", "--what", "stuck"], "did you mean 'sticking'?"),
     (["simulate"], "did you mean 'run'?"),
     (["gui"], "did you mean 'explore'?"),
     (["calibrate"], "did you mean 'infer'?"),
@@ -169,6 +173,26 @@ KEYS = [
 ]
 
 
+TABLES_OF_TRADES = [("[run]", "[simulation]", "run"), ("[loading]", "[drive]", "loading"), ("[initial]", "[start]", "initial")]
+KINDS = [('"spring-block"', "spring-slider", "spring-block"), ('"hyperbolic-rate"', "dieterich", "rate-and-state")]
+
+
+@pytest.mark.parametrize(
+    ("ours", "typed", "wanted"), [*TABLES_OF_TRADES, *((old, f'"{new}"', wanted) for old, new, wanted in KINDS)]
+)
+def test_a_table_and_a_kind_by_the_name_of_a_trade_are_answered_with_ours(ours: str, typed: str, wanted: str) -> None:
+    text = re.sub(rf"^((kind = )?){re.escape(ours)}", rf"\g<1>{typed}", template("block"), flags=re.MULTILINE)
+    assert typed in text
+    with pytest.raises(InputError, match=f"is unknown; did you mean '{wanted}'"):
+        read_scenario(text, "mine.toml")
+
+
+def test_a_key_of_another_body_is_told_with_that_of_this_one() -> None:
+    text = template("block").replace("normal_force =", "normal_stress =")
+    with pytest.raises(InputError, match=r"it is a key of elastic-slab, .*, and not of this kind; did you mean 'normal_force'\?"):
+        read_scenario(text, "mine.toml")
+
+
 @pytest.mark.parametrize(("starter", "ours", "typed", "wanted"), KEYS)
 def test_a_key_of_a_file_by_the_name_of_a_trade_is_answered_with_ours(starter: str, ours: str, typed: str, wanted: str) -> None:
     text, found = re.subn(rf"^{ours} =", f"{typed} =", template(starter), flags=re.MULTILINE)
@@ -236,13 +260,27 @@ def every_name() -> set[str]:
     from stickslip.foundation.headings import COLUMNS
     from stickslip.foundation.names import QUANTITIES
     from stickslip.inference.fit.free import known_numbers
+    from stickslip.inference.fit.setup import SENSORS
     from stickslip.loading import HISTORIES
     from stickslip.problem.selection_rule import SELECTION_RULES
-    from stickslip.scenarios.schema import TABLES, keys_of
+    from stickslip.scenarios.schema import CONTACT, TABLES, keys_of
     from stickslip.studies.find import WHAT
     from stickslip.sweeps.design.quantities import QUANTITIES as OF_SWEEPS
 
-    registered = (BODIES, ss.friction.LAWS, HISTORIES, WHAT, OF_SWEEPS, QUANTITIES, COLUMNS, SELECTION_RULES, KEYWORDS)
+    registered = (
+        BODIES,
+        ss.friction.LAWS,
+        HISTORIES,
+        WHAT,
+        OF_SWEEPS,
+        QUANTITIES,
+        COLUMNS,
+        SELECTION_RULES,
+        KEYWORDS,
+        SENSORS,
+        TABLES,
+        (CONTACT,),
+    )
     found = {name for table in registered for name in table} | set(COMMANDS) | set(library.STARTERS) | set(library.names())
     kinds = [*BODIES.values(), *ss.friction.LAWS.values(), *HISTORIES.values()]
     found |= {key for table in TABLES for kind in kinds for key in keys_of(table, kind)}

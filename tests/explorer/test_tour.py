@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -223,3 +224,17 @@ def test_the_rate_after_the_jump_is_a_straight_line_in_normal_stress() -> None:
     rate, jumps = strip.results["peak_rate"], strip.values > 19.6e6
     np.testing.assert_allclose(rate[jumps], strip.values[jumps] * 0.5 / 9.8e6 - 1.0, rtol=1e-7)
     assert np.isnan(rate[~jumps]).all()
+
+
+def test_the_lesson_asks_the_question_of_each_step_within_its_time() -> None:
+    """The answers on that page are run with the page itself."""
+    page = (Path(__file__).parents[2] / "docs" / "explorer-lesson.md").read_text(encoding="utf-8")
+    plan = re.findall(r"^\| (\d+) \| (.+?) \| (.+) \|$", page, re.MULTILINE)
+    minutes = [int(minute) for minute, _, _ in plan]
+    assert minutes == sorted(set(minutes))
+    assert (minutes[0], max(minutes) < 45) == (0, True)
+    for number, step in enumerate(TOUR, start=1):
+        ((_, what, asked),) = [row for row in plan if f"tep {number}:" in row[1]]
+        assert step.title.lower() in what
+        assert re.split(r"(?<=[.?]) ", step.question)[-1] in asked
+        assert f"### Step {number}: " in page

@@ -16,6 +16,8 @@ _KINDS = {"int": "a whole number", "float": "a number"}
 """What a value must be, by the type of its parameter."""
 MOST_OWNERS = 5
 """Largest number of commands that are named as having an option."""
+OF_ALL = ("help", "version")
+"""Options of `stickslip` itself that are typed like commands."""
 READERS = {
     ".toml": ("a scenario", "`stickslip run {0}` or `stickslip check {0}`"),
     ".nc": ("a file of results", "`stickslip show {0}`"),
@@ -33,6 +35,8 @@ def unknown_command(name: str, commands: Collection[str]) -> str:
     from stickslip.scenarios import library
 
     shown = name if name.isprintable() else ascii(name)
+    if name.casefold() in OF_ALL:
+        return f"there is no command '{shown}'; did you mean `stickslip --{name.casefold()}`?"
     kind = READERS.get(".toml" if name in library.names() else Path(name).suffix.lower(), OF_DATA if is_data(name) else None)
     if kind is not None:
         return f"'{shown}' is {kind[0]}, not a command: did you mean {kind[1].format(shown)}?"

@@ -16,12 +16,13 @@ from stickslip.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.bodies.turning import WEIGHT_ON_BIT
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
-from stickslip.foundation.errors import InputError, nearest, some_of
+from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
 from stickslip.foundation.headings import TURNED
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
+from stickslip.foundation.synonyms import same
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES, VARYING, LoadingHistory
@@ -311,7 +312,7 @@ def _read_keys(keys: Mapping[str, Key], raw: Mapping[str, Any], source: Source, 
     for name, value in raw.items():
         if name not in keys:
             place = f"[{table}] {_named(name)}" if table else f"[{_named(name)}]" if isinstance(value, dict) else _named(name)
-            raise InputError(f"{source.file}: {place} is unknown; {_belongs(name, table) or nearest(name, keys, listed=EXPLAINED)}")
+            raise InputError(f"{source.file}: {place} is unknown; {_hint(name, table, keys)}")
     found = {name: key.read(raw[name], DocumentPlace(source, table, name)) for name, key in keys.items() if name in raw}
     for name, key in keys.items():
         if found.setdefault(name, key.default) is MISSING:
@@ -324,6 +325,15 @@ def _named(name: str) -> str:
     """Return a key as it is shown: a short word as it is, anything else in quotes."""
     is_word = name.replace("_", "").replace("-", "").isalnum() and name.isascii() and len(name) <= 40
     return name if is_word else shown(name)
+
+
+def _hint(name: str, table: str, keys: Mapping[str, Key]) -> str:
+    """Return where an unknown key belongs, and which key of this table may be meant."""
+    belongs = _belongs(name, table)
+    if belongs:
+        close = same(name, keys)
+        return f"{belongs}; {did_you_mean(close)}" if close else belongs
+    return nearest(name, keys, listed=EXPLAINED)
 
 
 def _belongs(name: str, table: str) -> str:

@@ -170,7 +170,7 @@ def find(
     (True, False)
     """
     if isinstance(what, str) and what not in WHAT:
-        raise InputError(f"find: what: {ascii(what)[:60]} is unknown; {nearest(what, WHAT)}, or a function of a solution")
+        raise InputError(f"find: what: {ascii(what)[:60]} is unknown; {nearest(what, WHAT)} (or a function of a solution)")
     if not 0.0 < within < 1.0:
         raise InputError(f"find: within must lie between 0 and 1, got {within!r}")
     found = read_source("find", problem)
