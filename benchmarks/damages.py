@@ -15,6 +15,8 @@ from stickslip.sweeps.results.layout import FORMAT
 
 BLOCK = 512
 """Number of bytes that are overwritten or exchanged."""
+RECORDS = ("lvm", "las", "uff", "txt")
+"""Suffixes of records in formats of text."""
 ODD = (None, -1, 0, 10**30, 1e300, float("nan"), True, "", "x", "a\n\x1b[31m", [], {}, [[]], {"a": 1}, "[" * 20_000)
 """Values that are put into metadata."""
 
@@ -28,6 +30,9 @@ def copied(kind: str, whole: Path, folder: Path) -> list[Path]:
         for path in (whole / kind).iterdir():
             shutil.copy(path, folder / path.name)
         return sorted(folder.iterdir())
+    if kind in RECORDS:
+        shutil.copy(whole / f"record.{kind}", folder / f"record.{kind}")
+        return [folder / f"record.{kind}"]
     shutil.copy(whole / "run.nc", folder / "run.nc")
     return [folder / "run.nc"]
 

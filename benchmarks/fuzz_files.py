@@ -2,10 +2,11 @@
 
     python -m benchmarks.fuzz_files --checkpoints 5000 --results 2000 --catalogues 1000 --stores 1000 --seed 1
     python -m benchmarks.fuzz_files --edited 1000 --metadata 1000     # contents changed by hand, with checksums that fit
+    python -m benchmarks.fuzz_files --records 6000                    # files of LabVIEW, LAS and universal files, and CSV
 
 A damaged file must be refused in one line (`refused`) or give what it gave before (`same`). A silent change, a crash, a hang, a
 traceback or a change of somebody else's file beside it is a failure, and the exit code is 1. Of an edited file, and of edited
-metadata of a store, the checksums fit, so that another result is no failure (`other`).
+metadata of a store, the checksums fit, and a record has none, so that another result is no failure (`other`).
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 import numpy as np
+from tests.inference.files_of_programs import CLOCK, FORCE, RAM, labview, log_ascii, universal
 
 import stickslip as ss
-from benchmarks.damages import copied, damage, edit, edit_metadata
+from benchmarks.damages import RECORDS, copied, damage, edit, edit_metadata
 from stickslip.cli.commands.show import StoredSweep, stored
 from stickslip.sweeps.results.store import open_store
 
@@ -46,6 +48,14 @@ def prepare(folder: Path) -> None:
         (folder / suffix).mkdir()
         ss.catalogue(problem, 20 * ss.YEAR, folder / suffix / f"events.{suffix}")
     sweep(folder / "map.zarr")
+
+
+def write_records(folder: Path) -> None:
+    """Write a record in each format of text."""
+    for kind, text in {"lvm": labview(special=True), "las": log_ascii(wrap=True), "uff": universal(code=5)}.items():
+        (folder / f"record.{kind}").write_text(text)
+    rows = "".join(f"{t:.3f},{f:.6f},{x:.6f}\n" for t, f, x in zip(CLOCK, FORCE, RAM, strict=True))
+    (folder / "record.txt").write_text(f"rig 2\ntime (s),shear force (kN),LPD (mm)\n{rows}")
 
 
 def sweep(path: Path) -> object:
@@ -99,6 +109,14 @@ def read_metadata(folder: Path) -> str:
     return digest({str(name): variable.values.tolist() for name, variable in found.dataset.variables.items()}, found.about)
 
 
+def read_record(folder: Path) -> str:
+    """Read the record."""
+    (path,) = folder.glob("record.*")
+    record = ss.studies.Record.read(path)
+    columns = {**record.measured, "load_point": record.load_point}
+    return digest(record.time.tobytes(), {name: None if one is None else one.tobytes() for name, one in columns.items()})
+
+
 READERS: dict[str, Callable[[Path], str]] = {
     "checkpoint": read_checkpoint,
     "result": read_result,
@@ -107,6 +125,7 @@ READERS: dict[str, Callable[[Path], str]] = {
     "store": read_store,
     "edited": read_checkpoint,
     "metadata": read_metadata,
+    **dict.fromkeys(RECORDS, read_record),
 }
 
 
@@ -147,7 +166,7 @@ def of_reading(kind: str, folder: Path, wanted: str) -> tuple[str, str]:
         return "traceback", "\n" + traceback.format_exc()
     if found == wanted:
         return "same", ""
-    return ("other" if kind in ("edited", "metadata") else "silent change"), ""
+    return ("other" if kind in ("edited", "metadata", *RECORDS) else "silent change"), ""
 
 
 def work(pipe: Connection, whole: Path, wanted: dict[str, str]) -> None:
@@ -199,16 +218,19 @@ def say(line: str) -> None:
 def main() -> int:
     """Run the cases, and print a table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("checkpoints", "results", "catalogues", "stores", "edited", "metadata"):
+    for name in ("checkpoints", "results", "catalogues", "stores", "edited", "metadata", "records"):
         parser.add_argument(f"--{name}", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     half = options.catalogues // 2
     counts = {"checkpoint": options.checkpoints, "result": options.results, "csv": half, "nc": options.catalogues - half}
     counts |= {"store": options.stores, "edited": options.edited, "metadata": options.metadata}
+    counts |= dict.fromkeys(RECORDS, options.records // len(RECORDS))
     with tempfile.TemporaryDirectory() as name:
         whole = Path(name)
-        prepare(whole)
+        write_records(whole)
+        if any(count for kind, count in counts.items() if kind not in RECORDS):
+            prepare(whole)
         worker = Worker(whole, {kind: undamaged(kind, whole) for kind, count in counts.items() if count})
         counted = {kind: outcomes(worker, kind, count, options.seed) for kind, count in counts.items() if count}
         worker.pipe.send(None)

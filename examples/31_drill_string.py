@@ -22,7 +22,7 @@ problem = ss.load_scenario("drill-string").problem
 # %%
 # The bit is followed for 150 s from rest. Drillers call half the range of its speed over its mean the severity: 0 in steady
 # turning, and about 1 or more in full stick-slip, where the bit stops again and again. A sweep takes it from the last third of a
-# run.
+# run. Its own figure, `ss.figures.plot_sweep(map, "severity")`, has a line at 1, too.
 
 
 weights = np.linspace(40e3, 110e3, 8)
@@ -43,6 +43,8 @@ for weight in weights:
 
 figure, axes = pyplot.subplots(figsize=(6.4, 4.0), layout="constrained")
 shades = axes.pcolormesh(speeds / RPM, weights / 1e3, severities, cmap="viridis", vmin=0.0)
+axes.contour(speeds / RPM, weights / 1e3, severities, levels=[1.0], colors="tab:orange")
+axes.plot([], [], color="tab:orange", label="severity 1")
 axes.plot(np.array(edges) / RPM, weights / 1e3, color="w", label="from rest it sticks up to here")
 axes.plot(np.array(turning) / RPM, weights / 1e3, color="w", ls="--", label="turning goes on from here")
 figure.colorbar(shades, label="severity of stick-slip (1)")

@@ -20,7 +20,8 @@ import stickslip as ss
 from stickslip.cli.commands.show import stored
 from stickslip.engine.state.layout import NEVER, Counts, State
 from stickslip.foundation import atomic_write, netcdf_file
-from stickslip.foundation.atomic_write import DRAFT, STALE, held, write_atomically
+from stickslip.foundation.atomic_write import DRAFT, STALE, write_atomically
+from stickslip.foundation.locks import held
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.trajectory.status import Checkpoint
 

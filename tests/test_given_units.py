@@ -9,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pint
 import pytest
 
@@ -21,6 +22,7 @@ from stickslip.foundation.given import PLACE, Given, preferred, shown_in
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.show import brief, exactly, with_unit
 from stickslip.foundation.units import si_factor
+from stickslip.inference.inference import in_shown_unit
 from stickslip.problem.given_units import units_given
 from stickslip.scenarios.scenario import Scenario, read_scenario
 
@@ -182,3 +184,14 @@ def test_a_varied_number_is_shown_as_it_was_typed() -> None:
     axes = sweep.plot_sweep(found).axes[0]
     assert axes.get_xlabel() == "pull rate $V$ of the driver (rpm)"
     assert axes.lines[0].get_xdata() == pytest.approx([60.0, 90.0, 120.0, 150.0], rel=1e-12)
+
+
+def test_numbers_of_a_fit_are_shown_in_the_unit_of_their_kind() -> None:
+    numbers = {"value": 2.54e-4, "uncertainty": 2.54e-6, "low": 2.5e-4, "high": 2.6e-4, "start": 1e-4}
+    row = pd.Series(numbers | {"unit": "m", "source": "curvature"})
+    with shown_in({"m": ("inch", 0.0254), PLACE: ("ft", 0.3048)}):
+        distance, thickness = (in_shown_unit(name, row) for name in ("friction.distance", "body.thickness"))
+    assert (distance.value, distance.uncertainty, distance.unit) == (pytest.approx(0.01), pytest.approx(1e-4), "inch")
+    assert thickness.unit == "m", "a thickness of 0.01 inch is not read in feet"
+    assert (distance.low, distance.high, distance.start) == pytest.approx([2.5e-4 / 0.0254, 2.6e-4 / 0.0254, 1e-4 / 0.0254])
+    assert in_shown_unit("friction.distance", row) is row

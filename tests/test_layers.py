@@ -40,7 +40,8 @@ ROOMS = {
     "foundation": (
         ("synonyms",),
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "lazy_names", "marks", "memory", "units"),
+        ("lazy_names", "locks"),
+        ("arguments", "atomic_write", "determined", "marks", "memory", "units"),
         ("given",),
         ("names",),
         ("headings", "meant", "netcdf_file"),
@@ -117,7 +118,7 @@ ROOMS = {
         ("resume", "simulate"),
     ),
     "studies": (
-        ("kept_runs", "separation"),
+        ("kept_runs", "reach_of_runs", "separation"),
         ("analogy", "compare", "ensemble", "find", "inference", "regularisations", "verdict"),
         ("one_run", "scheme_shocks"),
         ("scheme_measures",),

@@ -125,7 +125,7 @@ def test_a_scenario_comes_from_standard_input(command, monkeypatch: pytest.Monke
     assert re.search(r"^stdin +1 +23\.4402", compared, re.MULTILINE)
     for wrong, message in (
         ("", "standard input: is empty; `stickslip new slab > mine.toml` writes"),
-        (text.replace("alpha = 1.0", "alpha = 1,0"), "standard input: line 22: 'alpha = 1,0"),
+        (text.replace("alpha = 1.0", "alpha = 1,0"), "standard input: line 23: 'alpha = 1,0"),
         (text.replace("thickness", "thicknes"), "standard input: [body] thicknes is unknown; did you mean 'thickness'?"),
     ):
         piped(wrong)
@@ -183,6 +183,9 @@ def test_new_lists_every_name(command, arguments: tuple[str, ...]):
     assert shown.code == 0
     for name in templates.template_names():
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)
+    below = re.split(r"^Drilling *\n", shown.out, flags=re.MULTILINE)[1]
+    drilling = re.split(r"^ *\n", below, flags=re.MULTILINE)[0]
+    assert re.findall(r"^[a-z][a-z-]+", drilling, re.MULTILINE) == ["drill-string", "pipe-and-collar"]
 
 
 @pytest.mark.sampled(every=4)

@@ -339,3 +339,28 @@ def test_sweeps_that_cannot_be_drawn_are_refused() -> None:
 )
 def test_axes_are_logarithmic_where_values_are_spread_so(values: Floats, expected: bool) -> None:
     assert is_logarithmic(values) is expected
+
+
+def test_a_map_and_curves_have_a_line_where_a_quantity_says_so() -> None:
+    about = {"long_name": "severity", "line": 1.0, "line_name": "severity 1: full stick-slip"}
+    rising = np.broadcast_to(np.linspace(0.2, 1.8, 9)[:, None], (9, 13)).copy()
+    figure = ss.figures.plot_sweep(grid(rising, ALPHA, THICKNESS, **about), "answer")
+    (line,) = [one for one in figure.axes[0].collections if type(one).__name__ == "QuadContourSet"]
+    (path,) = line.get_paths()
+    assert path.vertices[:, 0] == pytest.approx(np.full(len(path.vertices), AXES[ALPHA][4]), rel=1e-9)
+    assert legend(figure) == ["severity 1: full stick-slip"]
+    curve = ss.figures.plot_sweep(grid(rising[:, 0], ALPHA, **about), "answer")
+    assert any(np.all(np.asarray(one.get_ydata()) == 1.0) for one in curve.axes[0].get_lines())
+    assert "severity 1: full stick-slip" in legend(curve)
+
+
+def test_a_map_on_one_side_of_the_line_has_none() -> None:
+    about = {"line": 1.0, "line_name": "severity 1: full stick-slip"}
+    figure = ss.figures.plot_sweep(grid(np.linspace(1.2, 1.8, 117).reshape(9, 13), ALPHA, THICKNESS, **about), "answer")
+    assert legend(figure) == []
+
+
+def test_a_sweep_of_severity_says_where_its_line_is() -> None:
+    rates = {"pull_rate": np.array([10.0, 14.0])}
+    found = ss.sweep(ss.load_scenario("drill-string").problem, rates, duration="5 s", quantities=["severity"], workers=1)
+    assert (found.severity.attrs["line"], found.severity.attrs["line_name"]) == (1.0, "severity 1: full stick-slip")

@@ -51,10 +51,14 @@ def labview(
         if special:
             text += "***Start_Special***\n" + line("[wfm]", "X_Value", 1.0) + "Channels of another kind\n***End_Special***\n"
         force, ram, count = FORCE[segment.rows], RAM[segment.rows], len(FORCE[segment.rows])
-        text += line("Channels", 2, "", "") + line("Samples", count, count, "") + line("Date", *["2026/11/03"] * 2, "")
-        text += line("Time", *[segment.begun.replace(".", decimal)] * 2, "") + line("Y_Unit_Label", *units, "")
-        text += line("X_Dimension", "Time", "Time", "") + line("X0", segment.x0, segment.x0, "")
-        text += line("Delta_X", STEP, STEP, "") + line("***End_of_Header***", "", "", "")
+        entries = {
+            **{"Samples": (count, count), "Date": ("2026/11/03",) * 2, "Time": (segment.begun.replace(".", decimal),) * 2},
+            **{"Y_Unit_Label": units, "X_Dimension": ("Time", "Time"), "X0": (segment.x0,) * 2, "Delta_X": (STEP, STEP)},
+        }
+        text += line("Channels", 2, "", "")
+        for key, (one, other) in entries.items():
+            text += line(key, one, "", other, "") if x_columns == "Multi" else line(key, one, other, "")
+        text += line("***End_of_Header***", "", "", "")
         xs = ("X_Value", names[0], "X_Value", names[1]) if x_columns == "Multi" else ("X_Value", *names)
         text += line(*xs, "Comment")
         for i in range(count):

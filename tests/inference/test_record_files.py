@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import re
+import tracemalloc
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.errors import InputWarning
+from stickslip.foundation.text_columns import read_text
 from stickslip.friction import Points
 from tests.inference.files_of_programs import CLOCK, FORCE, RAM, STEP, Segment, labview, log_ascii, universal
 
@@ -56,6 +58,13 @@ def test_what_the_header_does_not_say_follows_from_its_segment(tmp_path: Path) -
         assert record.measured["shear_force"] == pytest.approx(1e3 * FORCE, rel=1e-8)
         assert record.load_point == pytest.approx(1e-6 * RAM, rel=1e-8)
         assert record.time == pytest.approx(CLOCK, abs=1e-12)
+
+
+def test_channels_without_samples_and_rows_fewer_than_promised_are_no_fault(tmp_path: Path) -> None:
+    """LabVIEW lists channels that have no samples, with steps of 1 s, and promises more samples than there are."""
+    text = labview().replace("Samples\t40\t40", "Samples\t51200\t51200\t0").replace("\tComment", "\tUntitled 2\tComment")
+    text = text.replace(f"Delta_X\t{STEP:.9E}\t{STEP:.9E}", f"Delta_X\t{STEP:.9E}\t{STEP:.9E}\t1.000000")
+    agrees(read(tmp_path, text))
 
 
 def test_units_of_labview_do_not_replace_those_in_the_name_of_a_channel(tmp_path: Path) -> None:
@@ -278,6 +287,35 @@ def test_segy_in_ascii_is_named_and_a_table_that_begins_alike_is_read(tmp_path: 
         Record.read(tmp_path / "a.sgy")
     record = read(tmp_path, "C 1 of 2\ntime (s),mu\n0,0.6\n1,0.61\n", "a.csv")
     assert record.measured["friction"].tolist() == [0.6, 0.61]
+
+
+LONG = np.linspace(0.0, 1.0, 6000)
+
+
+def long_text(kind: str) -> str:
+    """Return a file of 6000 rows."""
+    whole = {"lvm": labview(), "las": log_ascii(), "uff": universal()}[kind]
+    if kind == "lvm":
+        at = whole.rindex("X_Value")
+        return whole[: whole.index("\n", at) + 1] + "".join(f"\t{one:.9E}\t{one:.9E}\n" for one in LONG)
+    if kind == "las":
+        return whole[: whole.index("\n", whole.index("~A")) + 1] + "".join(f"{one:.6f} {one:.6f} {one:.6f}\n" for one in LONG)
+    head = whole[: whole.index(f"{FORCE[0]:20.11e}")].replace(f"{40:10d}", f"{6000:10d}")
+    rows = ("".join(f"{one:20.11e}" for one in LONG[i : i + 4]) + "\n" for i in range(0, 6000, 4))
+    return head + "".join(rows) + "    -1\n"
+
+
+@pytest.mark.parametrize("kind", ["lvm", "las", "uff"])
+def test_reading_takes_no_more_memory_than_a_few_times_the_numbers(kind: str) -> None:
+    text, wanted = long_text(kind), ("time", "shear_force", "shear_stress", "load_point")
+    read_text(long_text(kind), wanted, "a", 6000, raw=True)  # what is made on first use
+    tracemalloc.start()
+    table = read_text(text, wanted, "a", 6000, raw=True)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert {len(one) for one in table.columns.values()} == {6000}
+    numbers = sum(one.nbytes for one in (*table.columns.values(), table.lines))
+    assert peak < 4 * numbers + 4 * len(text)  # the text in memory is copied once, with four bytes a character
 
 
 # ---- damage ------------------------------------------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ from tests.planar.patches import patch, state_patch
 
 import stickslip as ss
 from stickslip.foundation import netcdf_file, zarr_folder
-from stickslip.foundation.atomic_write import held
+from stickslip.foundation.locks import held
 from stickslip.foundation.zarr_folder import unpacked_size
 from stickslip.io import planar_layout, planar_store
 from stickslip.run import run_loop

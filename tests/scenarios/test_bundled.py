@@ -23,6 +23,15 @@ OURS = ("block-or-slab", *LABORATORY, *CYCLES, *VARYING, *PLANAR, *LAYERS)
 PAPERS = [name for name in library.names() if name not in OURS]
 
 
+def test_every_scenario_has_its_trade_and_only_those_of_the_paper_are_of_the_paper() -> None:
+    found = library.by_trade()
+    assert sorted(name for names in found.values() for name in names) == library.names()
+    assert list(found) == sorted(found)
+    assert found["Drilling"] == ["drill-string", "pipe-and-collar"]
+    assert set(found["Slopes in earthquakes"]) == set(SHAKEN)
+    assert set(found["The source paper"]) == {"block-or-slab", *PAPERS}
+
+
 @pytest.mark.parametrize("name", library.names())
 def test_every_scenario_explains_itself_and_round_trips(name: str) -> None:
     scenario = load_scenario(name)

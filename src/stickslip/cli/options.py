@@ -70,7 +70,7 @@ def complete_fitted(incomplete: str) -> list[str]:
     return found
 
 
-TABLES = (".csv", ".txt", ".tsv", ".dat")
+TABLES = (".csv", ".txt", ".tsv", ".dat", ".lvm", ".las", ".uff", ".unv")
 """How the names of tables of numbers end."""
 
 
@@ -81,7 +81,7 @@ def is_data(name: str) -> bool:
 
 
 def complete_table(incomplete: str) -> list[str]:
-    """Return the CSV files and folders that begin with what is typed."""
+    """Return the tables and folders that begin with what is typed."""
     return _files(incomplete, TABLES)
 
 

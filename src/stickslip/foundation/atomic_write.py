@@ -1,4 +1,4 @@
-"""Atomic writing of files, reading of files up to a size limit, and locks on file names."""
+"""Atomic writing of files, and reading of files up to a size limit."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from uuid import uuid4
 from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.locks import close, locked
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,7 +81,7 @@ def write_atomically(path: Path, write: Callable[[Path], object], *, folder: boo
             draft.mkdir()
         else:
             draft.touch(exist_ok=False)
-        held = _locked(draft)
+        held = locked(draft)
         try:
             write(draft)
             if not folder:
@@ -88,7 +89,7 @@ def write_atomically(path: Path, write: Callable[[Path], object], *, folder: boo
             draft.replace(path)
             sync_folder(path.parent)
         finally:
-            _close(held)
+            close(held)
     except OSError as error:
         named = path if error.filename is None else Path(str(error.filename))
         if error.errno is None or not (named == path or named.is_relative_to(draft)):
@@ -122,8 +123,8 @@ def _is_stale(draft: Path) -> bool:
         age = time.time() - draft.stat().st_mtime
         if age < STALE or draft.is_symlink():
             return False
-        held = _locked(draft)
-        _close(held)
+        held = locked(draft)
+        close(held)
         return held is not None or age >= STALE_WITHOUT_LOCKS
     return False
 
@@ -142,63 +143,6 @@ def sync_folder(folder: Path) -> None:
             os.fsync(number)
         finally:
             os.close(number)
-
-
-@contextmanager
-def held(path: Path, refusal: str) -> Iterator[None]:
-    """Reserve a folder, or the name of a file that need not exist yet, against other processes.
-
-    A folder is locked itself. For a file the lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating
-    system releases the lock when the process ends, however it ends. Raises InputError with the text `refusal` if another process
-    holds the name, and if the file of the lock cannot be made. If the file system does not support locks, nothing is reserved.
-    """
-    beside = None if path.is_dir() else path.with_name(f".{path.name}.lock")
-    try:
-        number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
-    except OSError as error:
-        wrong = beside if beside is not None and os.path.lexists(beside) else path  # what stands there, or the file that was named
-        raise InputError(f"{wrong}: cannot be written: {error.strerror or error}") from None
-    try:
-        yield
-    finally:
-        if beside is not None and number is not None:
-            beside.unlink(missing_ok=True)
-        _close(number)
-
-
-def _locked(path: Path, refusal: str = "", flags: int = os.O_RDONLY) -> int | None:
-    """Lock a file or folder and return its descriptor; return None if another process holds it or locks are not supported.
-
-    Raises InputError with the text `refusal`, if there is one, in place of returning None if another process holds it.
-    """
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        return None
-    number = os.open(path, flags | os.O_NONBLOCK, 0o666)  # a pipe of this name would never open
-    try:
-        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        os.close(number)
-        if refusal and isinstance(error, BlockingIOError):
-            raise InputError(refusal) from None
-        return None
-    return number
-
-
-def _locked_beside(lock: Path, refusal: str) -> int | None:
-    """Create and lock a file of this name, which another process may be about to remove. Returns and raises as `_locked` does."""
-    while True:
-        number = _locked(lock, refusal, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0))
-        with suppress(FileNotFoundError):
-            if number is None or os.path.samestat(os.fstat(number), lock.stat()):
-                return number
-        _close(number)  # the file was removed in between, so no other process would ever see this lock: try again
-
-
-def _close(number: int | None) -> None:
-    if number is not None:
-        os.close(number)
 
 
 class SafeSink(io.FileIO):

@@ -13,9 +13,9 @@ import numpy as np
 
 from stickslip.foundation.arguments import as_path, check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.atomic_write import held
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
 from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.inference.certainty.directions import IDLE

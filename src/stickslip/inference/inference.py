@@ -16,6 +16,7 @@ from stickslip.foundation.arguments import check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.given import PLACE, preferred
 from stickslip.foundation.netcdf_file import write
 from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
@@ -43,6 +44,19 @@ FALLING = 0.2
 INTERRUPTED = "interrupted: these are the best numbers so far"
 MANY = 1.5
 """Residuals above this many given standard deviations are reported as larger than the stated noise."""
+
+
+def in_shown_unit(name: str, row: Any) -> Any:
+    """Return the row of a searched number in the unit in which numbers of its kind were given, or as it is, in SI."""
+    is_place = name.startswith("body.") and row.unit == "m"
+    given = preferred(PLACE if is_place else row.unit, abs(row.value))
+    if given is None:
+        return row
+    found = row.copy()
+    found["unit"] = given[0]
+    for column in ("value", "uncertainty", "low", "high", "start"):
+        found[column] = row[column] / given[1]
+    return found
 
 
 def _near(value: float, uncertainty: float) -> str:
@@ -95,6 +109,7 @@ class Inference(FittedRecord):
             one = next(free for free in self.free if free.label == name)
             if one.part is not None:
                 continue
+            row = in_shown_unit(str(name), row)
             unit = "" if row.unit == "1" else row.unit
             how = (
                 "on a bound"

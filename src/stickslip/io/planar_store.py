@@ -21,8 +21,9 @@ from typing_extensions import override
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.atomic_write import held, sync
+from stickslip.foundation.atomic_write import sync
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.locks import held
 from stickslip.foundation.netcdf_file import Variable
 from stickslip.io.planar_layout import (
     FORMAT,

@@ -13,7 +13,8 @@ import stickslip as ss
 from stickslip.figures.studies import inference as figures
 from stickslip.foundation.names import name_of
 from stickslip.foundation.show import about_time, number, sentence
-from stickslip.inference.inference import Inference, minima_of, noise_of, ranking, record_of, warnings_of
+from stickslip.inference.inference import Inference, in_shown_unit, minima_of, noise_of, ranking, record_of, warnings_of
+from stickslip.problem.given_units import in_given_units
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 
 PAGE = "report.html"
@@ -22,6 +23,7 @@ MOST_PAIRED = 6
 """Largest number of numbers that are drawn against each other."""
 
 
+@in_given_units
 def write(study: Inference, folder: Path, *others: Inference) -> Path:
     """Write page, figures, table, best scenario and all numbers to a folder, the page last, and return the path of the page.
 
@@ -116,7 +118,7 @@ def _numbers(study: Inference, *, own: bool) -> list[list[str]]:
     for one in study.free:
         if (one.part is not None) is not own:
             continue
-        row: Any = study.table.loc[one.label]
+        row: Any = in_shown_unit(one.label, study.table.loc[one.label])
         unit = "" if row.unit == "1" else row.unit.replace("1/", "/")
         determined = bool(np.isfinite(row.uncertainty))
         if determined:

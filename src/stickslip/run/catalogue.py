@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.arguments import as_path, for_users
-from stickslip.foundation.atomic_write import check_replaceable, held
+from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.locks import held
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note

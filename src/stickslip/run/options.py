@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import check_whole, shown
-from stickslip.foundation.atomic_write import held
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import declare
 from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem, check_problem

@@ -12,10 +12,11 @@ from stickslip.foundation.errors import InputError, nearest
 
 
 class BundledEntry(NamedTuple):
-    """The description of a bundled scenario: its title, and one sentence on its purpose."""
+    """The description of a bundled scenario: its title, one sentence on its purpose, and the trade in which it is at home."""
 
     title: str
     description: str
+    trade: str
 
 
 class Starter(NamedTuple):
@@ -68,7 +69,15 @@ def _documents() -> dict[str, dict[str, Any]]:
 
 def entries() -> dict[str, BundledEntry]:
     """Return what each bundled scenario says about itself, by name."""
-    return {name: BundledEntry(document["title"], document["description"]) for name, document in _documents().items()}
+    return {name: BundledEntry(*(document[key] for key in BundledEntry._fields)) for name, document in _documents().items()}
+
+
+def by_trade() -> dict[str, list[str]]:
+    """Return the names of the bundled scenarios by their trade, both in alphabetical order."""
+    found: dict[str, list[str]] = {}
+    for name, entry in sorted(entries().items(), key=lambda one: one[1].trade):
+        found.setdefault(entry.trade, []).append(name)
+    return found
 
 
 def in_1d() -> list[str]:

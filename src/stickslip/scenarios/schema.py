@@ -78,7 +78,7 @@ def _read_as(kind: type, wanted: str, value: Any, place: DocumentPlace) -> Any:
     return value
 
 
-_DOCUMENT = {name: Key(_read_text, "") for name in ("title", "description")} | {name: Key(_read_inner) for name in TABLES}
+_DOCUMENT = {name: Key(_read_text, "") for name in ("title", "description", "trade")} | {name: Key(_read_inner) for name in TABLES}
 _DOCUMENT |= {name: Key(_read_inner, MappingProxyType({})) for name in ("loading", "initial")} | {CONTACT: Key(_read_inner, None)}
 """The keys of a scenario outside its tables, and the tables."""
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stickslip.foundation.atomic_write import held
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.locks import held
 from stickslip.io.netcdf import read_solution
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions

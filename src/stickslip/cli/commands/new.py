@@ -50,9 +50,11 @@ def _print_list() -> None:
     from stickslip.loading import HISTORIES
     from stickslip.scenarios import library
 
-    screen, every = console(), "every key explained"
-    rows = [(name, f"starter: {one.meaning}, {every}") for name, one in library.STARTERS.items()]
-    rows += [(name, f"{entry.title}. {entry.description}") for name, entry in library.entries().items()]
+    screen, entries = console(), library.entries()
+    rows: list[tuple[str, ...]] = [("Starters, with every key explained",)]
+    rows += [(name, one.meaning) for name, one in library.STARTERS.items()]
+    for trade, names in library.by_trade().items():
+        rows += [(trade,), *((name, f"{entries[name].title}. {entries[name].description}") for name in names)]
     print_words(screen, ("name", "what it shows"), rows)
     registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))
     for option_name, what, kinds in registered:

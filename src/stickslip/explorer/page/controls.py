@@ -20,41 +20,6 @@ from stickslip.friction import FromExpression
 from stickslip.friction.formula.text import RESERVED
 from stickslip.scenarios import library
 
-_SECTIONS = {
-    "Figures of the paper": (
-        "fig4-loop",
-        "fig5-slab-printed",
-        "fig5-slab-reconstructed",
-        "fig5-slab-u0-1e-2",
-        "fig5-block-printed",
-        "fig5-block-reconstructed-k",
-        "fig5-block-reconstructed-omega",
-        "fig6-slab",
-        "fig6-block-printed",
-        "fig6-block-reconstructed",
-        "fig7-slab-critical",
-        "fig7-block-critical",
-        "second-event-perfect-delay",
-        "second-event-minimal",
-        "second-event-maxwell",
-        "second-event-maximal",
-    ),
-    "In the laboratory": (
-        "direct-shear-block",
-        "drill-string",
-        "pipe-and-collar",
-        "slide-hold-slide-block",
-        "velocity-steps-block",
-        "kolsky-slab",
-        "cycles-slab",
-        "bowed-string-slab",
-        "bowed-string-tenth",
-        "steel-on-granite",
-        "reversing-axis",
-    ),
-}
-OTHERS = "Faults and other cases"
-"""Name of the section with the scenarios that no other section names."""
 FIRST = "fig6-slab"
 """The first scenario of the explorer."""
 
@@ -76,13 +41,11 @@ def faults() -> list[str]:
 
 @cache
 def offered() -> tuple[Offered, ...]:
-    """Return all bundled scenarios in 1D in the order of the menu, section by section."""
-    entries = library.entries()
-    known = {name: entries[name] for name in library.in_1d()}
-    sections = {section: [name for name in names if name in known] for section, names in _SECTIONS.items()}
-    named = {name for names in sections.values() for name in names}
-    sections[OTHERS] = [name for name in known if name not in named]
-    return tuple(Offered(section, name, *known[name]) for section, names in sections.items() for name in names)
+    """Return all bundled scenarios in 1D in the order of the menu: by their trade, first that of the first one."""
+    entries, known = library.entries(), library.in_1d()
+    trades = sorted(library.by_trade().items(), key=lambda one: FIRST not in one[1])
+    found = ((name, entries[name]) for _, names in trades for name in names if name in known)
+    return tuple(Offered(one.trade, name, one.title, one.description) for name, one in found)
 
 
 FAULT = re.compile(r"\[(?P<table>[\w.]+)\] (?P<key>\w+)")

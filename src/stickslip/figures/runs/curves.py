@@ -33,7 +33,9 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import TURNS, name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.observables.event_table import event_columns
 from stickslip.solution.evaluation import Curve, Readings, times_of
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 from stickslip.trajectory.tables import shock_columns
 
 if TYPE_CHECKING:
@@ -55,6 +57,8 @@ COLOURS: dict[str, str] = {
 """Colour of each curve, the same in all figures."""
 DASHES: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--", "zorder": 2.1}
 """Look of the load: above the line of friction, which it coincides with at rest, so that both are seen."""
+MOST_EVENTS, IN_EVENT = 1000, 33
+"""Against slip, each of up to so many slip events has so many points of its own."""
 MOST_SHOCKS = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
 MANY, CYCLES, PACKED, SWING = 60, 250, 30, 0.05
@@ -245,7 +249,11 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
 def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["time", "slip", "slip_rate"] = "time") -> None:
     """Draw the friction coefficient, against time beside the load over the normal load, or against slip or slip rate."""
     slip = readings.curves[0]
-    time, (load, traction, normal) = readings.curves_together(("load", "traction", "normal_load"), *span)
+    names: tuple[Curve, ...] = ("load", "traction", "normal_load")
+    time, values = readings.curves_together(names, *span)
+    if against != "time":
+        time, values = _with_events(readings, span, time, dict(zip(names, values, strict=True)))
+    load, traction, normal = values
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
     traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
     if against != "time":
@@ -263,6 +271,25 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
         axes.plot(across, traction / normal, **look)
     axes.set_ylabel(curve_label("friction"))
     fit_height(axes, [traction / normal] if against != "time" else [traction / normal, load / normal])
+
+
+def _with_events(readings: Readings, span: Span, time: Floats, values: dict[Curve, Floats]) -> tuple[Floats, list[Floats]]:
+    """Return times, and values by curve, with more points in slip events, whose time is short but whose slip is all that is drawn."""
+    found = SlipEvents.of(readings.history, default_event_rate(readings.problem))
+    if not 0 < len(found.pulses) <= MOST_EVENTS:
+        return time, list(values.values())
+    table = event_columns(readings.history, found)
+    ends = [np.asarray(table[name], float) for name in ("start", "end")]
+    ends = [np.clip(np.where(np.isfinite(one), one, span[1]), *span) for one in ends]
+    first, last = (one[ends[1] > ends[0]] for one in ends)
+    inside = np.linspace(first, last - 1e-9 * (last - first), IN_EVENT).ravel(order="F")  # an end is known to rounding
+    edges = np.concatenate((first, last))
+    added = np.concatenate((edges, inside))
+    together = np.concatenate((time, added))
+    order = np.argsort(together, kind="stable")
+    curves = [getattr(readings, name) for name in values]
+    left, right = [one(edges, side="left") for one in curves], [one(inside) for one in curves]
+    return together[order], [np.concatenate(parts)[order] for parts in zip(values.values(), left, right, strict=True)]
 
 
 def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:

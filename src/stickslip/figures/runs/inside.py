@@ -57,6 +57,8 @@ COARSER = 2
 """Layers have fewer cells by this factor, because their waves are replayed, which takes longer."""
 COUNT, PLACES = 6, 1500
 """Default number of times, and number of points across the slab, enough for fronts to look sharp."""
+MOST_CROSSINGS = 200
+"""Characteristics that cross the body more often than this, all together, are left out: they would cover the image."""
 
 
 def space_time_data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
@@ -96,7 +98,7 @@ def draw_space_time(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     zero_line(axes[2])
     axes[3].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
     axes[3].set(ylabel=narrow(scales.name_stress(rf"{scales.name('traction')} $\tau$")), xlabel=scales.clock, xlim=time[[0, -1]])
-    if dataset.sizes["front"]:
+    if _shows_fronts(dataset):
         lines: Any = (Line2D([], [], color=INK, linewidth=0.6), Line2D([], [], color="white", linewidth=0.6, linestyle=(0, (4, 4))))
         text = "characteristic: a wave front from the contact"
         figure.legend([lines], [text], loc="outside lower center", handler_map={tuple: HandlerTuple(ndivide=1)}, handlelength=4)
@@ -106,6 +108,11 @@ def draw_space_time(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     return figure
 
 
+def _shows_fronts(dataset: xr.Dataset) -> bool:
+    """Return True if there are characteristics, and not so many that they would cover the image."""
+    return 0 < int(np.isfinite(dataset.front_time.values[:, 1:]).sum()) <= MOST_CROSSINGS
+
+
 def _draw_image(panel: Any, dataset: xr.Dataset, values: Floats, text: str, **colours: Any) -> None:
     scales, time = Scales(dataset), dataset.time.values
     half, (lowest, highest) = 0.5 * (time[1] - time[0]), scales.places
@@ -113,7 +120,7 @@ def _draw_image(panel: Any, dataset: xr.Dataset, values: Floats, text: str, **co
     image = panel.imshow(values.T, origin="lower", aspect="auto", extent=edges, **colours)
     panel.figure.colorbar(image, ax=panel, label=text, pad=0.01, aspect=12)
     # White dashes on a dark line can be seen on light and on dark parts of the image.
-    for times in dataset.front_time.values:
+    for times in dataset.front_time.values if _shows_fronts(dataset) else ():
         for look in ({"color": INK}, {"color": "white", "linestyle": (0, (4, 4))}):
             panel.plot(times / scales.time, dataset.front_x.values / scales.place, linewidth=0.6, **look)
     scales.set_places(panel)

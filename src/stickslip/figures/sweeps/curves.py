@@ -63,6 +63,9 @@ def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
         mark_missing(axes, across.values, state, LINE_COLOURS[k] if others else GREY, k)
     across.show(axes, "x")
     show_ordinate(axes, quantity)
+    if quantity.line is not None and quantity.known.size:
+        at, text = quantity.line
+        marks.append(axes.axhline(at, color=GREY, linewidth=1.0, linestyle="--", zorder=0, label=text))
     if broken and names is None:
         text = ALL if rows.shape[1] <= SEPARATE else BESIDE
         marks.append(Line2D([], [], linestyle="none", marker="o", markersize=3.5, color=BLUE, label=text))

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 
 from stickslip.figures.panels import add_legend, finish, letter_panels, panels, set_title
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import BLUE, GREY, INK, PALE, ROOM
+from stickslip.figures.style import BLUE, GREY, INK, PALE, ROOM, VERMILLION
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
 from stickslip.figures.sweeps.varied import LITTLE, Names, ScaledNumbers, ShownQuantity, names_of, scaled, shown
@@ -28,6 +28,8 @@ PANELS = 9
 """Largest number of maps side by side; more would be too small to read."""
 Draw = Callable[[Axes, int], None]
 """A function that draws a map; it receives its axes and the index of the value of the third key."""
+LINE: dict[str, Any] = {"colors": VERMILLION, "linewidths": 1.6}
+"""The line at a number of a quantity."""
 SIZE = 16.0
 """Area of a point (in square points, as `scatter` takes it)."""
 
@@ -50,6 +52,9 @@ def _draw_all(
 ) -> Any:
     """Draw one map, or one for each of some values of a third key, and explain the colours."""
     title, marks = str(dataset.attrs.get("title", "")), failed_area(quantity)
+    inner = [str(name) for name in quantity.values.dims if third is None or name != third.name]
+    if quantity.line is not None and _has_line(quantity, *(scaled(dataset[name]) for name in inner)):
+        marks.append(Line2D([], [], color=LINE["colors"], linewidth=LINE["linewidths"], label=quantity.line[1]))
     if third is not None:
         names = names_of(third)
         grid = _side_by_side(names, draw_one, place)
@@ -94,8 +99,19 @@ def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: ShownQuantity, colours:
     blank = np.ma.masked_where((state == 0) | (state == 2), state)
     axes.pcolormesh(*edges, blank, cmap=ListedColormap([PALE, "white"]), vmin=1, vmax=3, rasterized=True)
     axes.pcolormesh(*edges, np.ma.masked_invalid(values), rasterized=True, **colours.options)
+    if quantity.line is not None and _has_line(quantity, x, y):
+        at = [quantity.line[0]]
+        axes.contour(x.values[columns], y.values[rows], np.ma.masked_invalid(values), levels=at, **LINE)
     x.show(axes, "x")
     y.show(axes, "y")
+
+
+def _has_line(quantity: ShownQuantity, *across: ScaledNumbers) -> bool:
+    """Return True if a map of a quantity has its line: between numbers to both sides of it, on axes without words."""
+    if quantity.line is None or any(one.words or len(one.values) < 2 for one in across):
+        return False
+    known = quantity.known
+    return bool(known.size and known.min() < quantity.line[0] < known.max())
 
 
 def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:

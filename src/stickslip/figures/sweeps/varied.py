@@ -118,6 +118,8 @@ class ShownQuantity:
     is_flag: bool
     ends: tuple[str, ...] = ()
     """Words for 0 and 1, of a share; none of any other quantity."""
+    line: tuple[float, str] | None = None
+    """A number at which a line is drawn, as the values are scaled, and what lies there."""
 
     @property
     def known(self) -> Floats:
@@ -151,6 +153,6 @@ def shown(dataset: xr.Dataset) -> ShownQuantity:
     wide = bool(known.size and known.min() > 0.0 and known.max() > WIDE * known.min())
     unit, size = readable_unit(values.attrs.get("units", "1"), known, log=wide)
     title = axis_text(values.attrs.get("long_name", str(values.name)), "", unit)
-    return ShownQuantity(
-        values / size, dataset["state"], title, "flag_meanings" in values.attrs, tuple(values.attrs.get("ends", ()))
-    )
+    about = values.attrs
+    line = (float(about["line"]) / size, str(about.get("line_name", ""))) if "line" in about else None
+    return ShownQuantity(values / size, dataset["state"], title, "flag_meanings" in about, tuple(about.get("ends", ())), line)

@@ -54,6 +54,11 @@ class _Form(NamedTuple):
             names.pop()
         return names[::2] if self.x_columns == "multi" else names
 
+    def of_channels(self, segment: _Segment, key: str) -> list[str]:
+        """Return the cells of an entry, one for each channel that it has: with columns of X they stand above those of channels."""
+        cells = segment.entries.get(key, [])
+        return _trimmed(cells[::2] if self.x_columns == "multi" else cells)
+
     def row(self, cells: list[str], count: int, asked: Asked, line: int) -> tuple[str, list[str], bool]:
         """Return X, the cells of the channels, and whether there is a comment, of a row. Raises InputError for several X."""
         width = 2 * count if self.x_columns == "multi" else count + 1
@@ -70,6 +75,14 @@ class _Form(NamedTuple):
         return text.replace(self.decimal, ".") if self.decimal != "." else text
 
 
+def _trimmed(cells: Sequence[str]) -> list[str]:
+    """Return cells without empty ones at the end."""
+    found = list(cells)
+    while found and not found[-1]:
+        found.pop()
+    return found
+
+
 class _Segment(NamedTuple):
     """The header of a segment: the line on which it ends, entries by their names, and the line of names of columns."""
 
@@ -79,10 +92,7 @@ class _Segment(NamedTuple):
 
     def listed(self, key: str) -> list[str]:
         """Return the cells of an entry, without empty ones at the end."""
-        cells = list(self.entries.get(key, ()))
-        while cells and not cells[-1]:
-            cells.pop()
-        return cells
+        return _trimmed(self.entries.get(key, ()))
 
     @property
     def begun(self) -> datetime | None:
@@ -111,7 +121,7 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     if segment is None:
         raise asked.fault(lines.number, "a LabVIEW file without data: no line begins with X_Value")
     form = form.completed(segment, lines.peek())
-    channels, labels, over = form.channels(segment), segment.listed("Y_Unit_Label"), segment.listed("X_Dimension")
+    channels, labels, over = form.channels(segment), form.of_channels(segment, "Y_Unit_Label"), segment.listed("X_Dimension")
     headings = [asked.best([name], labels[i] if i < len(labels) else "") for i, name in enumerate(channels)]
     x = heading_of("time", (segment.listed("X_Unit_Label") or ["s"])[0]) if over[:1] in ([], ["Time"]) else "X_Value"
     header = asked.header([x, *headings], segment.line, [["X_Value", *channels]])
@@ -206,7 +216,7 @@ def _rows(lines: Lines, form: _Form, segment: _Segment, asked: Asked, notes: lis
         while line is not None and (cells := form.cells(line))[0] not in _ENTRIES:
             if cells[0] == SPECIAL:
                 _pass_special(lines)
-            elif any(cells) or i < declared:
+            elif any(cells) or (form.x_columns == "no" and len(cells) > len(channels) and i < declared):
                 if form.x_columns == "no" and cells[0]:
                     raise asked.fault(lines.number, "a row must begin with an empty cell where X_Columns is No")
                 x, values, comment = form.row(cells, len(channels), asked, lines.number)
@@ -238,9 +248,11 @@ def _steps(form: _Form, segment: _Segment, asked: Asked) -> tuple[float, float]:
     """Return the time of the first row of a segment without columns of X, and the time between rows. Raises InputError."""
     if form.x_columns != "no":
         return 0.0, 0.0
-    found = list[float]()
+    found, samples = list[float](), segment.listed("Samples")
     for key, default in (("X0", "0"), ("Delta_X", "")):
-        values = {number_in(form.number(cell), asked, segment.line, key) for cell in segment.listed(key) or [default]}
+        cells = segment.listed(key) or [default]
+        filled = [cell for i, cell in enumerate(cells) if i >= len(samples) or samples[i] != "0"]  # others have no row
+        values = {number_in(form.number(cell), asked, segment.line, key) for cell in filled or cells}
         if len(values) > 1:
             raise asked.fault(segment.line, f"channels with different {key}: write each to a file of its own")
         found += values

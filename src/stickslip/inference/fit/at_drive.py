@@ -25,7 +25,7 @@ def is_level_at_first(record: Record, problem: Problem) -> bool:
     of_rate = not problem.friction.states and not problem.friction.depends_on_slip
     if not of_rate or record.shear is None or record.load_rate is None or not record.load_rate[0]:
         return False
-    first = record.measured[record.shear][record.clock <= LONG * problem.body.two_way_time]
+    first = record.measured[record.shear][record.clock <= LONG * problem.body.round_trip_time]
     first = first[np.isfinite(first)]
     return len(first) > 2 and float(np.ptp(first)) < LEVEL * abs(float(np.median(first)))
 

@@ -31,7 +31,7 @@ class Summary:
 
     The units "slip", "slip_rate", "load" and "energy" stand for those of the body (`names.si_unit`). `of` returns it for a
     `Solution`, or NaN where the run has no such number. A flag is 1 for yes and 0 for no. A share runs from 0 to 1, and `ends` says
-    in words what these are.
+    in words what these are. `line` is a number at which figures draw a line, and what lies there, in words.
     """
 
     name: str
@@ -40,6 +40,7 @@ class Summary:
     of: Of
     is_flag: bool = False
     ends: tuple[str, str] | None = None
+    line: tuple[float, str] | None = None
 
     def value(self, solution: Solution) -> float:
         """Return the quantity of a solution."""
@@ -49,7 +50,7 @@ class Summary:
         """Pickle a built-in quantity by its name, so that another process recognises it as built-in; others by their contents."""
         if QUANTITIES.get(self.name) is self:
             return _built_in, (self.name,)
-        return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag, self.ends)
+        return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag, self.ends, self.line)
 
 
 def _built_in(name: str) -> Summary:
@@ -139,7 +140,7 @@ _ALL = (
     Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
     Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
     Summary("sticking", "1", STICKING, _sticking, ends=("slides", "sticks")),
-    Summary("severity", "1", SEVERITY, _severity),
+    Summary("severity", "1", SEVERITY, _severity, line=(1.0, "severity 1: full stick-slip")),
     Summary("irregular", "1", IRREGULAR, _irregular, is_flag=True),
     Summary(
         "branches",

@@ -99,7 +99,8 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
     for one in plan.work.quantities:
         flags = {"flag_values": [0.0, 1.0], "flag_meanings": "no yes"} if one.is_flag else {}
         ends = {"ends": list(one.ends)} if one.ends else {}
-        found[one.name] = {"long_name": one.meaning, "units": in_files(problem.unit_of(one.unit)), **flags, **ends}
+        line = {"line": one.line[0], "line_name": one.line[1]} if one.line else {}
+        found[one.name] = {"long_name": one.meaning, "units": in_files(problem.unit_of(one.unit)), **flags, **ends, **line}
     if series is not None:
         known = about_curves(problem)
         found |= {name: dict(known[curve]) for curve, name in zip(series.curves, series.names, strict=True)}

@@ -22,8 +22,8 @@ import zarr
 from zarr.storage import MemoryStore
 
 from stickslip.foundation import zarr_folder
-from stickslip.foundation.atomic_write import held
 from stickslip.foundation.errors import InputError, never_show
+from stickslip.foundation.locks import held
 from stickslip.io.zarr_store import check_metadata, create, first_file_of, is_sound
 from stickslip.sweeps.execution.chunk import NOT_RUN, TIME, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
