@@ -274,7 +274,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
 
 
 def _with_events(readings: Readings, span: Span, time: Floats, values: dict[Curve, Floats]) -> tuple[Floats, list[Floats]]:
-    """Return times, and values by curve, with more points in slip events, whose time is short but whose slip is all that is drawn."""
+    """Return times, and the values of curves, with more points in slip events: their time is short, their slip is what is drawn."""
     found = SlipEvents.of(readings.history, default_event_rate(readings.problem))
     if not 0 < len(found.pulses) <= MOST_EVENTS:
         return time, list(values.values())
