@@ -113,7 +113,7 @@ WAYS: dict[str, tuple[Step, ...]] = {
             60,
             (*(fitted(name, 0.05) for name in ("a", "b", "distance")),),
         ),
-        Step("explore --static tour.html", 30, (r"written: tour\.html",)),
+        Step("explore --static tour", 75, (r"tour",)),
     ),
     "soil dynamics": (
         Step("check slope.toml", 6, (r"0\.3 g|2\.94",)),

@@ -114,7 +114,7 @@ def typed_values(texts: Iterable[str], where: str, example: str) -> dict[str, fl
             raise InputError(f"{where} must be NAME=VALUE, as {example}, got {shown(text)}")
         if name in values:
             raise InputError(f"{where}: {shown(name)} is given twice")
-        values[name] = typed_number(value)
+        values[name] = typed_number(_without_quotes(value))
     return values
 
 
@@ -129,6 +129,11 @@ def typed_columns(texts: Iterable[str] | None, where: str) -> dict[str, str]:
             raise InputError(f"{where}: {shown(name)} is given twice")
         columns[name] = heading
     return columns
+
+
+def _without_quotes(value: str) -> str:
+    """Return a value without the quotation marks that belong around it in TOML, and that not every shell takes off."""
+    return value[1:-1] if len(value) > 2 and value[0] == value[-1] and value[0] in "\"'" else value
 
 
 def read_axis(problem: Problem, text: str, where: str) -> Axis:

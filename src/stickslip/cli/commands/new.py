@@ -34,9 +34,10 @@ def new(
       stickslip new slab --pull hold-and-slide
       stickslip new fig6-slab
       stickslip new              (lists all names, as --list does)
+      stickslip new --list drill (those with this word)
     """
     if show_list or (name is None and friction is None and pull is None):
-        _print_list()
+        _print_list(name)
     elif name is None:
         raise InputError("new: which scenario? `stickslip new --list` lists them")
     else:
@@ -45,17 +46,25 @@ def new(
         typer.echo(template(name, friction, pull), nl=False)
 
 
-def _print_list() -> None:
+def _print_list(about: str | None) -> None:
+    """Print what can be printed, or what has a word in its name, its trade or what it shows. Raises InputError if nothing has."""
     from stickslip.friction import LAWS
     from stickslip.loading import HISTORIES
     from stickslip.scenarios import library
 
     screen, entries = console(), library.entries()
-    rows: list[tuple[str, ...]] = [("Starters, with every key explained",)]
-    rows += [(name, one.meaning) for name, one in library.STARTERS.items()]
+    groups = {"Starters, with every key explained": {name: one.meaning for name, one in library.STARTERS.items()}}
     for trade, names in library.by_trade().items():
-        rows += [(trade,), *((name, f"{entries[name].title}. {entries[name].description}") for name in names)]
+        groups[trade] = {name: f"{entries[name].title}. {entries[name].description}" for name in names}
+    word, rows = (about or "").casefold(), list[tuple[str, ...]]()
+    for heading, texts in groups.items():
+        found = [(name, text) for name, text in texts.items() if word in f"{heading} {name} {text}".casefold()]
+        rows += [(heading,), *found] if found else []
+    if not rows:
+        raise InputError(f"new: nothing in the list has the word {ascii(about)[:60]}; `stickslip new --list` shows all of it")
     print_words(screen, ("name", "what it shows"), rows)
+    if about:
+        return
     registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))
     for option_name, what, kinds in registered:
         screen.print()
