@@ -69,7 +69,7 @@ def test_a_user_who_says_no_is_told_what_is_left_and_nothing_goes_on_in_vain() -
     assert look.size == pytest.approx(-2.0, abs=0.1)
     start = "what is left of friction looks like a drift with slip of -2"
     assert any(one.startswith(start) and one.endswith("free record.trend") for one in study.notes)
-    assert not any("without derivatives:" in one or one.startswith("polishing") for one in said)
+    assert not any("without derivatives" in one for one in said)
 
 
 def test_plateaus_show_a_drift_with_slip_or_with_time_and_none_where_there_is_none() -> None:
@@ -151,7 +151,7 @@ def test_options_that_cannot_be_used_are_one_line(options: dict[str, Any], messa
         ss.studies.infer(NEAR, TWO.record(), ["a"], **options)
 
 
-def drawn(seed: int, **numbers: float) -> Rig:
+def drawn(seed: int, **numbers: Any) -> Rig:
     """Return a rig with five plateaus at random rates, at least 5 s long."""
     random = np.random.default_rng(seed)
     rates = [float(random.choice([3e-6, 1e-5, 3e-5, 1e-4]))]
@@ -164,8 +164,8 @@ def drawn(seed: int, **numbers: float) -> Rig:
 @pytest.mark.slow
 @pytest.mark.parametrize("memory", [0.0, 20.0])
 def test_no_record_of_40_without_a_drift_gets_one_and_all_of_40_with_one_do(memory: float) -> None:
-    """Measured: 0 of 80 without; 80 of 80 with a drift of 2 /m, or of 5e-5 /s, whose other kind is in none."""
-    freed = {}
+    """Measured: 0 of 80 without a drift get one, and all of 40 with one of 2 /m."""
+    freed = dict[tuple[float, float], dict[str, int]]()
     for trend, creep in ((0.0, 0.0), (-2.0, 0.0) if memory == 0.0 else (0.0, -5e-5)):
         count = {"record.trend": 0, "record.drift": 0}
         for seed in range(40):
@@ -174,7 +174,7 @@ def test_no_record_of_40_without_a_drift_gets_one_and_all_of_40_with_one_do(memo
             if memory:
                 record["mu"] = rig.run[0] + rig.noise * correlated(len(rig.clock), memory, seed)
             found = ss.studies.infer(NEAR, record, FREE, starts=1).values
-            count = {name: number + (name in found) for name, number in count.items()}
+            count = {name: number + int(name in found) for name, number in count.items()}
         freed[trend, creep] = count
     assert freed.pop((0.0, 0.0)) == {"record.trend": 0, "record.drift": 0}
     right, wrong = ("record.trend", "record.drift") if memory == 0.0 else ("record.drift", "record.trend")

@@ -18,8 +18,12 @@ def looks_of(model: Model, searched: Floats, name: str, slopes: Floats | None = 
 
     `slopes` are the derivatives of the residuals of this quantity: beside a look the free numbers may still move.
     """
-    found = residuals_of(model, searched, name, slopes)
-    return [] if found is None else what_is_left(found)
+    with np.errstate(all="ignore"):
+        found = residuals_of(model, searched, name, slopes)
+        try:
+            return [] if found is None else what_is_left(found)
+        except np.linalg.LinAlgError:  # residuals so odd that no regression says anything
+            return []
 
 
 def residuals_of(model: Model, searched: Floats, name: str, slopes: Floats | None = None) -> Residuals | None:
@@ -39,7 +43,7 @@ def residuals_of(model: Model, searched: Floats, name: str, slopes: Floats | Non
         times = times[times > 0.0]
         changes += len(times)
         time = np.clip(clock, 0.0, run.history.span[1])
-        slope = np.gradient(curve, clock)
+        slope = np.nan_to_num(np.gradient(curve, clock), posinf=0.0, neginf=0.0)
         known = np.isfinite(data) & np.isfinite(curve)
         weight = quiet.weights(i)
         slip = run.slip(time) - run.problem.initial_slip

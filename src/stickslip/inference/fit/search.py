@@ -124,7 +124,7 @@ def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Te
         minima.append(_followed(model, x, loss, best, FIRST))
     minima.sort(key=lambda one: one[0])
     if starts > 1 and is_far(model, minima[0][0]) and (why := told_by(model, minima[0][1])):
-        tell(f"no run comes near the record, of which is left {why}: no search without derivatives")
+        tell(f"no run can follow the record, of which {why} is left: the search ends soon")
     elif starts > 1 and is_far(model, minima[0][0]):
         minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, FIRST))
         minima.sort(key=lambda one: one[0])

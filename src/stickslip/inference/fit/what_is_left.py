@@ -167,6 +167,8 @@ def _drift(found: Residuals, total: float, time: Floats) -> _Try:
     kept = {name: found.without(one) for name, one in ways.items()}
     left = {name: max(float(one.values @ one.values), 1e-300) for name, one in kept.items()}
     kind = min(left, key=lambda name: left[name])
+    if float(found.values @ found.values) - left[kind] < LEAST * total:
+        return _regressed(found, total, kind, ways[kind], lambda c: float(c[0]))  # too small to be told
     gain = _count(found, _memory(kept[kind])) * math.log(max(left.values()) / left[kind])
     if gain >= APART:
         return _regressed(found, total, kind, ways[kind], lambda c: float(c[0]), tried=2)
