@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.inference.certainty.bends import rough_words
 from stickslip.inference.fit.asides import moved
+from stickslip.inference.fit.memory import Memory
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
 from stickslip.inference.fit.turns import changes_of, felt, moving
@@ -17,6 +20,7 @@ from stickslip.inference.record.loading import loading_of
 from stickslip.inference.record.record import Record
 from stickslip.inference.record.resample import Jumps
 from stickslip.loading import PiecewiseLinear, Steps
+from stickslip.reports.inference import _left
 from tests.inference import thinned_double_shear as double_shear
 
 BODY = ss.SpringBlock(20.0, 1.5e8, 5e4)
@@ -145,3 +149,27 @@ def test_intervals_of_thinned_records_hold_the_truth_as_often_as_they_say(free: 
         for name in found.values:
             held[name] += found.table.low[name] <= double_shear.TRUTH[name] <= found.table.high[name]
     assert min(count for name, count in held.items() if name in found.values) >= 36, held
+
+
+def test_one_sentence_says_with_which_numbers_a_run_bends_and_what_passes_a_sample_there() -> None:
+    clock = np.arange(0.0, 120.0, 0.2)
+    problem = ss.Problem(BODY, LAW, pull_rate=STEPS)
+    record = Record.read({"time (s)": clock, "mu": 0.6 + 1e-3 * np.sin(clock)})
+    model = Model(problem, (Part(record, STEPS, ("friction",), start="steady"),), (), sizes={"friction": 3e-4})
+    said = rough_words(model, np.zeros(0), ["friction.a", "friction.b", "body.mass"], np.abs(clock - 40.03) < 0.5)
+    assert len(said) == 1
+    assert said[0].startswith(
+        "the run does not change smoothly with friction.a, friction.b and body.mass, as where a step of the drive"
+    )
+    elsewhere = rough_words(model, np.zeros(0), ["friction.a"], np.abs(clock - 20.0) < 0.3)
+    assert elsewhere == [
+        "the run does not change smoothly with friction.a near 19.8 s; such samples are left out of its interval, which is rough: "
+        "a profile tells more"
+    ]
+    assert rough_words(model, np.zeros(0), [], np.zeros(600, bool)) == []
+
+
+@pytest.mark.parametrize(("memory", "left"), [(0.0, "looks like noise"), (1.5, "remembers itself for 1.5 s")])
+def test_what_is_left_is_called_noise_only_if_it_forgets_itself(memory: float, left: str) -> None:
+    study: Any = SimpleNamespace(features=None, model=SimpleNamespace(memory={"friction": Memory(memory, 1.0, 0.1)}))
+    assert _left(study) == f"what is left {left}"

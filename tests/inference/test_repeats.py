@@ -9,6 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.inference.record.repeats import repeats_in
+from tests.inference import velocity_steps
 from tests.inference.laboratory import correlated
 from tests.problems import Floats
 
@@ -101,3 +102,38 @@ def test_a_column_that_repeats_alone_has_no_number_there_and_a_normal_load_is_in
     assert np.isfinite(normal.measured["friction"]).all()
     assert normal.normal is not None
     assert len(np.unique(normal.normal)) == 500
+
+
+def repeating(seed: int, column: str | None = None) -> Any:
+    """Return a record of velocity steps in which every fifth row, or a value of every fifth row, is the one before."""
+    data = velocity_steps.record(seed=seed)
+    which = some(len(data), 0.2, seed)
+    for name in data.columns if column is None else [column]:
+        if not name.startswith("time"):
+            data[name] = held(data[name].to_numpy(), which)
+    return data, int(which.sum())
+
+
+@pytest.mark.parametrize("column", [None, "mu"], ids=["rows", "one column"])
+def test_intervals_count_no_repeats(column: str | None) -> None:
+    """The noise is that of the sensor, and the standard uncertainty that of 80 % of the samples."""
+    data, count = repeating(1, column)
+    study = velocity_steps.inferred(data, velocity_steps.TWO)
+    whole = velocity_steps.inferred(velocity_steps.record(), velocity_steps.TWO)
+    assert any(note.startswith(f"friction repeats the sample before it exactly in {count} of 1501 rows") for note in study.notes)
+    assert study.model.samples == 1501 - count
+    assert study.fit.noise.item() == pytest.approx(2e-4, rel=0.06)
+    wider = study.table.uncertainty / whole.table.uncertainty
+    assert wider.to_numpy() == pytest.approx(np.full(2, 0.8**-0.5), rel=0.08)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("column", [None, "mu"], ids=["rows", "one column"])
+def test_intervals_of_records_with_repeats_hold_the_truth_as_often_as_they_say(column: str | None) -> None:
+    """Of 40 records 35 hold: 95 % of 40 are 38 +- 1.4."""
+    held_by = dict.fromkeys(velocity_steps.TWO, 0)
+    for seed in range(40):
+        table = velocity_steps.inferred(repeating(seed, column)[0], velocity_steps.TWO).table
+        for name in held_by:
+            held_by[name] += table.low[name] <= velocity_steps.TRUTH[name] <= table.high[name]
+    assert min(held_by.values()) >= 35, held_by

@@ -14,6 +14,7 @@ import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout
+from contextvars import copy_context
 from typing import Any
 
 FAULT = 70
@@ -67,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 import stickslip.cli.app  # noqa: F401  # takes long: all that follows needs it
             except InputError as error:  # typer does not suit
                 sys.exit(_fail(str(error)))
-        code = _code(arguments)
+        code = copy_context().run(_code, arguments)  # what a command sets, such as units to show, ends with it
         sys.stdout.flush()
     sys.exit(code)
 
