@@ -92,7 +92,7 @@ def test_the_help_of_by_names_what_infer_can_fit_and_not_what_another_command_ca
 
 def test_a_table_in_place_of_the_scenario_gets_the_order_of_arguments(command):
     said = command("infer", "data.csv", "mine.toml", "--free", "a").refusal
-    assert said == "infer: the scenario comes first, and then the data: stickslip infer mine.toml data.csv ...\n"
+    assert said == "infer: the scenario comes first, and then the data: `stickslip infer mine.toml data.csv --free a`\n"
 
 
 def test_a_record_that_determines_nothing_ends_with_code_1(command):
