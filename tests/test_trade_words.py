@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.cli.app import COMMANDS
 from stickslip.cli.main import main
-from stickslip.foundation.errors import MOST_NAMED, InputError, nearest
+from stickslip.foundation.errors import MOST_NAMED, InputError, meant, nearest
 from stickslip.foundation.synonyms import last, plain, rows
 from stickslip.scenarios import library
 from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
@@ -242,6 +242,11 @@ def test_no_answer_names_many() -> None:
         find_parameter(scenario("drill-string"), "qqqq", "run: --set")
     assert str(told.value).count(",") < MOST_NAMED
     assert str(told.value).endswith("more: `stickslip check SCENARIO --parameters` lists all")
+
+
+def test_of_a_word_of_a_million_letters_only_the_beginning_is_compared() -> None:
+    """Keys of a stranger's file may be long, and comparing them whole would take long."""
+    assert meant("ab" * 500_000, ["ab" * 40, "other"]) == ["ab" * 40]
 
 
 def test_the_list_that_answers_point_at_has_every_name(capsys: pytest.CaptureFixture[str]) -> None:

@@ -103,6 +103,8 @@ MOST_MEANT = 4
 """A part that more of the allowed words have says nothing about which one is meant."""
 MOST_ABSENT = 2
 """Largest number of meanings of a word that are named although none of them is allowed."""
+LONGEST = 80
+"""Largest number of characters of a word that is compared with others."""
 MISTYPED = 0.85
 """So much (1) of a mistyped word and of the right one is the same, at least."""
 SHORT, ALIKE = 5, (0.65, 0.6)
@@ -162,8 +164,12 @@ def meant(word: str, allowed: Collection[str]) -> list[str]:
 
 
 def _likeness(word: str, other: str) -> float:
-    """Return how much of two words is the same (1), in capitals or not; dashes before an option do not count."""
-    return difflib.SequenceMatcher(None, other.lstrip("-").casefold(), word.lstrip("-").casefold()).ratio()
+    """Return how much of two words is the same (1), in capitals or not; dashes before an option do not count.
+
+    Words may come from files of strangers: only their beginnings are compared.
+    """
+    first, second = (one[:LONGEST].lstrip("-").casefold() for one in (other, word))
+    return difflib.SequenceMatcher(None, first, second).ratio()
 
 
 def full_name(name: str, known: Collection[str], before: str, unknown: str, listed: str = "") -> str:
