@@ -19,7 +19,7 @@ class Number(NamedTuple):
 class Step(NamedTuple):
     """A command without its first word, or Python after "python: "; `> FILE` at the end keeps what it prints.
 
-    `bound` is the processor time (s) that it may take, start and figure included: three times what was measured.
+    `bound` is the processor time (s) that it may take, start and figure included: three to six times what an idle machine takes.
     """
 
     typed: str
@@ -36,28 +36,28 @@ def fitted(name: str, within: float) -> Number:
 
 WAYS: dict[str, tuple[Step, ...]] = {
     "rupture physics": (
-        Step("--help", 3, (r"new slab > mine\.toml", r"\n  compare ")),
-        Step("doctor", 12, (r"closed form",)),
-        Step("check fig6-slab --figure k.png", 6, (r"critical value\s+friction\.alpha = 0\.196 s/m", r"written: k\.png")),
-        Step("run fig6-slab --figure run.png", 6, (r"slip at the end\D{0,40}23\.440", r"1 slip event", r"written: run\.png")),
+        Step("--help", 6, (r"new slab > mine\.toml", r"\n  compare ")),
+        Step("doctor", 25, (r"closed form",)),
+        Step("check fig6-slab --figure k.png", 15, (r"critical value\s+friction\.alpha = 0\.196 s/m", r"written: k\.png")),
+        Step("run fig6-slab --figure run.png", 15, (r"slip at the end\D{0,40}23\.440", r"1 slip event", r"written: run\.png")),
         Step(
             'compare fig6-slab --rules --duration "480 years" --figure rules.png',
-            12,
-            (r"maxwell", r"maximal", r"394\.3|1\.244\d*e\+10"),
+            25,
+            (r"maxwell", r"maximal", r"394\.2\d+ years"),
         ),
         Step(
             "sweep fig6-slab -v alpha=0.05..2:20 -v thickness=1..50km:20 --figure map.png",
-            15,
+            30,
             (r"400 finished", r"written: map\.png"),
         ),
         Step("run planar-patch --figure fault.png", 120, (r"written: fault\.png",)),
     ),
     "tribology": (
-        Step("fit axis.txt", 9, (r"40 points along slip_rate", r"hyperbolic-rate\s+3\s+0\.000\d+\s+0\.0")),
+        Step("fit axis.txt", 20, (r"40 points along slip_rate", r"hyperbolic-rate\s+3\s+0\.000\d+\s+0\.0")),
         Step(
             "fit axis.txt --law hyperbolic-rate --body block --set body.normal_force=2kN --set body.mass=200 "
             '--set "body.stiffness=20 N/um" --set "body.damping=20 kN s/m" --set "pull_rate=500 mm/min" --out axis.toml',
-            9,
+            20,
             (
                 Number(r"static\s+([\d.]+)", SLIDE["static"], 0.01),
                 Number(r"dynamic\s+([\d.]+)", SLIDE["dynamic"], 0.02),
@@ -66,20 +66,20 @@ WAYS: dict[str, tuple[Step, ...]] = {
         ),
         Step(
             "check axis.toml --steady-figure steady.png",
-            9,
+            20,
             (r"^(?!.*Fig\. 6)", r"steady sliding.*8\.33333 mm/s|500 mm/min", r"stable"),
         ),
-        Step("run axis.toml --figure axis.png", 9, (r"slip at the end", r"written: axis\.png")),
-        Step("run reversing-axis --friction-figure loop.png", 9, (r"written: loop\.png",)),
+        Step("run axis.toml --figure axis.png", 20, (r"slip at the end", r"written: axis\.png")),
+        Step("run reversing-axis --friction-figure loop.png", 20, (r"written: loop\.png",)),
     ),
     "drilling": (
-        Step("new string > string.toml", 3),
+        Step("new string > string.toml", 6),
         Step(
             'check string.toml --no-runs --set "pull_rate=120 1/min" --set "weight_on_bit=20 klbf"',
-            6,
+            15,
             (r"120 (1/min|rpm)", r"klbf"),
         ),
-        Step("run drill-string --figure string.png", 9, (r"rpm", r"written: string\.png")),
+        Step("run drill-string --figure string.png", 20, (r"rpm", r"written: string\.png")),
         Step("find drill-string --figure edge.png", 60, (Number(r"([\d.]+) rpm", 121.9, 0.03), r"written: edge\.png")),
         Step(
             "infer drill-string floor.csv --free dynamic,viscosity --begin-at dynamic=0.45 --begin-at viscosity=0.002",
@@ -88,7 +88,7 @@ WAYS: dict[str, tuple[Step, ...]] = {
         ),
     ),
     "laboratory geophysics": (
-        Step("run velocity-steps-block --friction-figure steps.png", 12, (r"slip at the end", r"written: steps\.png")),
+        Step("run velocity-steps-block --friction-figure steps.png", 25, (r"slip at the end", r"written: steps\.png")),
         Step(
             "infer velocity-steps-block shear.csv --free a,b,distance,stiffness,reference "
             '--column load_point="Vert_disp (micron)" --figure fit.png --scenario-out best.toml --report report',
@@ -101,7 +101,7 @@ WAYS: dict[str, tuple[Step, ...]] = {
                 r"written: fit\.png",
             ),
         ),
-        Step("run best.toml --figure best.png", 12, (r"written: best\.png",)),
+        Step("run best.toml --figure best.png", 25, (r"written: best\.png",)),
     ),
     "teaching": (
         Step("paper --out paper", 180, (r"report\.html",)),
@@ -113,34 +113,34 @@ WAYS: dict[str, tuple[Step, ...]] = {
             60,
             (*(fitted(name, 0.05) for name in ("a", "b", "distance")),),
         ),
-        Step("explore --static tour", 75, (r"tour",)),
+        Step("explore --static tour", 90, (r"tour",)),
     ),
     "soil dynamics": (
-        Step("check slope.toml", 6, (r"0\.3 g|2\.94",)),
+        Step("check slope.toml", 15, (r"0\.3 g|2\.94",)),
         Step(
             "run slope.toml --figure slope.png",
-            9,
+            20,
             (Number(r"slip at the end\D{0,40}?([\d.]+) m\b", newmark(), 1e-4), r"written: slope\.png"),
         ),
-        Step("run slope.toml --catalogue slides.csv", 9, (r"3 slip events", r"written: slides\.csv")),
-        Step("show slides.csv --catalogue-figure slides.png", 9, (r"0\.2376", r"written: slides\.png")),
-        Step("export slope.toml slope.csv --sampling-rate 100", 9, (r"written: slope\.csv",)),
+        Step("run slope.toml --catalogue slides.csv", 20, (r"3 slip events", r"written: slides\.csv")),
+        Step("show slides.csv --catalogue-figure slides.png", 20, (r"0\.2376", r"written: slides\.png")),
+        Step("export slope.toml slope.csv --sampling-rate 100", 20, (r"written: slope\.csv",)),
     ),
     "acoustics and codes": (
-        Step("run bowed-string-slab --figure string.png", 9, (r"written: string\.png",)),
+        Step("run bowed-string-slab --figure string.png", 20, (r"written: string\.png",)),
         Step(
             "fit rosin.csv --law hyperbolic-rate --body bowed-string-slab --out bow.toml",
-            9,
+            20,
             (Number(r"alpha\s+([\d.]+)", ROSIN["alpha"], 0.02), r"written: bow\.toml"),
         ),
-        Step("run bow.toml --out bow.nc", 9, (r"slip at the end", r"written: bow\.nc")),
-        Step("show bow.nc --csv bow.csv", 9, (r"written: bow\.csv",)),
-        Step("benchmark get loop", 9, (r"written: loop\.toml",)),
-        Step("export loop.toml loop.txt --sampling-rate 1000", 9, (r"written: loop\.txt",)),
-        Step("benchmark judge loop.txt", 12, (r"Rule perfect-delay: loop", r"Passed")),
+        Step("run bow.toml --out bow.nc", 20, (r"slip at the end", r"written: bow\.nc")),
+        Step("show bow.nc --csv bow.csv", 20, (r"written: bow\.csv",)),
+        Step("benchmark get loop", 20, (r"written: loop\.toml",)),
+        Step("export loop.toml loop.txt --sampling-rate 1000", 20, (r"written: loop\.txt",)),
+        Step("benchmark judge loop.txt", 25, (r"Rule perfect-delay: loop", r"Passed")),
         Step(
             'python: import stickslip as ss; run = ss.simulate("loop.toml"); print(run.to_csv("again.csv"), float(run.slip()))',
-            9,
+            20,
             (r"again\.csv",),
         ),
     ),

@@ -24,8 +24,6 @@ READERS = {
     ".zarr": ("a folder of results", "`stickslip show {0}`"),
 }
 """What a file is that stands in place of a command, by the end of its name, and what may be meant."""
-OF_ALL = {"help": "`stickslip --help` or `stickslip COMMAND --help`", "version": "`stickslip --version`"}
-"""Options that are typed as commands, as other programs have them."""
 OF_DATA = ("a table", "`stickslip fit {0}` or `stickslip infer SCENARIO {0} --free NAMES`")
 """The same for measured data."""
 
@@ -40,8 +38,6 @@ def unknown_command(name: str, commands: Collection[str]) -> str:
     kind = READERS.get(".toml" if name in library.names() else Path(name).suffix.lower(), OF_DATA if is_data(name) else None)
     if kind is not None:
         return f"'{shown}' is {kind[0]}, not a command: did you mean {kind[1].format(shown)}?"
-    if name in OF_ALL:
-        return f"there is no command '{shown}'; did you mean {OF_ALL[name]}?"
     return f"there is no command '{shown}'; {nearest(name, commands, listed='`stickslip --help` shows all')}"
 
 
