@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
+from stickslip.foundation.given import preferred
 from tests.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
@@ -122,3 +123,8 @@ def test_one_event_and_a_catalogue_as_csv(command: Command, tmp_path: Path) -> N
     events = pd.read_csv(tmp_path / "units.csv", comment="#")
     assert {"start (s)", "slip (m)", "peak_rate (m/s)", "traction_drop (N)", "pulses"} <= set(events)
     assert events["slip (m)"].to_list() == ss.simulate("direct-shear-block", 5.0).events.slip.to_list()
+
+
+def test_units_that_a_command_shows_end_with_it(command: Command) -> None:
+    assert "in/s" in command("check", "lab-slab", "--set", "pull_rate=1 in/s").out
+    assert preferred("m/s") is None
