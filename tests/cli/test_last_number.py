@@ -126,5 +126,5 @@ def test_one_event_and_a_catalogue_as_csv(command: Command, tmp_path: Path) -> N
 
 
 def test_units_that_a_command_shows_end_with_it(command: Command) -> None:
-    assert "in/s" in command("check", "lab-slab", "--set", "pull_rate=1 in/s").out
+    assert "in/s" in command("check", "granite-slab", "--set", "pull_rate=1 in/s").out
     assert preferred("m/s") is None
