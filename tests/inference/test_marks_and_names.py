@@ -273,6 +273,7 @@ def test_units_in_a_row_below_are_those_of_columns_that_are_named(tmp_path: Path
 
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"time": "Zeit", "mu": "Kanl 3"}, r"no column 'Kanl 3' for mu; did you mean 'Kanal 3'\? it has 'Zeit \(ms\)', 'Vert_disp"),
+    ({"time": "Zeit", "load_point": "disp"}, r"no column 'disp' for load_point; did you mean 'Vert_disp \(micron\)'\? it has"),
     ({"time": "Zeit", "mu": 6}, r"no column '6' for mu; it has 'Zeit \(ms\)'"),
     ({"time": "Zeit", "mu": 0}, r"no column '0' for mu; it has 'Zeit \(ms\)'"),
     ({"time": "Zeit", "mu": "Zeit"}, r"time and mu are both column 1"),

@@ -7,6 +7,7 @@ import io
 import re
 import tracemalloc
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -316,6 +317,25 @@ def test_reading_takes_no_more_memory_than_a_few_times_the_numbers(kind: str) ->
     assert {len(one) for one in table.columns.values()} == {6000}
     numbers = sum(one.nbytes for one in (*table.columns.values(), table.lines))
     assert peak < 4 * numbers + 4 * len(text)  # the text in memory is copied once, with four bytes a character
+
+
+HEADS = {
+    "lvm": labview()[: labview().index("Y_Unit_Label")],
+    "las": "~V\nVERS. 2.0 :\n~C\n",
+    "uff": "    -1\n    58\n",
+    "uff, kind": "    -1\n",
+    "none": "",
+}
+
+
+@pytest.mark.parametrize(
+    "line", [" " * 40_000, "." * 40_000, "a:" * 20_000, "-1 " * 13_000, "(" * 40_000, "9" * 40_000, "1e" * 20_000]
+)
+@pytest.mark.parametrize("head", HEADS.values(), ids=HEADS)
+def test_lines_made_to_hold_up_a_reader_do_not(head: str, line: str) -> None:
+    """Twenty of them are read in no time, or refused; a pattern that tries all ways through one takes hours."""
+    with suppress(ss.InputError):
+        read_text(head + f"{line}\n" * 20, ("time", "friction"), "a", 200, raw=True)
 
 
 # ---- damage ------------------------------------------------------------------------------------------------------------------

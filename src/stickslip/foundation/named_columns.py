@@ -101,7 +101,8 @@ class NamedColumns:
         named = [cell.strip() for cell in header if cell.strip()]
         if not self.shows:
             raise InputError(f"{missing} among the {len(header)}; its number does, too")
-        close = nearest(text, [one[:LONGEST] for one in named], "")
+        holding = [one for one in named if plain(text) and plain(text) in plain(one)]
+        close = nearest(holding[0] if holding else text, [one[:LONGEST] for one in named], "")
         close = close if close.startswith("did") else ""
         more = f" and {len(named) - MOST_SHOWN} more" if len(named) > MOST_SHOWN else ""
         there = ", ".join(repr(one)[:60] for one in named[:MOST_SHOWN]) + more

@@ -201,7 +201,8 @@ def si_factor(unit: str, si: str) -> Fraction:
     if "rad" in si and (_PER_TURN.search(unit) or _PER_MINUTE.fullmatch(unit)):
         raise InputError(f"'{unit}' may be turns or radians per second: write rpm or rad/s")
     fault = InputError("")
-    for text in dict.fromkeys((unit, in_small := _renamed(unit, _CAPITALS), _renamed(in_small, _OTHERWISE))):
+    meant = dict.fromkeys((unit, in_small := _renamed(unit, _CAPITALS), _renamed(in_small, _OTHERWISE)))
+    for text in sorted(meant, key=lambda one: tabulated(one) is None):  # those that need no unit library come first
         try:
             return _convert(text, si)
         except InputError as error:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from stickslip.foundation.headings import MOST_COLUMNS
 from stickslip.foundation.record_files.sheet import Asked, Lines, Sheet, number_in
 
-_LINE = re.compile(r"\s*(?P<name>[^.:]*?)\s*\.(?P<unit>\S*)(?P<rest>.*)")
 _MOST_LINES = 20_000
 """The sections before the numbers have at most this many lines."""
 _VERSIONS = ("1.2", "2.0")
@@ -26,14 +24,11 @@ class _LasEntry(NamedTuple):
     @classmethod
     def of(cls, line: str) -> _LasEntry:
         """Read MNEM.UNIT VALUE : DESCRIPTION."""
-        found = _LINE.match(line)
-        if found is None:
-            return cls(line.strip(), "", "", "")
-        unit, rest = found["unit"], found["rest"]
-        if unit.startswith(":"):  # no unit, and nothing between the dot and the colon
-            unit, rest = "", unit + rest
+        name, _, rest = line.partition(".")
+        unit = "" if rest[:1].isspace() or rest[:1] in (":", "") else rest.split(None, 1)[0]
+        rest = rest[len(unit) :]
         value, _, about = rest.rpartition(":") if ":" in rest else (rest, "", "")
-        return cls(found["name"], unit.strip(" ()[]"), value.strip(), about.strip().lstrip("0123456789 ").strip())
+        return cls(name.strip(), unit.strip("()[]"), value.strip(), about.strip().lstrip("0123456789 ").strip())
 
 
 class _LasHead(NamedTuple):

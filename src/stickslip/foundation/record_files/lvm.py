@@ -211,7 +211,7 @@ def _rows(lines: Lines, form: _Form, segment: _Segment, asked: Asked, notes: lis
             raise asked.fault(following.line, "this segment has other channels: write each segment to a file of its own")
         clock.begin(following)
         begin, step = _steps(form, following, asked)
-        declared = max((int(one) for one in following.listed("Samples") if one.isascii() and one.isdigit()), default=0)
+        declared = max(map(as_number, following.listed("Samples")), default=0.0)
         line, i = next(lines, None), 0
         while line is not None and (cells := form.cells(line))[0] not in _ENTRIES:
             if cells[0] == SPECIAL:
