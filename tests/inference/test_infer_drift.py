@@ -25,8 +25,8 @@ FALLING = Rig(trend=-2.0)
 TWO = Rig(times=(0.0, 20.0), rates=(1e-5, 1e-4), lasts=40.0)
 NEAR = replace(
     GUESS,
-    body=replace(GUESS.body, stiffness=FALLING.stiffness),
-    friction=replace(GUESS.friction, reference=0.62, a=0.008, b=0.0125, distance=15e-6),
+    body=ss.SpringBlock(20.0, FALLING.stiffness, FALLING.normal),
+    friction=ss.friction.RateAndState(0.62, 0.008, 0.0125, 15e-6, 1e-5),
 )
 """The machine without its drift."""
 
@@ -104,7 +104,7 @@ def test_a_drift_that_the_fit_does_not_need_is_held_again(monkeypatch: pytest.Mo
     assert any("record." in one and "is free, too" in one for one in said)
     assert set(study.values) == {"friction.a", "friction.reference"}
     assert not any("is free, too" in one for one in study.notes)
-    assert study.table.start["friction.a"] == NEAR.friction.a or study.table.start["friction.reference"] > 0.6
+    assert 0.61 < study.table.start["friction.reference"] < 0.63
 
 
 def test_after_its_time_a_search_gives_the_best_numbers_so_far_and_says_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -178,9 +178,9 @@ def test_no_record_of_40_without_a_drift_gets_one_and_all_of_40_with_one_do(memo
         freed[trend, creep] = count
     assert freed.pop((0.0, 0.0)) == {"record.trend": 0, "record.drift": 0}
     right, wrong = ("record.trend", "record.drift") if memory == 0.0 else ("record.drift", "record.trend")
-    (found,) = freed.values()
-    assert found[right] == 40
-    assert found[wrong] <= 2
+    (counted,) = freed.values()
+    assert counted[right] == 40
+    assert counted[wrong] <= 2
 
 
 @pytest.mark.slow

@@ -77,7 +77,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
         best.searched = found.searched
         found = _with_noise(found.model, found.searched, loss, tell, best)
         misses = any(size > ROUGH * model.sizes[name] for name, size in found.model.sizes.items())
-        if starts > 1 and misses and is_rough(found.model, found.searched) and not told_by(found.model, found.searched):
+        if starts > 1 and misses and is_rough(found.model, found.searched) and not told_by(thin, minima[0][1]):
             tell("polishing without derivatives")
             better = polished(found.model, found.searched, loss)
             if found.cost(better) < found.cost(found.searched) - COMPETES:
