@@ -105,7 +105,7 @@ ROOMS = {
         ("resume", "simulate"),
     ),
     "studies": (
-        ("kept_runs", "separation"),
+        ("kept_runs", "longer_runs", "separation"),
         ("analogy", "compare", "ensemble", "find", "inference", "regularisations", "verdict"),
         ("one_run", "scheme_shocks"),
         ("scheme_measures",),
