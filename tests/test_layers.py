@@ -118,7 +118,7 @@ ROOMS = {
         ("resume", "simulate"),
     ),
     "studies": (
-        ("kept_runs", "reach_of_runs", "separation"),
+        ("kept_runs", "longer_runs", "reach_of_runs", "separation"),
         ("analogy", "compare", "ensemble", "find", "inference", "regularisations", "verdict"),
         ("one_run", "scheme_shocks"),
         ("scheme_measures",),

@@ -124,6 +124,7 @@ def test_a_speed_that_swings_moves_a_rigid_drive_along_straight_lines() -> None:
     assert any("the error with which it was measured is not in the intervals" in note for note in found.about)
 
 
+@pytest.mark.slow
 def test_the_weight_on_the_bit_presses_the_bit_as_it_was_measured() -> None:
     weight = 97e3 * np.where(TIME < 7.0, 1.0, 1.1)
     pressed = ss.loading.PiecewiseLinear([0.0, 6.99, 7.01], [97e3 * 0.155, 97e3 * 0.155, 1.1 * 97e3 * 0.155])

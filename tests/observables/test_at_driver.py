@@ -63,7 +63,7 @@ def test_rate_and_torque_at_a_machine_are_those_of_the_method_of_characteristics
     law = ss.friction.FromExpression("0.3 + 0.02*v")
     run = ss.simulate(ss.Problem(body, law, pull_rate=6.0, initial_load=0.0), 12.0)
     apart = []
-    for cells in (200, 400):
+    for cells in (150, 300):
         time, rate, torque = characteristics(body, 6.0, 11.9, cells)
         apart.append(
             (
@@ -72,12 +72,21 @@ def test_rate_and_torque_at_a_machine_are_those_of_the_method_of_characteristics
             )
         )
     assert np.ptp(run.slip_rate(np.linspace(0.0, 12.0, 200))) > 3.0
-    assert np.all(np.array(apart[1]) < 3e-5)
+    assert np.all(np.array(apart[1]) < 5e-5)
     assert np.all(np.array(apart[1]) < 0.4 * np.array(apart[0]))  # what is left is the step of the other method
 
 
-@pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize("body", [STRING, SECTIONS], ids=["one section", "two sections"])
+@pytest.mark.parametrize(
+    ("body", "drive"),
+    [
+        (STRING, "machine"),
+        (SECTIONS, "lossy"),
+        *(
+            pytest.param(body, drive, marks=pytest.mark.slow)
+            for body, drive in ((STRING, "rigid"), (STRING, "lossy"), (SECTIONS, "rigid"), (SECTIONS, "machine"))
+        ),
+    ],
+)
 def test_the_torque_at_the_drive_does_the_work_that_the_energies_have(body: Any, drive: str) -> None:
     run = run_of(replace(body, inertia=200.0, **DRIVES[drive]), 8.0)
     time = np.linspace(0.0, 8.0, 2001)
@@ -90,8 +99,14 @@ def test_the_torque_at_the_drive_does_the_work_that_the_energies_have(body: Any,
 @pytest.mark.parametrize(
     "body",
     [
-        *(replace(body, **drive) for body in (STRING, SECTIONS) for drive in DRIVES.values()),
-        *(SLAB, LAYERS, TWO, replace(TWO, sides="joined"), replace(LAYERS, driver_impedance=3e6)),
+        *(replace(STRING, **MACHINE), replace(SECTIONS, **SOFT), SLAB, TWO, replace(LAYERS, driver_impedance=3e6)),
+        *(
+            pytest.param(body, marks=pytest.mark.slow)
+            for body in (
+                *(STRING, replace(STRING, **SOFT), SECTIONS, replace(SECTIONS, **MACHINE)),
+                *(LAYERS, replace(TWO, sides="joined")),
+            )
+        ),
     ],
 )
 def test_what_is_at_the_driver_is_the_field_at_the_far_face(body: Any, side: Any) -> None:
@@ -99,7 +114,7 @@ def test_what_is_at_the_driver_is_the_field_at_the_far_face(body: Any, side: Any
     problem = ss.Problem(body, BIT, pull_rate=60.0 * RPM if turns else 0.02, initial_load=0.0 if turns else 0.79 * 50e6)
     run = ss.simulate(problem, 8.0)
     far = sum(body.thickness) if isinstance(body, ss.TwoSlabs) else body.distance
-    time = np.linspace(0.0, 8.0, 400)[1:-1]
+    time = np.linspace(0.0, 8.0, 150)[1:-1]
     field = run.field(far, time, side)
     assert run.drive_rate(time, side) == pytest.approx(field.velocity, rel=1e-9, abs=1e-9 * np.abs(field.velocity).max())
     assert run.drive_traction(time, side) == pytest.approx(field.stress, rel=1e-9, abs=1e-9 * np.abs(field.stress).max())

@@ -18,7 +18,7 @@ WIDER = 8.0, 4.0
 """An edge that has moved is looked for within the first number times the bracket, and then in steps that grow by the second."""
 
 
-class Found(Protocol):
+class FoundEdge(Protocol):
     """The last bracket of a search."""
 
     @property
@@ -47,10 +47,10 @@ class Found(Protocol):
         ...
 
 
-Edge = TypeVar("Edge", bound=Found)
+Edge = TypeVar("Edge", bound=FoundEdge)
 
 
-class Search(Protocol[Edge]):
+class SearchByRuns(Protocol[Edge]):
     """A search by runs of one duration (s)."""
 
     @property
@@ -66,12 +66,12 @@ class Search(Protocol[Edge]):
         """Return the edge between two values."""
         ...
 
-    def longer(self, factor: float) -> Search[Edge]:
+    def longer(self, factor: float) -> SearchByRuns[Edge]:
         """Return the same search by longer runs."""
         ...
 
 
-def held_in_longer_runs(search: Search[Edge], edge: Edge, span: tuple[float, float], within: float, *, given: bool) -> Edge:
+def held_in_longer_runs(search: SearchByRuns[Edge], edge: Edge, span: tuple[float, float], within: float, *, given: bool) -> Edge:
     """Return an edge as it is in runs that are long enough, with a sentence in `longer`.
 
     `span` are the ends of the search. If the duration was `given`, the edge stays, and the sentence says whether it holds.
@@ -96,7 +96,7 @@ def held_in_longer_runs(search: Search[Edge], edge: Edge, span: tuple[float, flo
     return replace(edge, longer=f"it still moved when the runs were made longer{told}")  # type: ignore[type-var]
 
 
-def _bracket(longer: Search[Edge], edge: Edge, span: tuple[float, float]) -> tuple[float, float]:
+def _bracket(longer: SearchByRuns[Edge], edge: Edge, span: tuple[float, float]) -> tuple[float, float]:
     """Return two values between which longer runs change. Raises InputError if there are none in the search."""
     down = longer.at(edge.low) != edge.at_low
     known, wanted, end = (edge.low, edge.at_low, span[0]) if down else (edge.high, edge.at_high, span[1])
