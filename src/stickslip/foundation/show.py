@@ -14,7 +14,7 @@ import numpy as np
 
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.constants import YEAR
-from stickslip.foundation.given import Given, preferred
+from stickslip.foundation.given import Given, display_name, preferred
 from stickslip.foundation.names import has_prefixes, readable_unit, short_units, si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, fields_of, in_units
 
@@ -35,6 +35,8 @@ def with_unit(value: float, unit: str) -> str:
     """Format a quantity for users: 34.3 GPa, 1.5147648e+10 s (480 years); slow rates are also given per year."""
     if unit == "1":
         return number(value)
+    if isinstance(value, Given):
+        return f"{number(value.amount)} {display_name(value.unit, unit)}"
     shown, size = readable_unit(unit, value, plain=True)
     plain = f"{number(value / size)} {shown}"
     if unit == "s" and 1e5 <= abs(value) < math.inf:
