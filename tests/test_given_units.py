@@ -134,6 +134,7 @@ def test_a_unit_is_taken_where_numbers_can_be_read_in_it() -> None:
         assert (readable_unit("m", 100.0)[0], readable_unit("m", 100.0, of=PLACE)) == ("m", ("ft", 0.3048))
     assert readable_unit("rad/s", 12.0)[0] == "rad/s"
     assert preferred("rad/s") is None
+    assert with_unit(block(body={"mass": "200 lb"}).body.mass, "kg") == "200 lb", "a number that was given is shown as it was"
 
 
 def test_tables_and_sentences_of_the_command_line_have_the_unit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import stickslip as ss
-from stickslip.figures.runs.curves import PEAKS, RANGE
+from stickslip.figures.runs.packed import PEAKS, RANGE
 from stickslip.figures.runs.run import draw
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from tests.figures.legible import size_of
