@@ -63,7 +63,7 @@ def test_numbers_come_back_within_their_intervals_if_the_run_is_pressed_as_the_r
 
 @pytest.mark.slow
 def test_under_a_constant_normal_force_the_run_misses_the_record_and_says_so(record: dict[str, Any]) -> None:
-    found = ss.studies.infer(BEGIN, record, FREE[:2], starts=1, begin_at=NEAR_TWO, trend="none")
+    found = ss.studies.infer(BEGIN, record, FREE[:2], starts=1, begin_at=NEAR_TWO)
     outside = [not found.table.low[name] < true < found.table.high[name] for name, true in zip(FREE[:2], TRUE[:2], strict=True)]
     assert any(outside)
     assert found.fit.rms.item() > 10.0 * NOISE
