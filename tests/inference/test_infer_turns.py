@@ -11,6 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.inference.certainty.bends import rough_words
+from stickslip.inference.certainty.unresolved import unresolved
 from stickslip.inference.fit.asides import moved
 from stickslip.inference.fit.free import read_free
 from stickslip.inference.fit.loosened import loosened
@@ -194,6 +195,18 @@ def test_a_load_point_that_a_servo_rounds_often_is_no_slip() -> None:
     assert part.corners is not None
     assert any("shows a servo" in one for one in notes)
     assert not any("as slip does" in one for one in notes)
+
+
+@pytest.mark.parametrize(("every", "said"), [(3, False), (6, True), (14, True), (20, True), (28, True)])
+def test_steps_are_said_to_be_unresolved_however_far_apart_the_samples_are(every: int, said: bool) -> None:
+    """A servo of 80 ms is resolved by samples 30 ms apart; far from it they show it, but not how it turns."""
+    parts, _ = parts_of(double_shear.GUESS, [Record.read(double_shear.record(every, every // 2, 1))], None, None, "contact")
+    free = read_free(double_shear.GUESS, FREE, {})
+    model = Model(double_shear.GUESS, tuple(parts), free, sizes=first_sizes(parts))
+    truth = np.array([one.searched(double_shear.TRUTH[one.name]) for one in free])
+    told = unresolved(model, truth)
+    assert len(told) == said
+    assert all(one.startswith("5 steps of the drive happen between two samples") for one in told)
 
 
 def loose_models() -> tuple[Model, Model]:
