@@ -100,14 +100,14 @@ def test_weights_are_those_of_rsfit3000() -> None:
 def test_weights_and_windows_change_the_numbers_of_a_wrong_model_and_are_told() -> None:
     shear = friction(TRUTH.pull_rate) + 0.003 * CLOCK**2 + 5e-5 * correlated(1800, 0.0, 5)
     free = ["distance", "reference"]
-    study = ss.studies.infer(GUESS, read(shear), free, starts=1, windows=True)
+    study = ss.studies.infer(GUESS, read(shear), free, starts=1, windows=True, trend="none")
     assert study.windows is not None
     assert study.windows.columns.tolist() == ["begin", "end", "samples", *NAMES[2:]]
     assert study.windows.loc[0, NAMES[2:]].tolist() == list(study.values.values())
     assert len(study.windows) == 4
     assert np.ptp(study.windows["friction.distance"]) > 0.1 * study.values["friction.distance"]
     assert any(note.startswith("over 4 windows of") for note in study.notes)
-    weighted = ss.studies.infer(GUESS, read(shear), free, starts=1, weight=1.0)
+    weighted = ss.studies.infer(GUESS, read(shear), free, starts=1, weight=1.0, trend="none")
     assert abs(weighted.values["friction.distance"] / 30e-6 - 1.0) < abs(study.values["friction.distance"] / 30e-6 - 1.0)
 
 

@@ -80,7 +80,7 @@ def test_a_sharp_load_point_has_no_servo_and_rates_that_are_sampled_step_anywher
     rates = Record.read({"time (s)": clock, "mu": 0.6 + 1e-3 * np.sin(clock), "load rate (m/s)": np.array(STEPS.at(clock))})
     sampled: Any = loading_of(rates)
     unsure: Any = corners_of(rates, sampled.rate)
-    assert unsure.unsure == pytest.approx((0.2 / np.sqrt(12.0),) * 2)
+    assert unsure.unsure == pytest.approx((0.1, 0.1))
 
 
 def test_a_load_point_that_moves_as_no_servo_does_is_followed_as_it_is() -> None:

@@ -19,7 +19,7 @@ from stickslip.loading import PiecewiseLinear, Steps
 
 STEP, JUMP, RAMP = "record.step_", "record.jump_", "record.ramp"
 """Names: by how much a step of the drive, or a jump of the normal load, comes later than it seems, and how long jumps take (s)."""
-FARTHEST = 3.5
+FARTHEST = 3.0
 """A time may lie this many standard deviations from where it seems to be."""
 NARROWEST = 1e-3
 """A jump of the normal load takes at least this share of the time between its samples."""

@@ -24,8 +24,12 @@ NEARLY = 0.25
 """A part counts as shorter by this factor if its rate is nearly that of a part beside it."""
 CLEAR = 0.1
 """A change of rate counts if it is at least this share of the largest rate."""
-EVENLY = 1.0 / math.sqrt(12.0)
-"""Standard deviation of a time that may be anywhere between two samples, as a share of the time between them."""
+EVENLY = 0.5
+"""Standard deviation of a time that may be anywhere between two samples, as a share of the time between them.
+
+That of an even distribution is 1/sqrt(12). With it a step at a sample lies 1.7 standard deviations away, and several of them in one
+record would pull the numbers.
+"""
 TRIED = 100
 """Number of times of a servo that are tried before the best of them is improved."""
 FITS = 1.5
