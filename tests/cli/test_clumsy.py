@@ -13,6 +13,7 @@ import pytest
 
 from stickslip.cli.main import main
 from stickslip.cli.overrides import load
+from stickslip.foundation.given import shown_in
 from stickslip.scenarios.templates import template
 
 TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_name("clumsy.toml").read_text(encoding="utf-8"))
@@ -115,5 +116,6 @@ def test_what_can_be_understood_is_answered(typed: str, capsys: pytest.CaptureFi
 @pytest.mark.parametrize("typed", TABLE["si"])
 def test_units_of_the_trades_are_read(typed: str) -> None:
     scenario, _, change = typed.partition(" ")
-    problem = load(scenario, "check", [change]).problem
+    with shown_in({}):  # units that a command shows end with it
+        problem = load(scenario, "check", [change]).problem
     assert problem.parameters[change.partition("=")[0]].value == pytest.approx(TABLE["si"][typed], rel=1e-12)

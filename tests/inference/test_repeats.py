@@ -114,12 +114,17 @@ def repeating(seed: int, column: str | None = None) -> Any:
     return data, int(which.sum())
 
 
+@pytest.fixture(scope="module")
+def whole() -> Any:
+    """The fit of the record without repeats."""
+    return velocity_steps.inferred(velocity_steps.record(), velocity_steps.TWO)
+
+
 @pytest.mark.parametrize("column", [None, "mu"], ids=["rows", "one column"])
-def test_intervals_count_no_repeats(column: str | None) -> None:
+def test_intervals_count_no_repeats(whole: Any, column: str | None) -> None:
     """The noise is that of the sensor, and the standard uncertainty that of 80 % of the samples."""
     data, count = repeating(1, column)
     study = velocity_steps.inferred(data, velocity_steps.TWO)
-    whole = velocity_steps.inferred(velocity_steps.record(), velocity_steps.TWO)
     assert any(note.startswith(f"friction repeats the sample before it exactly in {count} of 1501 rows") for note in study.notes)
     assert study.model.samples == 1501 - count
     assert study.fit.noise.item() == pytest.approx(2e-4, rel=0.06)

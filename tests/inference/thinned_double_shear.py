@@ -1,4 +1,4 @@
-"""A double-direct-shear record, integrated by Radau's method: steps of a servo, a trend, a normal load that wobbles."""
+"""A double-direct-shear record, integrated by LSODA: steps of a servo, a trend, a normal load that wobbles."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def spring() -> Floats:
     found = []
     for begin, end in pairwise((*TIMES, float(CLOCK[-1]) + 0.01)):
         inside = CLOCK[(begin <= CLOCK) & (end > CLOCK)]
-        run = solve_ivp(change, (begin, end), state, "Radau", t_eval=np.union1d(inside, end), rtol=1e-9, atol=1e-11)
+        run = solve_ivp(change, (begin, end), state, "LSODA", t_eval=np.union1d(inside, end), rtol=1e-9, atol=1e-11)
         state = run.y[:, -1]
         found.append(run.y[0][: len(inside)])
     return np.concatenate(found)
