@@ -210,8 +210,8 @@ def test_steps_are_said_to_be_unresolved_however_far_apart_the_samples_are(every
 
 
 def loose_models() -> tuple[Model, Model]:
-    """Return a model of two thinned records, and the same one in which the steps of the drive of both are free."""
-    records = [Record.read(double_shear.record(10, 3, seed)) for seed in (1, 2)]
+    """Return a model of two thinned records, and the same one in which the servo of the drive of both is free."""
+    records = [Record.read(double_shear.record(20, 3, seed), 0.0, 50.0) for seed in (1, 2)]
     parts, _ = parts_of(double_shear.GUESS, records, None, None, "contact")
     free = read_free(double_shear.GUESS, ["a"], {})
     model = Model(double_shear.GUESS, tuple(parts), free, sizes=first_sizes(parts))
@@ -233,14 +233,16 @@ def test_a_search_that_goes_on_from_free_steps_has_each_of_them_once(monkeypatch
     """Many parts are searched in two turns, and a fit without derivatives goes on from the steps found."""
     infer, estimate = (import_module(f"stickslip.inference.{name}") for name in ("infer", "fit.estimate"))
     monkeypatch.setattr(infer, "MOST_SEARCHED", 1)
+    monkeypatch.setattr(import_module("stickslip.inference.fit.search"), "SCREENED", 1)
     polished = list[int]()
     for name, value in {"ROUGH": 0.0, "COMPETES": -1e9, "is_rough": lambda *_: True, "told_by": lambda *_: ""}.items():
         monkeypatch.setattr(estimate, name, value)
     monkeypatch.setattr(estimate, "polished", lambda model, x, loss: polished.append(len(x)) or x)
-    loose = loose_models()[1]
-    wishes: Any = SimpleNamespace(starts=2, loss="linear", seed=0)
-    found = infer._estimated(loose, wishes, lambda text: None)
-    labels = [one.label for one in found.model.free]
-    assert sorted(labels) == sorted({one.label for one in loose.free})
-    assert len(found.searched) == len(labels)
+    model, loose = loose_models()
+    for begun, starts in ((model, 2), (loose, 1)):
+        wishes: Any = SimpleNamespace(starts=starts, loss="linear", seed=0)
+        found = infer._estimated(begun, wishes, lambda text: None)
+        labels = [one.label for one in found.model.free]
+        assert sorted(labels) == sorted({one.label for one in loose.free})
+        assert len(found.searched) == len(labels)
     assert polished
