@@ -233,6 +233,24 @@ def test_python_in_the_words_of_a_trade_is_answered_with_ours(call: Callable[[],
         call()
 
 
+@pytest.mark.parametrize(
+    ("typed", "allowed", "wanted"),
+    [
+        ("displacment", ("slip", "slip_rate", "load"), ["slip"]),
+        ("torqe", ("slip", "load", "pull_rate"), ["load"]),
+        ("simulat", ("new", "run", "show"), ["run"]),
+        ("friction.displacment", ("friction.slip", "body.mass"), ["friction.slip"]),
+        ("block-on-spring", ("elastic-slab", "spring-block", "rotating-block"), ["spring-block"]),
+        ("qwertz", ("slip", "load"), []),
+        ("torqe", ("mass", "damping"), []),
+    ],
+)
+def test_a_misspelt_word_and_words_in_another_order_are_answered_as_those_meant(
+    typed: str, allowed: tuple[str, ...], wanted: list[str]
+) -> None:
+    assert meant(typed, allowed) == wanted
+
+
 def test_no_answer_names_many() -> None:
     for many in (list(library.names()), list(COMMANDS), list(ss.friction.LAWS), dir(run())):
         said = nearest("qqqq", many, listed="there")

@@ -13,7 +13,7 @@ from contextvars import ContextVar
 from dataclasses import is_dataclass
 from types import ModuleType
 
-from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same
+from stickslip.foundation.synonyms import last, meanings, parts_of, plain, same, words
 
 
 def printable(text: str) -> str:
@@ -149,7 +149,8 @@ def meant(word: str, allowed: Collection[str]) -> list[str]:
     """Return the allowed words that `word` may stand for; none if nothing is near.
 
     They are those with the same meaning (`synonyms.same`); else one that differs by a slip of the pen; else those of which it is a
-    part, as slab of elastic-slab, or the beginning; else the one that is spelled most alike.
+    part, as slab of elastic-slab, or the beginning, or that has all of their words, as block-on-spring those of spring-block; else
+    the one that is spelled most alike; else those that a misspelt word of the trades means.
     """
     found, best = same(word, allowed), max(allowed, key=lambda one: _likeness(word, one), default="")
     if not found and _likeness(word, best) >= MISTYPED:
@@ -157,10 +158,14 @@ def meant(word: str, allowed: Collection[str]) -> list[str]:
     if not found:
         found = [one for one in allowed if word.casefold() in parts_of(one)]
         found = found or [one for one in allowed if len(word) > 2 and plain(one).startswith(plain(word) or "-")]
+        found = found or [one for one in allowed if len(parts := set(parts_of(one))) > 1 and parts <= set(parts_of(word[:LONGEST]))]
         found = found if len(found) <= MOST_MEANT else []
     if found or meanings(word):  # a word that is known is not a misspelt one
         return found[:MOST_MEANT]
-    return [best] if _likeness(word, best) >= ALIKE[len(word) > SHORT] else []
+    if _likeness(word, best) >= ALIKE[len(word) > SHORT]:
+        return [best]
+    known = max(words(), key=lambda one: _likeness(last(word), one)) if len(word) >= SHORT else ""
+    return same(known, allowed)[:MOST_MEANT] if _likeness(last(word), known) >= MISTYPED else []
 
 
 def _likeness(word: str, other: str) -> float:

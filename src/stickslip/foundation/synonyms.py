@@ -52,6 +52,11 @@ def meanings(word: str) -> tuple[str, ...]:
     return _meant().get(plain(last(word)), ())
 
 
+def words() -> Iterable[str]:
+    """Return all words of the table, in their plain form."""
+    return _meant()
+
+
 def same(word: str, allowed: Iterable[str]) -> list[str]:
     """Return those of the allowed words that a word means: the same but for its spelling, or else those of the table.
 
