@@ -23,7 +23,7 @@ from stickslip.foundation.names import readable_unit
 from stickslip.foundation.show import brief, exactly, with_unit
 from stickslip.foundation.units import si_factor
 from stickslip.inference.inference import in_shown_unit
-from stickslip.problem.given_units import units_given
+from stickslip.problem.given_units import units_given, units_shared
 from stickslip.scenarios.scenario import Scenario, read_scenario
 
 LAW = ss.friction.Coulomb(0.3, 0.2)
@@ -212,3 +212,41 @@ def test_a_record_of_the_ground_in_g_is_shown_in_g(tmp_path: Path) -> None:
     assert units_given(again.problem) == units_given(scenario.problem)
     values = scenario.problem.ground_acceleration.values
     assert values == pytest.approx([9.80665 * float(row.split(",")[1]) for row in rows], rel=1e-12)
+
+
+SLIDER = ss.Problem(
+    ss.SpringBlock(mass="210 lb", stiffness="4500 lbf/inch", normal_force="300 lbf"), LAW, pull_rate="2 inch/min", initial_load=0.0
+)
+DRIVE = turned(pull_rate="120 rpm")
+
+
+def test_several_problems_are_shown_in_the_units_that_all_of_them_have() -> None:
+    metric = replace(SLIDER, pull_rate=8e-4)
+    assert units_shared([SLIDER, SLIDER]) == units_given(SLIDER)
+    assert set(units_shared([SLIDER, metric])) == {"N", "N/m"}  # of slips and slip rates one is in SI
+    assert units_shared([SLIDER, DRIVE]) == {**units_given(SLIDER), **units_given(DRIVE)}  # nothing of them is of one kind
+
+
+def test_compare_shows_slips_in_inches_beside_turns_in_rpm(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    problems = {"slider": SLIDER, "quicker": replace(SLIDER, pull_rate="3 inch/min"), "drive": DRIVE}
+    files = {name: tmp_path / f"{name}.toml" for name in problems}
+    for name, path in files.items():
+        path.write_text(Scenario(problems[name], 10.0).to_toml(), encoding="utf-8")
+    run = ss.simulate(problems["quicker"], 10.0)
+    event = run.events.loc[run.events.slip.idxmax()]
+
+    def sizes(*names: str, of: str) -> list[str]:
+        """Return the words of the row with the sizes of a run."""
+        with pytest.raises(SystemExit, match="0"):
+            main(["compare", *(str(files[name]) for name in names)])
+        return next(line for line in reversed(capsys.readouterr().out.splitlines()) if line.startswith(of)).split()
+
+    _, _, slip, _, rate, drop, unit, *_ = sizes("slider", "quicker", of="quicker")
+    assert float(slip) == pytest.approx(event.slip / 0.0254, rel=1e-5)
+    assert float(rate) == pytest.approx(run.events.peak_rate.max() / (0.0254 / 60.0), rel=1e-5)
+    assert float(drop) == pytest.approx(event.static_drop / 4.4482216152605, rel=1e-4)
+    assert unit == "lbf"
+    assert {"inch", "inch/min", "lbf"} <= set(sizes("slider", "drive", of="slider"))
+    assert {"rad", "rpm"} <= set(sizes("slider", "drive", of="drive"))
+    figure = ss.studies.compare(files["slider"], files["quicker"]).plot()
+    assert [axes.get_ylabel() for axes in figure.axes[:2]] == ["slip $u-u_0$ (inch)", "slip rate $v$ (inch/min)"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,10 +11,14 @@ import pytest
 
 import stickslip as ss
 from stickslip.inference.certainty.bends import rough_words
+from stickslip.inference.certainty.unresolved import unresolved
 from stickslip.inference.fit.asides import moved
+from stickslip.inference.fit.free import read_free
+from stickslip.inference.fit.loosened import loosened
 from stickslip.inference.fit.memory import Memory
 from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part
+from stickslip.inference.fit.part import Part, first_sizes
+from stickslip.inference.fit.setup import MANY_RATES, parts_of
 from stickslip.inference.fit.turns import changes_of, felt, moving
 from stickslip.inference.record.corners import Corners, corners_of, jumps_of
 from stickslip.inference.record.loading import loading_of
@@ -173,3 +178,69 @@ def test_one_sentence_says_with_which_numbers_a_run_bends_and_what_passes_a_samp
 def test_what_is_left_is_called_noise_only_if_it_forgets_itself(memory: float, left: str) -> None:
     study: Any = SimpleNamespace(features=None, model=SimpleNamespace(memory={"friction": Memory(memory, 1.0, 0.1)}))
     assert _left(study) == f"what is left {left}"
+
+
+def test_a_load_point_that_a_servo_rounds_often_is_no_slip() -> None:
+    """Followed by straight lines, each of 12 steps has some on its way from one rate to the next: more than 40 in all."""
+    clock, servo = np.arange(0.0, 260.0, 0.01), 0.08
+    moved = 1e-5 * clock
+    for k in range(12):
+        since = np.maximum(clock - 20.0 * (k + 1), 0.0)
+        moved = moved + (-1.0) ** k * 2e-5 * (since + servo * np.expm1(-since / servo))
+    moved = moved + 1e-8 * np.random.default_rng(1).standard_normal(len(clock))
+    made = Record.read({"time (s)": clock, "mu": 0.6 + 1e-3 * np.sin(clock), "load point (m)": moved})
+    lines: Any = loading_of(made)
+    assert len(lines.rate.segments) > MANY_RATES
+    (part,), notes = parts_of(ss.Problem(BODY, LAW, pull_rate=1e-5), [made], None, None, "contact")
+    assert part.corners is not None
+    assert any("shows a servo" in one for one in notes)
+    assert not any("as slip does" in one for one in notes)
+
+
+@pytest.mark.parametrize(("every", "said"), [(3, False), (6, True), (14, True), (20, True), (28, True)])
+def test_steps_are_said_to_be_unresolved_however_far_apart_the_samples_are(every: int, said: bool) -> None:
+    """A servo of 80 ms is resolved by samples 30 ms apart; far from it they show it, but not how it turns."""
+    parts, _ = parts_of(double_shear.GUESS, [Record.read(double_shear.record(every, every // 2, 1))], None, None, "contact")
+    free = read_free(double_shear.GUESS, FREE, {})
+    model = Model(double_shear.GUESS, tuple(parts), free, sizes=first_sizes(parts))
+    truth = np.array([one.searched(double_shear.TRUTH[one.name]) for one in free])
+    told = unresolved(model, truth)
+    assert len(told) == said
+    assert all(one.startswith("5 steps of the drive happen between two samples") for one in told)
+
+
+def loose_models() -> tuple[Model, Model]:
+    """Return a model of two thinned records, and the same one in which the steps of the drive of both are free."""
+    records = [Record.read(double_shear.record(10, 3, seed)) for seed in (1, 2)]
+    parts, _ = parts_of(double_shear.GUESS, records, None, None, "contact")
+    free = read_free(double_shear.GUESS, ["a"], {})
+    model = Model(double_shear.GUESS, tuple(parts), free, sizes=first_sizes(parts))
+    return model, loosened(model, model.begin).model
+
+
+def test_steps_of_each_record_are_free_also_where_those_of_another_one_are() -> None:
+    model, loose = loose_models()
+    one, *asides = loose.free
+    assert {each.part for each in asides} == {0, 1}
+    first = model.with_(free=(one, *(each for each in asides if each.part == 0)))
+    again = loosened(first, first.begin).model.free
+    assert {each.label for each in again} == {each.label for each in loose.free}
+    servo = model.with_(free=(one, *read_free(double_shear.GUESS, ["record.servo"], {})))
+    assert not any(each.aside and each.name == "record.servo" for each in loosened(servo, servo.begin).model.free)
+
+
+def test_a_search_that_goes_on_from_free_steps_has_each_of_them_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many parts are searched in two turns, and a fit without derivatives goes on from the steps found."""
+    infer, estimate = (import_module(f"stickslip.inference.{name}") for name in ("infer", "fit.estimate"))
+    monkeypatch.setattr(infer, "MOST_SEARCHED", 1)
+    polished = list[int]()
+    for name, value in {"ROUGH": 0.0, "COMPETES": -1e9, "is_rough": lambda *_: True, "told_by": lambda *_: ""}.items():
+        monkeypatch.setattr(estimate, name, value)
+    monkeypatch.setattr(estimate, "polished", lambda model, x, loss: polished.append(len(x)) or x)
+    loose = loose_models()[1]
+    wishes: Any = SimpleNamespace(starts=2, loss="linear", seed=0)
+    found = infer._estimated(loose, wishes, lambda text: None)
+    labels = [one.label for one in found.model.free]
+    assert sorted(labels) == sorted({one.label for one in loose.free})
+    assert len(found.searched) == len(labels)
+    assert polished

@@ -392,7 +392,8 @@ def _begun(
     if offer is not None:
         model = _model(problem, parts, [*_names(free), offer.name], wishes)
     shared = [one for one in model.free if one.part is None]
-    begun, notes = with_starts(shared, problem, recorded, wishes.begin_at or (), drift)
+    untold = "" if offer is None else offer.name
+    begun, notes = with_starts(shared, problem, recorded, wishes.begin_at or (), drift, untold=untold)
     return model.with_(free=(*begun, *(one for one in model.free if one.part is not None))), offer, notes
 
 
@@ -480,8 +481,9 @@ def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:
     others = [begun.with_(free=with_shared(x)).begin for x in few.others]
     others = [np.append(x, found.searched[len(x) :]) for x in others]
     others = [x for x in others if found.cost(x) < found.cost(found.searched) + COMPETES]
-    asides = [one for one in found.model.free if one.aside]
-    return replace(found, model=found.model.with_(free=(*model.free, *asides)), others=tuple(others))
+    first = {one.label: one for one in model.free}  # with the starts of the search
+    free = tuple(first.get(one.label, one) for one in found.model.free)
+    return replace(found, model=found.model.with_(free=free), others=tuple(others))
 
 
 def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:

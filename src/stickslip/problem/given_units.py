@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
@@ -44,6 +44,26 @@ def units_given(problem: Problem) -> Units:
         if len(unit) == 1 and unit[0]:
             found[PLACE if what == PLACE else si] = display_name(unit[0], si), float(si_factor(unit[0], si))
     return _with_slip(found)
+
+
+def units_shared(problems: Sequence[Problem]) -> Units:
+    """Return the units in which results of several problems are shown together: those in which all with such results were given.
+
+    A block beside a string keeps its inches, and the string its rpm; a block in inches beside a block in metres is shown in metres.
+    """
+    own = [(units_given(problem), _si_units(problem)) for problem in problems]
+    found = {}
+    for si in dict.fromkeys(si for units, _ in own for si in units):
+        several = {units.get(si) for units, known in own if si in known}
+        if len(several) == 1 and (unit := several.pop()):
+            found[si] = unit
+    return found
+
+
+def _si_units(problem: Problem) -> set[str]:
+    """Return the SI units of the results of a problem that may be shown in another one."""
+    shown = ("slip_rate", "slip", "load", "slip_acceleration", "stiffness")
+    return {PLACE, *(si_unit(what, problem.load_unit) for what in shown)}
 
 
 def _with_slip(found: dict[str, tuple[str, float]]) -> Units:
@@ -94,13 +114,19 @@ def in_given_units(method: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(method)
     def inside(*args: P.args, **kwargs: P.kwargs) -> T:
-        problem = _problem_of(args[0])
-        if problem is None:
+        problems = _problems_of(args[0])
+        if not problems:
             return method(*args, **kwargs)
-        with shown_in(units_given(problem)):
+        with shown_in(units_shared(problems)):
             return method(*args, **kwargs)
 
     return inside
+
+
+def _problems_of(owner: Any) -> list[Problem]:
+    """Return the problems of a comparison, or the one of another result."""
+    found = getattr(owner, "problems", None) or [_problem_of(owner)]
+    return [one for one in found if one is not None]
 
 
 def _problem_of(owner: Any) -> Problem | None:

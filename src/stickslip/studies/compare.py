@@ -111,6 +111,11 @@ class Comparison(Study):
         """The table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
         return pd.DataFrame([_row(name, solution) for name, solution in self.runs.items()], columns=list(COLUMNS))
 
+    @property
+    def problems(self) -> list[Problem]:
+        """The problem of each run: results are shown in the units that all were given in."""
+        return [run.problem for run in self.runs.values()]
+
     def _about(self) -> Iterator[str]:
         """Yield the version, the columns with their units, and every scenario in SI units, for the file of the table."""
         yield f"stickslip {stickslip.__version__}: runs side by side. Method: {PAPER}"

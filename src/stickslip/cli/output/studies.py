@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
+from stickslip.foundation.given import preferred, show_in
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, clean, number, with_unit
+from stickslip.problem.given_units import units_shared
 from stickslip.trajectory.reach import shown_slip
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ _ARGUMENT = re.compile(
 def show_comparison(found: Comparison) -> None:
     """Print the settings and the results of each run on standard output."""
     screen, rows = console(), found.table.to_dict("records")
+    show_in(units_shared(found.problems))
     say(screen, clean(found.scenario or f"{len(rows)} runs side by side"), style="bold")
     say(screen, clean(found.reach_text))
     screen.print()
@@ -45,9 +48,20 @@ def show_comparison(found: Comparison) -> None:
     settings = [[clean(row["name"]), *(str(row[name]) for name in words), *end] for row, end in zip(rows, ends, strict=True)]
     print_numbers(screen, ("\n", *(f"\n{word}" for word in words), "slip at\nthe end", "largest\ndisplacement"), settings, text=4)
     screen.print()
-    slip, rate = (si_unit(name, *found.table.load_unit) for name in ("slip", "slip_rate"))
-    sizes = (f"largest\nslip\n{slip}", "its\npulses", f"peak\nrate\n{rate}", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
-    print_numbers(screen, ("", "events", *sizes, "shocks"), [_sizes(row) for row in rows], text=1)
+    (slip, slips), (rate, rates) = (_in_one_unit(rows, *both) for both in (("slip", "slip"), ("peak_rate", "slip_rate")))
+    headings = (f"largest\nslip\n{slip}", "its\npulses", f"peak\nrate\n{rate}", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
+    sizes = [_sizes(row, *both) for row, *both in zip(rows, slips, rates, strict=True)]
+    print_numbers(screen, ("", "events", *headings, "shocks"), sizes, text=1)
+
+
+def _in_one_unit(rows: Sequence[Mapping[Hashable, Any]], column: str, quantity: str) -> tuple[str, list[str]]:
+    """Return the unit of a column for its heading, and its numbers; those of several kinds of bodies have each its own unit."""
+    values, units = [row[column] for row in rows], [si_unit(quantity, row["load_unit"]) for row in rows]
+    if len(set(units)) > 1:
+        return "", ["-" if math.isnan(value) else brief(value, unit) for value, unit in zip(values, units, strict=True)]
+    largest = max((abs(value) for value in values if not math.isnan(value)), default=None)
+    name, size = preferred(units[0], largest) or (units[0], 1.0)
+    return name, [number(value / size, 6) for value in values]
 
 
 def _show_rules(screen: Console, found: Comparison, rows: Sequence[Mapping[Hashable, Any]]) -> None:
@@ -69,16 +83,18 @@ def _show_rules(screen: Console, found: Comparison, rows: Sequence[Mapping[Hasha
         say(screen, "these numbers are the same under every rule")
 
 
-def _sizes(row: Mapping[Hashable, Any]) -> list[str]:
-    """Return the results of one run of a comparison as texts, its name first."""
+def _sizes(row: Mapping[Hashable, Any], slip: str, rate: str) -> list[str]:
+    """Return the results of one run of a comparison as texts, its name first, then largest slip and slip rate as they are shown."""
     drops = (_drop(row[name], row["load_unit"]) for name in ("static_drop", "dynamic_drop"))
-    sizes = number(row["slip"], 6), f"{row['pulses']:g}", number(row["peak_rate"], 6), *drops, number(row["duration"], 6)
+    sizes = slip, f"{row['pulses']:g}", rate, *drops, number(row["duration"], 6)
     return [clean(row["name"]), str(row["events"]), *sizes, str(row["shocks"])]
 
 
 def _drop(value: float, unit: str) -> str:
     """Format a drop with five significant digits, or as a dash if there is no event."""
-    return "-" if math.isnan(value) else with_unit(float(f"{value:.5g}"), unit)
+    if math.isnan(value):
+        return "-"
+    return brief(value, unit, 5) if preferred(unit, abs(value)) else with_unit(float(f"{value:.5g}"), unit)
 
 
 def show_analogy(scenario: Scenario, found: Analogy) -> None:

@@ -17,9 +17,9 @@ from stickslip.inference.fit.part import Part
 WITHIN = 1.5
 """A step happens between two samples if its servo takes less than this many times the time between them."""
 LIKELY = 0.5
-"""A load point that shows no servo may have one of this share of the time between two samples."""
+"""A load point that shows no servo, or a short one, may have one of this share of the time between two samples."""
 SHOWN = 1.0
-"""How a step turns matters if it changes a sample by more than this many standard deviations."""
+"""How a step turns matters if a sharp turn, or a wider one, changes a sample by more than this many standard deviations."""
 
 
 def unresolved(model: Model, searched: Floats) -> list[str]:
@@ -43,9 +43,9 @@ def _steps(model: Model, searched: Floats, i: int) -> Iterator[str]:
     if not within.any():
         return
     apart = float(np.median(spacing[within]))
-    other = 0.0 if servo > LIKELY * apart else min(LIKELY * apart, part.corners.servo + 2.0 * part.corners.spread)
-    before, after = (_with_servo(model, i, one).part_residual(searched, i) for one in (servo, other))
-    if float(np.max(np.abs(after - before), initial=0.0)) > SHOWN:
+    wider = min(LIKELY * apart, part.corners.servo + 2.0 * part.corners.spread)
+    found, *others = (_with_servo(model, i, one).part_residual(searched, i) for one in (servo, 0.0, max(servo, wider)))
+    if max(float(np.max(np.abs(one - found), initial=0.0)) for one in others) > SHOWN:
         count = int(within.sum())
         happen = "1 step of the drive happens" if count == 1 else f"{count} steps of the drive happen"
         yield (

@@ -81,7 +81,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
             tell("polishing without derivatives")
             better = polished(found.model, found.searched, loss)
             if found.cost(better) < found.cost(found.searched) - COMPETES:
-                found = _with_noise(model, better, loss, tell, best)
+                found = _with_noise(found.model, better, loss, tell, best)
         return replace(found, others=_competing(found.model, found.searched, [loose.whole(x) for _, x in minima[1:]], thin.every))
     except KeyboardInterrupt as stop:
         if not len(best.searched):

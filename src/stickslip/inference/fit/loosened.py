@@ -30,13 +30,13 @@ class Loosened:
 
 def loosened(model: Model, searched: Floats) -> Loosened:
     """Return the model with those numbers of its loading free whose standard deviation changes the residuals."""
-    named = {one.name for one in model.free}
+    named = {(one.name, one.part) for one in model.free}
     felt = list[tuple[float, Free]]()
     if not model.of_means:
         for i, part in enumerate(model.parts):
             before = model.part_residual(searched, i)
             for one in part.asides:
-                if one.name not in named and one.prior is not None:
+                if not {(one.name, None), (one.name, i)} & named and one.prior is not None:
                     by = one.start + one.prior.second
                     changed = replace(part, asides=tuple(replace(each, start=by) if each is one else each for each in part.asides))
                     after = model.with_(parts=(*model.parts[:i], changed, *model.parts[i + 1 :])).part_residual(searched, i)

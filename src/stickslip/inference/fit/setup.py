@@ -78,11 +78,13 @@ def parts_of(
         if record.clock[-1] <= 0.0:
             raise InputError(f"{record.name}: the record has no duration")
         pressing, told = _pressing(problem, record) if pressed else (None, tuple(_uneven(problem, record)))
-        rate = None if loading is None else loading.rate
-        found.append(with_asides(Part(record, rate, observed, sensor, begins, pressing, away), len(found)))
+        pull = None if loading is None else loading.rate
+        found.append(with_asides(Part(record, pull, observed, sensor, begins, pressing, away), len(found)))
         told = (*told, *rounded(found[-1]))
         before = f"{record.name}: " if len(records) > 1 else ""
-        said = [*record.notes, *told, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
+        said = [*record.notes, *told, *(() if loading is None else loading.notes)]
+        rate = found[-1].loading  # a servo that rounds the corners is none of its turns
+        said += () if rate is None else _doubts(problem, rate)
         said += about_drive(problem, record, sensor, start, begins)
         if loading is None:
             said.append("the record has no load point: the loading is that of the problem")

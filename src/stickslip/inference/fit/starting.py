@@ -44,12 +44,19 @@ class StickSlip(NamedTuple):
 
 
 def with_starts(
-    free: Sequence[Free], problem: Problem, parts: Sequence[Part], given: Iterable[str], drift: PlateauDrift | None = None
+    free: Sequence[Free],
+    problem: Problem,
+    parts: Sequence[Part],
+    given: Iterable[str],
+    drift: PlateauDrift | None = None,
+    *,
+    untold: str = "",
 ) -> tuple[tuple[Free, ...], list[str]]:
     """Return the free numbers with starting values from the record, and sentences on that.
 
     `given` has the names of those whose start the user chose. A number keeps the value of the problem as a second start. `drift` is
-    that of the plateaus, if one of the numbers is.
+    that of the plateaus, if one of the numbers is. The sentences leave `untold` out, a number that may be held
+    again.
     """
     given = {full_name(str(name), [one.name for one in free], "", "") for name in given}
     shown = {name: value for part in reversed(parts) for name, value in _shown(problem, part, drift, {one.name for one in free})}
@@ -60,7 +67,8 @@ def with_starts(
         values = {name: value for name, value in values.items() if _allowed(problem, {name: value})}
         values = values if _allowed(problem, values) else {}
     found = [one.begun_at(values[one.name]) if one.name in values else one for one in free]
-    texts = [f"{one.name} {brief(values[one.name], one.declared.unit, 3)}" for one in wanted if one.name in values]
+    told = [one for one in wanted if one.name in values and one.name != untold]
+    texts = [f"{one.name} {brief(values[one.name], one.declared.unit, 3)}" for one in told]
     notes = [f"the search begins with what the record shows: {', '.join(texts)}; also with the values given"] if texts else []
     return tuple(found), [*notes, *dict.fromkeys(note for part in parts for note in _doubts(problem, part, free))]
 
