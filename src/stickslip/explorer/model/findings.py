@@ -198,9 +198,11 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
 
 
 def _reach(found: Findings) -> str:
-    """Return the slip at the end and the largest displacement, if there is any."""
+    """Return the slip at the end and the largest displacement, if there is any, in few words: the plots need the room."""
     reach = found.solution.reach
-    return reach.text(found.solution.problem, DIGITS).replace(" um", " µm") if reach.largest else ""
+    text = reach.text(found.solution.problem, DIGITS).replace(" um", " µm") if reach.largest else ""
+    end, which, _ = text.partition(", which is the largest")
+    return f"{end}, the largest" if which else text
 
 
 def _motion(found: Findings) -> str:
