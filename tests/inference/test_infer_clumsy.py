@@ -79,7 +79,7 @@ def test_force_on_a_slab_and_its_sensor_are_refused() -> None:
     force = {"time (s)": CLOCK, "shear force (N)": 3e4 * FRICTION, "load point (m)": MOVED}
     with pytest.raises(ss.InputError, match="the loads of a slab are in Pa, and shear_force in N: give normal_force"):
         ss.studies.infer(SLAB, force, ["a"])
-    with pytest.raises(ss.InputError, match="which a slab has not"):
+    with pytest.raises(ss.InputError, match="the load cell behind the spring of a block: a slab has none"):
         ss.studies.infer(SLAB, GOOD, ["a"], sensor="spring")
 
 

@@ -112,9 +112,17 @@ def remembered(value: Any, number: float, unit: str) -> float:
     if not isinstance(value, str) and not has_unit(value):
         return number
     parts = split_quantity(value if isinstance(value, str) else as_text(value))
-    if parts is None or (has_unit(value) and to_si(*parts, unit) != number):  # another registry may define its units otherwise
+    if parts is None or (has_unit(value) and not _is_same(*parts, number, unit)):
         return number
     return as_given(number, *parts, unit)
+
+
+def _is_same(amount: float, written: str, number: float, unit: str) -> bool:
+    """Return True if an amount of a unit is a number (in `unit`) here, too: another registry may define its units otherwise."""
+    try:
+        return to_si(amount, written, unit) == number
+    except InputError:
+        return False
 
 
 def unit_among(value: Any, units: str) -> str:
