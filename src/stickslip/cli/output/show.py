@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.given import show_in
 from stickslip.foundation.show import clean, sentence
-from stickslip.problem.given_units import units_given
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -55,6 +54,8 @@ def say(screen: Console, *texts: str, style: str | None = None) -> None:
 
 def titled(scenario: Scenario) -> Console:
     """Print the title of a scenario, or its name, on the console for results, and return the console."""
+    from stickslip.problem.given_units import units_given  # help does without problems
+
     screen = console()
     show_in(units_given(scenario.problem))
     say(screen, clean(scenario.title or scenario.name), style="bold")
