@@ -4,8 +4,9 @@ A drive with the moment of inertia J under a speed controller with the gains kp 
 like the impedance Zd = kp + i (w J - ki / w), and sends back the share (Z - Zd) / (Z + Zd) of a wave in pipe of the impedance Z.
 With ki = w^2 J inertia and integral gain cancel at that frequency, and with kp = Z nothing is sent back there.
 
-Sources: Halsey, Kyllingstad & Kylling 1988, SPE 18049 (torque feedback); Kyllingstad & Nessjoen 2009, SPE/IADC 119660 (a speed
-controller tuned to the period of stick-slip); Dwars 2015, SPE/IADC 173037 (impedance matching without the inertia of the drive).
+The formulas follow from the equation of the drive. Such drives: Halsey, Kyllingstad & Kylling 1988, SPE 18049 (torque feedback);
+Kyllingstad & Nessjoen 2009, SPE/IADC 119660 (a speed controller tuned to the period of stick-slip); Dwars 2015, SPE/IADC 173037
+(impedance matching without the inertia of the drive).
 """
 
 from __future__ import annotations
@@ -13,8 +14,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from typing import Any, Protocol, TypeVar
-
-import numpy as np
 
 from stickslip.bodies.contract import BodyOnCharacteristics
 from stickslip.foundation.arguments import shown
@@ -24,14 +23,12 @@ from stickslip.foundation.quantities import Quantity
 MATCHED = "impedance matched"
 """The word for a drive whose impedance is that of the pipe at all periods of stick-slip."""
 TOP_DRIVE = 2900.0
-"""The moment of inertia (kg m^2) of a top drive where none is given: one that was measured (Aarsnes & Shor 2018, well B)."""
+"""The moment of inertia (kg m^2) of a top drive where none is given: that of well B of Aarsnes & Shor 2018."""
 SLOW = 10.0
 """Time in which a drive with matched impedance makes up for what it lags behind, in two-way travel times of the string (1)."""
 PERIOD = Quantity("s", "period of the stick-slip to which the drive is tuned", above=0)
 MEANING = f'a drive tuned to a period of stick-slip, as "5 s", or "{MATCHED}"; it gives the three numbers of the drive'
 """Meaning of the key in a scenario."""
-
-
 GAIN = Quantity("N m s", "proportional gain of the drive", above=0)
 INERTIA = Quantity("kg m^2", "moment of inertia of the drive", above=0)
 
@@ -77,7 +74,7 @@ def tuned_period(string: BodyOnCharacteristics) -> float:
     """Return the period (s) at which inertia and integral gain of a drive cancel; NaN if it has not both."""
     if not (string.driver_inertia > 0.0 and string.driver_integral_gain > 0.0):
         return math.nan
-    return 2.0 * math.pi * float(np.sqrt(string.driver_inertia / string.driver_integral_gain))
+    return 2.0 * math.pi * math.sqrt(string.driver_inertia / string.driver_integral_gain)
 
 
 def sent_back(string: BodyOnCharacteristics, period: float) -> float:

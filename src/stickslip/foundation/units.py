@@ -157,28 +157,8 @@ _ACCELERATIONS = {
 """Units of acceleration whose names mean another thing elsewhere: g is also a gram, and pint's gal is a gallon."""
 _LOGGED = (
     *("m", "mm", "um", "cm", "km", "ft", "kft", "in", "s", "sec", "ms", "min", "hr", "kg", "rad", "deg", "rpm", "rev"),
-    *(
-        "N",
-        "kN",
-        "MN",
-        "lb",
-        "lbs",
-        "lbf",
-        "klb",
-        "klbs",
-        "klbf",
-        "kip",
-        "Pa",
-        "kPa",
-        "MPa",
-        "GPa",
-        "bar",
-        "psi",
-        "ksi",
-        "Nm",
-        "kNm",
-        "daNm",
-    ),
+    *("N", "kN", "MN", "lb", "lbs", "lbf", "klb", "klbs", "klbf", "kip", "Nm", "kNm", "daNm"),
+    *("Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi"),
 )
 _CAPITALS = {name.upper(): name for name in _LOGGED}
 """What a unit in capitals means, as old loggers write it, where it means nothing else: MPA is never a thousandth of a pascal."""

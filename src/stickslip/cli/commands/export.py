@@ -44,7 +44,8 @@ def export(
     states of the law, each with its unit in the heading; .nc has the same as
     netCDF. A file .txt holds on-fault time series as in the SCEC/USGS rupture
     benchmarks (t slip slip-rate shear-stress; s, m, m/s, MPa; of a block without
-    --area the shear force in N). Samples are exact, and right limits at jumps.
+    --area the shear force in N). Samples are values of the run
+    itself, not interpolated, and right limits at jumps.
 
     \b
       stickslip export fig6-slab curves.csv

@@ -26,7 +26,7 @@ from stickslip.problem.problem import Problem
 TRENDS = ("auto", "none")
 """What may be done about a drift: free it where it shows, or nothing."""
 KEPT = 3.0
-"""A drift stays free if it is larger than this many standard errors: less than one record without a drift in 300 gets one."""
+"""A drift stays free if it is larger than this many standard errors; normal noise alone gives one record of 370 so large a one."""
 UNITS = {TREND: "1/m", DRIFT: "1/s"}
 
 
