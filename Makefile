@@ -29,7 +29,7 @@ test-all:
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
 browser: $(VENV)/.installed-test
-	tests/explorer/install_browser.sh $(BIN)/python
+	tests/extensions/explorer/install_browser.sh $(BIN)/python
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
@@ -72,8 +72,8 @@ $(BIN)/python:
 
 # The lowest and the newest versions of libraries that pyproject.toml allows, each in an environment of its own, with `doctor` and the
 # tests that depend on libraries most. Needs uv; run both before a release and when a bound changes.
-MATTER = tests/engine/test_verified_numbers.py tests/batch/test_members.py tests/figures/test_figures.py tests/sweeps/test_store.py \
-    tests/exports tests/scenarios tests/test_quantities.py tests/test_storage.py tests/cli/test_commands.py tests/explorer/test_page_views.py
+MATTER = tests/core/engine/test_verified_numbers.py tests/extensions/sweeps/batch/test_members.py tests/core/figures/test_figures.py tests/extensions/sweeps/test_store.py \
+    tests/exports tests/scenarios tests/core/foundation/test_quantities.py tests/test_storage.py tests/core/cli/test_commands.py tests/extensions/explorer/test_page_views.py
 oldest: RESOLUTION = lowest-direct
 oldest: OLD_WARNINGS = -W ignore::DeprecationWarning
 newest: RESOLUTION = highest

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.execution.chunk import Work, run_chunk
-from stickslip.sweeps.execution.cluster import cluster, stream
-from stickslip.sweeps.execution.plan import make_plan
+from stickslip.extensions.sweeps.design.axis import Values
+from stickslip.extensions.sweeps.execution.chunk import Work, run_chunk
+from stickslip.extensions.sweeps.execution.cluster import cluster, stream
+from stickslip.extensions.sweeps.execution.plan import make_plan
 
 if TYPE_CHECKING:
     from distributed import Client

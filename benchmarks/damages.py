@@ -10,8 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from stickslip.extensions.sweeps.results.layout import FORMAT
 from stickslip.foundation import netcdf_file
-from stickslip.sweeps.results.layout import FORMAT
 
 BLOCK = 512
 """Number of bytes that are overwritten or exchanged."""

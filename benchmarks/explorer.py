@@ -14,13 +14,13 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks.explorer_in_browser import print_table
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import StripRange, strip_of
-from stickslip.explorer.page.page import TITLES
-from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.page.view import headings_of, view_bytes
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.model.strip import StripRange, strip_of
+from stickslip.extensions.explorer.page.page import TITLES
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.explorer.page.view import headings_of, view_bytes
 
 CASES = (
     ("fig5-slab-printed", "friction.wavenumber", 5.0),

@@ -14,7 +14,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from tests.explorer.browser.harness import launch, serve
+from tests.extensions.explorer.browser.harness import launch, serve
 
 CASES = (
     ("fig6-slab", "friction-alpha"),

@@ -24,12 +24,12 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 import numpy as np
-from tests.inference.files_of_programs import CLOCK, FORCE, RAM, labview, log_ascii, universal
+from tests.extensions.inference.files_of_programs import CLOCK, FORCE, RAM, labview, log_ascii, universal
 
 import stickslip as ss
 from benchmarks.damages import RECORDS, copied, damage, edit, edit_metadata
 from stickslip.cli.commands.show import StoredSweep, stored
-from stickslip.sweeps.results.store import open_store
+from stickslip.extensions.sweeps.results.store import open_store
 
 LIMIT = 60.0
 """Seconds after which a worker hangs."""

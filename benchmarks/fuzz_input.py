@@ -22,8 +22,8 @@ from rich.progress import track
 
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.friction import FromExpression
-from stickslip.scenarios import load_scenario
-from stickslip.scenarios.library import names, text
+from stickslip.problem.scenarios import load_scenario
+from stickslip.problem.scenarios.library import names, text
 
 LIMIT = 2.0
 """Processor time (s) in which each must be read or refused."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import stickslip as ss
-from stickslip.loading import PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.loading import PiecewiseLinear, Sinusoidal, Steps
 
 SLAB, BLOCK = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), ss.SpringBlock(1.0, 20.0, 10.0)
 WEAKENS = ss.friction.FromExpression("0.55 + 0.03*sin(3*u)*exp(-u*u) + 0.01/(1 + u*u)")

@@ -8,8 +8,8 @@ import numpy as np
 
 from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.bodies import ElasticSlab
 from stickslip.friction import SinusoidalSlip
+from stickslip.problem.bodies import ElasticSlab
 
 try:
     import heyoka

@@ -22,7 +22,7 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 import stickslip as ss
-from stickslip.loading import HoldAndSlide, PiecewiseLinear, Steps
+from stickslip.problem.loading import HoldAndSlide, PiecewiseLinear, Steps
 
 Floats = NDArray[np.float64]
 SLOW, FAST, AT = 22.9e-6, 228.4e-6, 0.735

@@ -15,9 +15,9 @@ import numpy as np
 
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.bodies import ElasticSlab
-from stickslip.engine_input.forcing import steady_inflow
+from stickslip.engine.input.forcing import steady_inflow
 from stickslip.friction import SinusoidalSlip
+from stickslip.problem.bodies import ElasticSlab
 from stickslip.run.simulate import simulate
 
 try:

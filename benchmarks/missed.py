@@ -12,13 +12,13 @@ import mpmath
 import numpy as np
 
 import stickslip as ss
+from stickslip.engine.history.history import History, Positions
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from stickslip.observables.given_on_discs import segment_of
-from stickslip.observables.proof import MotionOnDiscs, _unsure_duration
-from stickslip.observables.proof_of_states import sizes
-from stickslip.trajectory.history import History, Positions
+from stickslip.solution.observables.given_on_discs import segment_of
+from stickslip.solution.observables.proof import MotionOnDiscs, _unsure_duration
+from stickslip.solution.observables.proof_of_states import sizes
 
 DIGITS, PLACES = 40, 200
 MPMATH = SimpleNamespace(

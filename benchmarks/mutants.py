@@ -74,7 +74,7 @@ NAMED = (
         "return direction * run.trial[1] > grows * (",
         "return direction * run.trial[1] < grows * (",
     ),
-    Named("tolerance-times-1000", "engine_input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
+    Named("tolerance-times-1000", "engine/input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
     Named(
         "no-certificates",
         "engine/contact_step/certificate.py",
@@ -89,25 +89,25 @@ NAMED = (
     ),
     Named(
         "left-and-right-exchanged",
-        "trajectory/history.py",
+        "engine/history/history.py",
         'side="left" if side == "left" else "right") - 1',
         'side="right" if side == "left" else "left") - 1',
     ),
     Named(
         "heat-without-slip-rate",
-        "observables/energy/balance.py",
+        "solution/observables/energy/balance.py",
         "return lambda at: history.resistance(at) * np.abs(history.rate(at))",
         "return lambda at: history.resistance(at) * history.rate(at)",
     ),
     Named(
         "heat-at-zero-rate",
-        "trajectory/history.py",
+        "engine/history/history.py",
         "law.coefficient(slip, np.abs(self.rate(at)), one_argument(states))",
         "law.coefficient(slip, 0.0 * np.abs(self.rate(at)), one_argument(states))",
     ),
     Named(
         "no-kinetic-energy-of-the-block",
-        "observables/energy/balance.py",
+        "solution/observables/energy/balance.py",
         '"stored": spring + 0.5 * body.inertia * rate**2',
         '"stored": spring + 0.0 * body.inertia * rate**2',
     ),

@@ -17,13 +17,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
-from tests.reference.convolution import convolution
-from tests.reference.planar_methods import PlanarCase, SlipWeakeningAtNodes, volume
+from tests.core.run.reference.convolution import convolution
+from tests.extensions.planar.planar_methods import PlanarCase, SlipWeakeningAtNodes, volume
 
 import stickslip as ss
 from benchmarks.planar_kernels import NumbaSteps, convolved, exponentials, exponentials_in_c, lines_of_nodes
-from stickslip.planar.memory import advanced
-from stickslip.planar.solver import PlanarSolver, in_double_precision
+from stickslip.extensions.planar.memory import advanced
+from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
 
 Floats = NDArray[np.float64]
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

@@ -14,8 +14,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.solver import PlanarSolver
 from stickslip.friction import LinearSlipWeakening
-from stickslip.planar.solver import PlanarSolver
 
 Floats = NDArray[np.float64]
 SOURCE = Path(__file__).parent / "c_kernel" / "exponentials.c"

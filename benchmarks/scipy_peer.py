@@ -14,9 +14,9 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.bodies import ElasticSlab
-from stickslip.engine_input.forcing import steady_inflow
+from stickslip.engine.input.forcing import steady_inflow
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
+from stickslip.problem.bodies import ElasticSlab
 
 Function = Callable[[float], float]
 Piece = tuple[float, float, Function, Function, Function]

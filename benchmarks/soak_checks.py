@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 import stickslip as ss
 from benchmarks.soak_problems import Draw
-from stickslip.engine_input.prepare import SLOWEST
+from stickslip.engine.input.prepare import SLOWEST
 from stickslip.foundation.errors import InputError
-from stickslip.observables.energy.balance import energies, epochs, heat
-from stickslip.observables.waves import Waves
+from stickslip.solution.observables.energy.balance import energies, epochs, heat
+from stickslip.solution.observables.waves import Waves
 
 TIMES = 101
 ENERGIES = 4

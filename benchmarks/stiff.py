@@ -22,8 +22,8 @@ from benchmarks import ours
 from benchmarks.problems import ROUND, SLAB, Case, Floats
 from benchmarks.runner import Method, Runner, UnavailableError
 from benchmarks.speed import LADDER, interleaved, show
+from stickslip.extensions.schemes.regularisations import with_contact_mass, with_lag
 from stickslip.run.simulate import simulate
-from stickslip.studies.regularisations import with_contact_mass, with_lag
 
 LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
 PULL, LOAD, DURATION, SETTLES = 2.6, 60e6, 5.7, 1e-6

@@ -16,15 +16,15 @@ import numpy as np
 from benchmarks import c_peer, scipy_peer
 from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import UnavailableError
-from stickslip.batch import QUANTITIES, run_members
-from stickslip.batch.kernels.runs import Group, engine_address, run_group
-from stickslip.batch.kernels.workspace import new_workspace, table_of
-from stickslip.batch.setups import set_up
-from stickslip.batch.vectorised_problem import member
-from stickslip.bodies import ElasticSlab
+from stickslip.engine.lanes.runs import Group, engine_address, run_group
+from stickslip.engine.lanes.workspace import new_workspace, table_of
 from stickslip.engine.memory.simd import WIDTH
+from stickslip.extensions.sweeps.batch import QUANTITIES, run_members
+from stickslip.extensions.sweeps.batch.setups import set_up
+from stickslip.extensions.sweeps.batch.vectorised_problem import member
 from stickslip.friction import SinusoidalSlip
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.bodies import ElasticSlab
+from stickslip.problem.scenarios.scenario import Scenario
 
 try:
     import heyoka

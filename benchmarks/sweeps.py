@@ -22,7 +22,7 @@ from rich.table import Table
 from benchmarks.problems import EVENT, ROUND, SHOCKS, TRANSIT
 from benchmarks.runner import UnavailableError
 from benchmarks.sweep_peers import ADAPTED, FEWER, ONE_THREAD, PEERS, Run, Task, ours
-from stickslip.batch import run_members
+from stickslip.extensions.sweeps.batch import run_members
 
 Rates = dict[tuple[str, int], list[tuple[float, float]]]
 ROUNDS = 5

@@ -25,7 +25,7 @@ WITHOUT = {
         "is_negative": "return False",
     },
     "engine/contact_step/negative_friction.py": {"goes_below_zero": "return False"},
-    "batch/kernels/lanes.py": {
+    "engine/lanes/lanes.py": {
         "prove": "stretch(lanes); lanes.share = lanes.state.residual = lanes.state.unbalanced = 0.0",
         "check_end": "return (lanes.rate[0] > 0.0) & (bound_below(lanes.rate) > 0.0) & (abs(lanes.rate_end) < math.inf)",
     },
@@ -53,7 +53,7 @@ def measure() -> dict[str, float]:
     from benchmarks.ours import runner
     from benchmarks.problems import CASES
     from benchmarks.sweeps import TASKS
-    from stickslip.batch import run_members
+    from stickslip.extensions.sweeps.batch import run_members
 
     found = {}
     for task in TASKS:

@@ -17,8 +17,8 @@ import numpy as np
 
 import stickslip as ss
 from benchmarks.given_kinds import cases
+from stickslip.engine.input import prepare
 from stickslip.engine.state.layout import FirstLoad, LadderCell, LawPiece, LoadingSegment, Params, Setup
-from stickslip.engine_input import prepare
 
 SIZES = (1e-6, 1e-3)
 """Errors of a number, relative."""

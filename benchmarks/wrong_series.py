@@ -20,11 +20,11 @@ import stickslip as ss
 from benchmarks.missed import missed, missed_by_states, of_duration, worst_of, worst_of_states
 from stickslip.engine import compiled_formula
 from stickslip.engine.formula_code.taylor_series import FormulaWriter
-from stickslip.engine_input import prepare
-from stickslip.loading import PiecewiseLinear, Sinusoidal, Steps
-from stickslip.observables.proof import proven
-from stickslip.observables.proof_of_states import sizes, states_proven
-from stickslip.trajectory.history import History
+from stickslip.engine.history.history import History
+from stickslip.engine.input import prepare
+from stickslip.problem.loading import PiecewiseLinear, Sinusoidal, Steps
+from stickslip.solution.observables.proof import proven
+from stickslip.solution.observables.proof_of_states import sizes, states_proven
 
 SIZES = (1e-6, 1e-3, 0.1)
 """Errors of a coefficient, relative."""

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.scenario import Scenario
 
 FOLDER = Path(__file__).with_name("exact")
 PROBLEMS = ("fig5-block-reconstructed-k", "fig5-slab-reconstructed", "fig6-block-reconstructed", "fig6-slab", "linear-slab")

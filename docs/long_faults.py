@@ -12,9 +12,9 @@ from matplotlib import pyplot as plt
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.extensions.planar.reference import SteadyFront
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.figures.style import GREY, LINE_COLOURS
-from stickslip.reference.planar import SteadyFront
-from stickslip.solution.planar import PlanarSolution
 
 FIGURE = Path(__file__).with_name("figures") / "long-faults.png"
 THICKNESS, SPEED, DROP = 10e3, 3500.0, 10e6

@@ -1,6 +1,6 @@
 """Count the pulses in the middle of faults of finite length, in 2D and 3D: half an hour of processor time, and gigabytes.
 
-python docs/planar_pulses.py makes the rows that are missing in src/stickslip/paper/planar-pulses.csv, each with its commit, draws
+python docs/planar_pulses.py makes the rows that are missing in src/stickslip/extensions/paper/planar-pulses.csv, each with its commit, draws
 docs/figures/planar-pulses.png, and prints the table of the page.
 """
 
@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 import stickslip as ss
-from stickslip.paper.cases import Runs
-from stickslip.paper.planar import LARGE, STORED, Fault, data, draw, middle_rate, peaks, problem_of, pulses_of, table
+from stickslip.extensions.paper.cases import Runs
+from stickslip.extensions.paper.planar import LARGE, STORED, Fault, data, draw, middle_rate, peaks, problem_of, pulses_of, table
 
 FIGURE = Path(__file__).with_name("figures") / "planar-pulses.png"
 CURVES = STORED.with_name("planar-middle.csv")

@@ -16,8 +16,8 @@ import numpy as np
 from matplotlib import pyplot as plt
 
 import stickslip as ss
+from stickslip.extensions.schemes.run import SCHEMES, run_scheme
 from stickslip.figures.style import GREY, LINE_COLOURS
-from stickslip.schemes.run import SCHEMES, run_scheme
 
 FIGURE = Path(__file__).with_name("figures") / "scheme-pulses.png"
 CASES = ((5.0, 1e-2), (50.0, 1e-3))
@@ -35,7 +35,7 @@ RUNS = (
 )
 """Schemes, with their Courant numbers."""
 SMALLEST_DAMPING = 1.193
-"""Damping of the pendulum phi'' + damping phi' + sin phi = 1 above which it does not roll on: see tests/schemes/test_pulses.py."""
+"""Damping of the pendulum phi'' + damping phi' + sin phi = 1 above which it does not roll on: see tests/extensions/schemes/test_pulses.py."""
 SIDE = (5.0, 0.1, 0.95)
 """A side test: wavenumber (1/m), start beyond the maximum (m), and load beyond the mean friction as a share of S a."""
 MASS = "exact, mass rho dx/2"

@@ -16,11 +16,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 import stickslip as ss
+from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.regularisations import LAB
+from stickslip.extensions.schemes.run import SCHEMES, run_scheme
+from stickslip.extensions.schemes.verdict import RulePaths, exact_runs
 from stickslip.figures.style import LINE_COLOURS
-from stickslip.schemes.contract import Series
-from stickslip.schemes.run import SCHEMES, run_scheme
-from stickslip.studies.regularisations import LAB
-from stickslip.studies.verdict import RulePaths, exact_runs
 
 FIGURE = Path(__file__).with_name("figures") / "scheme-verdicts.png"
 CELLS = (25, 50, 100, 200, 400, 800)

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib import pyplot
 
 import stickslip as ss
-from stickslip.io.sampling import sample
+from stickslip.solution.files.sampling import sample
 
 run = ss.simulate("fig5-slab-reconstructed")
 slab = run.problem.body

@@ -11,7 +11,7 @@ You learn to write a scheme of your own, to count the energy that it dissipates,
 import numpy as np
 
 import stickslip as ss
-from stickslip.schemes.contract import Energies, Meeting, Sample
+from stickslip.extensions.schemes.contract import Energies, Meeting, Sample
 
 
 class Upwind:

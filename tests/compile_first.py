@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import stickslip as ss
 from stickslip.engine.on_demand import PARTS, part_at
-from stickslip.scenarios.examine import examine
+from stickslip.run.check.examine import examine
 
 SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block", "stress-pulse-slab", "second-event-perfect-delay")
 """Runs that use, together, what is compiled for most problems."""

@@ -18,12 +18,12 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.commands.show import stored
+from stickslip.engine.history.status import Checkpoint
 from stickslip.engine.state.layout import NEVER, Counts, State
 from stickslip.foundation import atomic_write, netcdf_file
 from stickslip.foundation.atomic_write import DRAFT, STALE, write_atomically
 from stickslip.foundation.locks import held
-from stickslip.io.netcdf import save_checkpoint
-from stickslip.trajectory.status import Checkpoint
+from stickslip.solution.files.netcdf import save_checkpoint
 
 PROBLEM = ss.load_scenario("cycles-block").problem
 POSIX = pytest.mark.skipif(os.name != "posix", reason="needs locks and limits of POSIX")

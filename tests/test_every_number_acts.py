@@ -15,9 +15,9 @@ import stickslip as ss
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.quantities import Choice
 from stickslip.friction import LAWS
-from stickslip.loading import PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.loading import PiecewiseLinear, Sinusoidal, Steps
 from stickslip.problem.parameters import ProblemEntry, entries_of, put_many
-from tests.engine.drawn import example_problem
+from tests.core.engine.drawn import example_problem
 
 STRESS = 1e6
 COULOMB = ss.friction.Coulomb(0.6, 0.4)

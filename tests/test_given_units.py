@@ -15,16 +15,16 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.panels import view_of
-from stickslip.figures.sweeps import sweep
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.inference.inference import in_shown_unit
+from stickslip.extensions.sweeps.figures import sweep
 from stickslip.foundation.given import PLACE, Given, preferred, shown_in
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.show import brief, exactly, with_unit
 from stickslip.foundation.units import si_factor
-from stickslip.inference.inference import in_shown_unit
 from stickslip.problem.given_units import units_given, units_shared
-from stickslip.scenarios.scenario import Scenario, read_scenario
+from stickslip.problem.scenarios.scenario import Scenario, read_scenario
 
 LAW = ss.friction.Coulomb(0.3, 0.2)
 BLOCK = {"mass": "90 kg", "stiffness": "800 kN/m", "normal_force": "1.3 kN"}

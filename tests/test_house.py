@@ -81,10 +81,10 @@ def test_no_module_imports_a_test_module() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "from tests.engine.test_creep import SLAB",
-        "from tests.engine import test_creep",
+        "from tests.core.engine.test_creep import SLAB",
+        "from tests.core.engine import test_creep",
         "from .test_branches import (",
-        "    import tests.sweeps.test_store as test",
+        "    import tests.extensions.sweeps.test_store as test",
     ],
 )
 def test_every_way_to_import_a_test_module_is_recognised(line: str) -> None:

@@ -11,7 +11,7 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import stickslip
-from stickslip.trajectory.status import DECIDE, engine
+from stickslip.engine.history.status import DECIDE, engine
 
 PACKAGE = Path(stickslip.__file__).parent
 
@@ -182,14 +182,14 @@ ROOMS = {
 LAZY_DOORS = {
     "contact/sliding.py",
     "contact/uniqueness.py",
-    "friction/custom/fit.py",
-    "friction/custom/fit_search.py",
+    "extensions/inference/points/fit.py",
+    "extensions/inference/points/fit_search.py",
     "friction/formula/expression.py",
-    "scenarios/scenario.py",
+    "problem/scenarios/scenario.py",
     "solution/accessors.py",
-    "solution/planar.py",
+    "extensions/planar/solution.py",
     "solution/solution.py",
-    "inference/record/record.py",
+    "extensions/inference/record/record.py",
 }
 """Files that may import upwards inside functions.
 

@@ -13,10 +13,9 @@ import xarray as xr
 from matplotlib import pyplot
 
 import stickslip as ss
-from stickslip.bodies import as_block
 from stickslip.cli.output.summary import show_solution
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.panels import view_of
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.page.panels import view_of
 from stickslip.foundation.names import (
     QUANTITIES,
     for_readers,
@@ -27,7 +26,8 @@ from stickslip.foundation.names import (
     si_unit,
 )
 from stickslip.foundation.show import brief, with_unit
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.bodies import as_block
+from stickslip.problem.scenarios.scenario import Scenario
 
 
 def turning(problem: ss.Problem) -> ss.Problem:

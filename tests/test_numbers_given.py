@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.foundation.quantities import NumberSeries, Quantity
-from stickslip.loading import HISTORIES, VARYING, HoldAndSlide, PiecewiseLinear, Sinusoidal, Steps
-from stickslip.scenarios import read_scenario
+from stickslip.problem.loading import HISTORIES, VARYING, HoldAndSlide, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.scenarios import read_scenario
 
 UREG: Any = pint.UnitRegistry()
 LENGTH = Quantity("m", "length")

@@ -9,9 +9,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.friction import LAWS
-from stickslip.scenarios.examine import examine
-from stickslip.scenarios.scenario import Scenario, read_scenario
-from stickslip.scenarios.templates import template
+from stickslip.problem.scenarios.scenario import Scenario, read_scenario
+from stickslip.run.check.examine import examine
+from stickslip.run.templates import template
 
 
 @pytest.fixture(autouse=True)

@@ -48,7 +48,7 @@ def test_each_name_is_what_the_stub_says(package: str) -> None:
 
 def test_functions_are_not_hidden_by_their_modules() -> None:
     """`studies.compare` stays the function after its module of the same name has been imported."""
-    code = "import stickslip.studies.compare, stickslip as ss; print(callable(ss.studies.compare))"
+    code = "import stickslip.extensions.studies.compare, stickslip as ss; print(callable(ss.studies.compare))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "True\n"
 
 
@@ -60,6 +60,6 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 def test_mypy_knows_the_names_through_the_stub(tmp_path: Path) -> None:
     code = "import stickslip as ss\nreveal_type(ss.load_scenario)\nreveal_type(ss.studies.compare)\nss.simulat\n"
     scenario, comparison, unknown, *_ = mypy_on(tmp_path / "user_of_names.py", code).splitlines()
-    assert scenario.endswith('-> stickslip.scenarios.scenario.Scenario"')
-    assert comparison.endswith('-> stickslip.studies.compare.Comparison"')
+    assert scenario.endswith('-> stickslip.problem.scenarios.scenario.Scenario"')
+    assert comparison.endswith('-> stickslip.extensions.studies.compare.Comparison"')
     assert 'Module has no attribute "simulat"' in unknown

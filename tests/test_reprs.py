@@ -17,7 +17,7 @@ import stickslip as ss
 from stickslip.foundation.quantities import NumberSeries, Quantity, declare, fields_of, quantity
 from stickslip.foundation.show import UNHANDY, brief, html_table
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.loading import HISTORIES
+from stickslip.problem.loading import HISTORIES
 
 NAMES: dict[str, Any] = (
     vars(ss.friction) | vars(ss.loading) | {name: getattr(ss, name) for name in ("ElasticSlab", "SpringBlock", "Problem")}

@@ -1,4 +1,4 @@
-/* The memory of a half-space after a step, as stickslip.planar.memory.advanced, real and imaginary parts apart, poles innermost. */
+/* The memory of a half-space after a step, as stickslip.extensions.planar.memory.advanced, real and imaginary parts apart, poles innermost. */
 void advance(long waves, long poles, const double *restrict decay, const double *restrict gain, double *restrict memory,
              const double *restrict slip, double *restrict sums)
 {

@@ -580,7 +580,7 @@ int64_t advance(Memory *m, int64_t last_trip, double last_phase, int64_t budget)
 
 /* ---- many runs ------------------------------------------------------------------------------------------------------------ */
 
-/* Members one after the other, as `stickslip.batch` does: the addresses of member n are base[k] + n stride[k], a state and a history
+/* Members one after the other, as `stickslip.extensions.sweeps.batch` does: the addresses of member n are base[k] + n stride[k], a state and a history
    per thread. params: the problem's numbers, par_stride apart. slip: of each member, from its start to its end. Returns how many did
    not finish. */
 int64_t run_members(const int64_t *base, const int64_t *stride, const Memory *lent, const Params *params, int64_t par_stride,

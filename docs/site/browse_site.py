@@ -1,6 +1,6 @@
 """Open every page of a built site in a browser, from the file system, as a reader without internet does.
 
-It needs the extra `test` and a browser (`tests/explorer/install_browser.sh`), and takes half a minute:
+It needs the extra `test` and a browser (`tests/extensions/explorer/install_browser.sh`), and takes half a minute:
 
 python docs/site/browse_site.py docs/_build/html
 

@@ -2,23 +2,25 @@
 
 # What slides, what resists it, what drives it
 # Many runs
-from . import figures, friction, loading, studies
-from .bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
-from .explorer.notebook import explore
+from . import figures, friction, studies
+
+# One run
+from .extensions.explorer.notebook import explore
+from .extensions.planar.slab import PlanarSlab
+from .extensions.sweeps.sweep import sweep
 
 # One run
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
-from .io.netcdf import open_solution
-from .planar.slab import PlanarSlab
-from .problem import Problem, selection
+from .problem import Problem, loading, selection
+from .problem.bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
+from .problem.scenarios.scenario import load_scenario, scenarios
+from .problem.scenarios.source import uniqueness
 from .run.catalogue import catalogue
 from .run.resume import resume
 from .run.simulate import simulate
-from .scenarios.scenario import load_scenario, scenarios
-from .scenarios.source import uniqueness
+from .solution.files.netcdf import open_solution
 from .solution.solution import Solution
-from .sweeps.sweep import sweep
 
 __version__: str
 

@@ -16,8 +16,8 @@ import pytest
 from mpmath import mp, mpf
 
 import stickslip as ss
+from tests.core.run.reference.method_of_steps import method_of_steps
 from tests.docs.pages import ROOT
-from tests.reference.method_of_steps import method_of_steps
 
 FOLDER = ROOT / "docs" / "exact"
 SCRIPT = runpy.run_path(str(ROOT / "docs" / "exact_series.py"))

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import stickslip
+from stickslip.problem.scenarios.library import names
 from stickslip.problem.selection_rule import registered
-from stickslip.scenarios.library import names
 from tests.docs.pages import (
     LINK,
     LONG_PAGES,

@@ -81,7 +81,7 @@ def test_pages_build_without_a_warning_where_sphinx_is_installed(tmp_path: Path)
 
 
 def test_every_independent_solution_is_in_the_reference() -> None:
-    """The page names all that a module of `stickslip.reference` defines, but for the parts that others return."""
+    """The page names all that a module of `stickslip.run.reference` defines, but for the parts that others return."""
     page = (DOCS / "site" / "api" / "reference.rst").read_text(encoding="utf-8")
     defined = set()
     for path in (ROOT / "src" / "stickslip" / "reference").rglob("*.py"):

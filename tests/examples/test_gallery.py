@@ -19,7 +19,7 @@ import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
-from tests.loading.sliding_by_hand import by_hand
+from tests.core.problem.loading.sliding_by_hand import by_hand
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.py"))
 TRIP = 2 * 10e3 / 3500

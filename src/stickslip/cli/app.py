@@ -10,26 +10,18 @@ from typing import Annotated, Any
 
 import typer
 
-from stickslip.cli.commands.analogy import analogy
-from stickslip.cli.commands.benchmark import benchmark
 from stickslip.cli.commands.check import check
-from stickslip.cli.commands.compare import compare
 from stickslip.cli.commands.doctor import doctor
-from stickslip.cli.commands.ensemble import ensemble
-from stickslip.cli.commands.explore import explore
 from stickslip.cli.commands.export import export
 from stickslip.cli.commands.find import find
-from stickslip.cli.commands.fit import fit
-from stickslip.cli.commands.infer import infer
 from stickslip.cli.commands.new import new
-from stickslip.cli.commands.paper import paper
 from stickslip.cli.commands.run import run
-from stickslip.cli.commands.schemes import schemes
 from stickslip.cli.commands.show import show
-from stickslip.cli.commands.sweep import sweep
 from stickslip.cli.expand import expanded
 from stickslip.cli.mistyped import unknown_command
 from stickslip.cli.options import CHOICES
+from stickslip.extension import Command
+from stickslip.extension import commands as commands_of_extensions
 from stickslip.foundation.errors import InputError
 
 try:  # all names of typer that it does not document
@@ -52,7 +44,7 @@ def prose_of(command: Callable[..., Any]) -> str:
     return "\n\n".join(text.replace(r"\b", "\b") if text.startswith(r"\b") else " ".join(text.split("\n")) for text in paragraphs)
 
 
-class Command(TyperCommand):
+class CommandWithSections(TyperCommand):
     """A command whose help shows its options by groups, with the names that they accept."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
@@ -103,14 +95,28 @@ What happens at a frictional contact once inertia and waves matter: how it slips
   stickslip new --list             scenarios to learn from
   stickslip COMMAND --help         options, with examples
 """
-GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
-    "A scenario and its run": (new, check, run, show, export, explore),
-    "Measured friction": (fit, infer),
-    "Questions that need many runs": (compare, find, sweep, analogy, ensemble, schemes),
-    "For other programs": (benchmark,),
-    "The source paper": (paper,),
-    "This installation": (doctor,),
+OF_CORE: dict[str, tuple[Command, ...]] = {
+    "A scenario and its run": (new, check, run, show, export),
+    "Measured friction": (),
+    "Questions that need many runs": (find,),
+    "For other programs": (),
 }
+"""The functions of the core's commands, by their heading in the help; extensions add theirs to these headings, or to others."""
+LAST: dict[str, tuple[Command, ...]] = {"This installation": (doctor,)}
+"""What comes last in the help."""
+
+
+def _all_groups() -> dict[str, tuple[Command, ...]]:
+    """Return the functions of all commands, by their heading in the help. Raises InputError if two have one name."""
+    added = commands_of_extensions()
+    groups = {heading: (*OF_CORE.get(heading, ()), *added.get(heading, ())) for heading in (*OF_CORE, *added)} | LAST
+    names = [command.__name__ for group in groups.values() for command in group]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise InputError(f"two extensions, or one and the core, have a command '{twice[0]}': uninstall one")
+    return {heading: group for heading, group in groups.items() if group}
+
+
+GROUPS = _all_groups()
 """The functions of all commands, by their heading in the help."""
 COMMANDS = {command.__name__: command for commands in GROUPS.values() for command in commands}
 """The functions of all commands, by name."""
@@ -150,7 +156,7 @@ class Commands(TyperGroup):
 def _built(name: str) -> Any:
     """Return a command as typer reads it from its function."""
     alone = typer.Typer(add_completion=False, **STYLE)
-    alone.command(name, cls=Command, help=prose_of(COMMANDS[name]))(expanded(COMMANDS[name]))
+    alone.command(name, cls=CommandWithSections, help=prose_of(COMMANDS[name]))(expanded(COMMANDS[name]))
     return typer.main.get_command(alone)
 
 

@@ -17,7 +17,7 @@ def about_extra(words: str, context: Any, teach: str) -> str:
 def _cure(words: str, context: Any) -> str:
     from stickslip.foundation.headings import is_number
     from stickslip.foundation.units import split_quantity
-    from stickslip.scenarios import library
+    from stickslip.problem.scenarios import library
 
     if "=" in words:
         return "--set NAME=VALUE replaces a value of the scenario"

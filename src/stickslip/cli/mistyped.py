@@ -30,7 +30,7 @@ OF_DATA = ("a table", "`stickslip fit {0}` or `stickslip infer SCENARIO {0} --fr
 
 def unknown_command(name: str, commands: Collection[str]) -> str:
     """Return the message for a command that there is not."""
-    from stickslip.scenarios import library
+    from stickslip.problem.scenarios import library
 
     shown = name if name.isprintable() else ascii(name)
     if name.casefold() in OF_ALL:

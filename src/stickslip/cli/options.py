@@ -56,9 +56,9 @@ def complete_series(incomplete: str) -> list[str]:
 
 def complete_fitted(incomplete: str) -> list[str]:
     """Return the names of laws that can be fitted to points, as far as they begin with what is typed."""
+    from stickslip.extensions.inference.points.fit_search import template
     from stickslip.foundation.errors import InputError
     from stickslip.friction import LAWS
-    from stickslip.friction.custom.fit_search import template
 
     found = []
     for name in complete_law(incomplete):
@@ -101,7 +101,7 @@ def complete_result(incomplete: str) -> list[str]:
 
 
 def _complete_files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
-    from stickslip.scenarios import library
+    from stickslip.problem.scenarios import library
 
     return [name for name in library.names() if name.startswith(incomplete)] + _files(incomplete, suffixes)
 
@@ -122,7 +122,7 @@ def _listing(folder: Path) -> list[Path]:
 
 def complete_template(incomplete: str) -> list[str]:
     """Return the starters and bundled scenarios that begin with what is typed."""
-    from stickslip.scenarios import library
+    from stickslip.problem.scenarios import library
 
     return [name for name in [*library.STARTERS, *library.names()] if name.startswith(incomplete)]
 
@@ -154,8 +154,8 @@ def _parameters(context: Context) -> list[str]:
     While the value of an option is typed, typer leaves the words that are no options in `args`, and the scenario is the first.
     """
     from stickslip.foundation.errors import InputError
-    from stickslip.scenarios.parameter_paths import parameter_paths
-    from stickslip.scenarios.scenario import load_scenario
+    from stickslip.problem.scenarios.parameter_paths import parameter_paths
+    from stickslip.problem.scenarios.scenario import load_scenario
 
     scenario = context.params.get("scenario") or next(iter(context.args), None)
     if scenario is None:

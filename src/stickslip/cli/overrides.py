@@ -11,7 +11,7 @@ from typing import Any
 
 import typer
 
-from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
+from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
@@ -19,12 +19,12 @@ from stickslip.foundation.given import show_in
 from stickslip.problem.given_units import units_given
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
-from stickslip.scenarios.entries import read_typed, typed_number
-from stickslip.scenarios.parameter_paths import with_values
-from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.schema import check_events, check_rule, read_duration
-from stickslip.scenarios.source import all_slips_alike
-from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
+from stickslip.problem.scenarios.entries import read_typed, typed_number
+from stickslip.problem.scenarios.parameter_paths import with_values
+from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.problem.scenarios.schema import check_events, check_rule, read_duration
+from stickslip.problem.scenarios.source import all_slips_alike
+from stickslip.problem.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
 Reader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""

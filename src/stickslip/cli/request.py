@@ -8,20 +8,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.contact import announce_run
 from stickslip.cli.output.files import CATALOGUES, Target, check_targets
 from stickslip.cli.overrides import load_with, read
+from stickslip.extensions.planar.summary import announce_run
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.schema import check_events, read_duration
 from stickslip.run.progress import progress_line
-from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.schema import check_events, read_duration
 
 if TYPE_CHECKING:
     from stickslip.cli.output.pictures import Pictures
+    from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.problem.problem import Problem
     from stickslip.run.catalogue import Catalogue
-    from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
 
@@ -74,7 +74,7 @@ class Request:
         if self.energy and self.catalogue is None:
             raise InputError("run: --energy belongs to --catalogue FILE")
         if self.catalogue is not None:
-            from stickslip.io.catalogue_rows import check_catalogue
+            from stickslip.solution.files.catalogue_rows import check_catalogue
 
             check_catalogue(self.catalogue, "--catalogue")
 
@@ -99,7 +99,7 @@ class Request:
         """True if only slip events are kept, and no history."""
         if self.resume is None:
             return self.catalogue is not None
-        from stickslip.io.netcdf import is_catalogue
+        from stickslip.solution.files.netcdf import is_catalogue
 
         return is_catalogue(self.resume)
 
@@ -142,16 +142,16 @@ def solve_contact(request: Request) -> PlanarSolution:
     chosen = request.chosen
     announce_run(chosen, streamed=request.out is not None)
     with progress_line(f"{chosen.name}:") as report:
+        from stickslip.extensions.planar.run import simulate_planar
         from stickslip.run.options import options_of
-        from stickslip.run.planar_run import simulate_planar
 
         return simulate_planar(chosen, options_of(chosen, progress=report, checkpoint=request.out))
 
 
 def _resume_contact(request: Request, folder: Path) -> PlanarSolution:
-    from stickslip.io.planar_layout import open_planar, scenario_in
-    from stickslip.run.planar_run import resume_planar
-    from stickslip.scenarios.contact import Contact
+    from stickslip.extensions.planar.contact import Contact
+    from stickslip.extensions.planar.run import resume_planar
+    from stickslip.extensions.planar.store_layout import open_planar, scenario_in
 
     if request.out is not None:
         raise InputError(f"run: --resume {folder} continues in its own folder: leave out --out")
@@ -174,9 +174,9 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
             from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
             return chosen, simulate(chosen, progress=report, **keep)
-    from stickslip.io.netcdf import read_solution
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run
+    from stickslip.solution.files.netcdf import read_solution
 
     stopped = read_solution(request.resume)
     check_same(request, stopped.problem)

@@ -16,7 +16,7 @@ from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.resistance import Branch, Resistance
+from stickslip.problem.resistance import Branch, Resistance
 
 
 def resistance(problem: Problem, law_slip: float | None = None, normal: float | None = None) -> Resistance:

@@ -20,7 +20,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
-from stickslip.resistance import Resistance
+from stickslip.problem.resistance import Resistance
 
 Regime = Literal["regular", "irregular"]
 

@@ -22,11 +22,11 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
-from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.contact.layer_count import MOST_PIECES
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
 from stickslip.foundation.constants import RIGID
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 
 CANCELLED = 2e-15
 """A difference that is smaller than this share of its terms is their rounding, and counts as 0."""

@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial as poly
 
-from stickslip.bodies import OfLayers
-from stickslip.bodies.layer_response import Complex, Quotient, at_driver, crossings_of, met_by
-from stickslip.bodies.layers import Layers
 from stickslip.contact.wave_modes import Polynomial
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies.layer_response import Complex, Quotient, at_driver, crossings_of, met_by
+from stickslip.problem.bodies.layers import Layers
 
 ROUNDING = 3e-15
 """Rounding (1) of the function, relative to its terms: where it is smaller its phase is not known."""

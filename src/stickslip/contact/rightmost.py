@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.bodies.layer_response import Complex
 from stickslip.contact.layer_count import NotCountedError
+from stickslip.problem.bodies.layer_response import Complex
 
 MOST_LINES = 100
 """Largest number of lines that are looked at."""

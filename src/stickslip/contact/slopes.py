@@ -17,7 +17,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.bounds import Enclosure
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.enclosures import add, multiply
-from stickslip.resistance import Resistance
+from stickslip.problem.resistance import Resistance
 
 Integers = NDArray[np.int64]
 

@@ -25,8 +25,6 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
-from stickslip.bodies.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
 from stickslip.contact.crossing import crossing
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.folds import Certificate, certificate
@@ -37,9 +35,11 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
-from stickslip.resistance import Resistance
+from stickslip.problem.resistance import Resistance
 
 FAR = (0.0, 0.37, 1e3)
 """Steady sliding requires that friction does not change with slip over these distances (m)."""

@@ -25,7 +25,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import BodyOnCharacteristics
 from stickslip.contact.wave_proof import of_slab, slope_symbols
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.bounds import largest, on_discs
@@ -33,6 +32,7 @@ from stickslip.friction.formula.differences import slope_formula, value_and_slop
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter
 from stickslip.friction.formula.operations.sets import Disc
 from stickslip.friction.law import FrictionLaw
+from stickslip.problem.bodies import BodyOnCharacteristics
 
 CELLS = 64
 """Number of cells in a decade of slip rates, before any is halved."""

@@ -29,8 +29,8 @@ from stickslip.friction.law import rises_with_rate
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
+from stickslip.problem.resistance import Branch, Plateau, Resistance
 from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES
-from stickslip.resistance import Branch, Plateau, Resistance
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -30,11 +30,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import BodyOnCharacteristics
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.bounds import on_discs
 from stickslip.friction.formula.expression import Expression, Parameter
 from stickslip.friction.formula.operations.sets import Disc
+from stickslip.problem.bodies import BodyOnCharacteristics
 
 OUT = 4e-15
 """Bounds are moved outward by this relative rounding of a few operations and of an arc tangent."""

@@ -12,22 +12,22 @@ from typing import Self
 
 import numpy as np
 
-from stickslip.creep.stepper import CreepLeaps
+from stickslip.engine.creep.stepper import CreepLeaps
+from stickslip.engine.history.history import NO_LEAPS, History
+from stickslip.engine.history.phase_index import standing_behind
+from stickslip.engine.history.status import Checkpoint, engine, merging_note, rounding_note, strips_note
+from stickslip.engine.input.branch_table import renewed
+from stickslip.engine.input.limits import creep_tolerance, lumping_note, split_time
+from stickslip.engine.input.prepare import prepare
 from stickslip.engine.loop import ROOM, run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Stop, Store
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
-from stickslip.engine_input.branch_table import renewed
-from stickslip.engine_input.limits import creep_tolerance, lumping_note, split_time
-from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.memory import granted
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
-from stickslip.trajectory.history import NO_LEAPS, History
-from stickslip.trajectory.phase_index import standing_behind
-from stickslip.trajectory.status import Checkpoint, engine, merging_note, rounding_note, strips_note
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""

@@ -6,4 +6,4 @@ and of laws made from points: `ss.figures.plot_fit(result)`.
 
 from stickslip.foundation.lazy_names import lazy_names
 
-__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)
+__getattr__, __dir__ = lazy_names(__name__, __file__)

@@ -32,7 +32,7 @@ DAY = 86_400.0
 
 def rendered(package: str, template: str, **values: Any) -> str:
     """Return the page that a template of a package gives; the template may extend `shared/page.html.j2`."""
-    loader = PrefixLoader({"shared": PackageLoader("stickslip.reports"), "own": PackageLoader(package)})
+    loader = PrefixLoader({"shared": PackageLoader("stickslip.figures"), "own": PackageLoader(package)})
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"symbols": symbols, "quantity": with_unit}
     return environment.get_template(f"own/{template}").render(**values)

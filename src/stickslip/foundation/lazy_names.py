@@ -2,32 +2,80 @@
 
 from __future__ import annotations
 
+import ast
 import sys
 from collections.abc import Callable
+from importlib import import_module
+from importlib.util import resolve_name
+from pathlib import Path
 from typing import Any
 
-import lazy_loader
+from stickslip.extension import GROUP, home_of, public_names
 
 Get = Callable[[str], Any]
 
 
-def lazy_names(package: str, file: str) -> tuple[Get, Callable[[], list[str]], list[str]]:
-    """Return `__getattr__`, `__dir__` and `__all__` of a package whose names are those of its stub."""
-    imported, listed, names = lazy_loader.attach_stub(package, file)
-    unknown = no_other_name(package)
+def lazy_names(package: str, file: str) -> tuple[Get, Callable[[], list[str]]]:
+    """Return `__getattr__` and `__dir__` of a package whose names are those of its stub.
+
+    The stub names those of our own extensions, too, for type checkers. While the program runs, extensions say themselves what they
+    add, so that a name whose extension is not there is answered with what is missing.
+    """
+    homes = _homes(package, Path(file).with_suffix(".pyi"))
+    of_core = {name: home for name, home in homes.items() if not home[0].startswith(GROUP)}
+    others = other_names(package)
+
+    def listed() -> list[str]:
+        return sorted({*of_core, *public_names(package)})
 
     def get(name: str) -> Any:
-        return imported(name) if name in names else unknown(name)
+        if name == "__all__":
+            return listed()
+        if name in of_core:
+            module, inside = of_core[name]
+            found = import_module(f"{package}.{name}") if module == package else _inside(module, inside)
+            setattr(sys.modules[package], name, found)
+            return found
+        if name in homes and name not in public_names(package):
+            raise _missing(package, name, homes[name][0])
+        return others(name)
 
-    return get, listed, names
+    return get, listed
 
 
-def no_other_name(package: str) -> Get:
-    """Return the `__getattr__` of a module that has all its names: it answers any other with the nearest."""
+def _homes(package: str, stub: Path) -> dict[str, tuple[str, str]]:
+    """Return the names of a stub, each with the module that it is imported from and its name there."""
+    tree = ast.parse(stub.read_text(encoding="utf-8"))
+    found = {}
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom):
+            module = resolve_name("." * node.level + (node.module or ""), package)
+            found |= {alias.asname or alias.name: (module, alias.name) for alias in node.names}
+    return found
 
-    def unknown(name: str) -> Any:
+
+def _inside(module: str, name: str) -> Any:
+    """Return what a module has under a name; a module of a package may be it, too."""
+    home = import_module(module)
+    return getattr(home, name) if hasattr(home, name) else import_module(f"{module}.{name}")
+
+
+def _missing(package: str, name: str, home: str) -> AttributeError:
+    extension = home.removeprefix(f"{GROUP}.").partition(".")[0]
+    return AttributeError(f"{package} has no {name} here: it belongs to the extension '{extension}', which is not installed")
+
+
+def other_names(package: str) -> Get:
+    """Return the `__getattr__` of a module that has its names, but for those that extensions add to it.
+
+    It answers any other name with the nearest one.
+    """
+
+    def get(name: str) -> Any:
+        if not name.startswith("__") and name in (added := public_names(package)):
+            return home_of(added[name])
         from stickslip.foundation.errors import UnknownAttributeError
 
         raise UnknownAttributeError(sys.modules[package], name)
 
-    return unknown
+    return get

@@ -2,17 +2,15 @@
 
 To add a law, add a class to `laws` (docs/adding-a-law.md), and here its import, its place in `LAWS` and its name in `__all__`.
 `FromExpression`, `FromFunction` and `FromTable` make laws from formulas, functions and measured points of users;
-`smooth` and `fit` make laws from noisy points.
+`smooth` and `fit`, of an extension, make laws from noisy points. `__init__.pyi` is the page of all names.
 """
 
 from typing import TYPE_CHECKING
 
-from stickslip.foundation.lazy_names import no_other_name
-from stickslip.friction.custom.fit import Fit, fit, fit_each
+from stickslip.foundation.lazy_names import other_names
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
 from stickslip.friction.custom.points import FromTable, Points
-from stickslip.friction.custom.smooth import Smooth, smooth
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.bristles import Dahl, LuGre
 from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
@@ -66,7 +64,7 @@ LAWS: dict[str, type[FrictionLaw]] = {
 """Every friction law by its name in scenario files."""
 
 __all__ = ["LAWS", "FrictionLaw", "FromExpression", "FromFunction", "FromTable"]
-__all__ += ["Fit", "Points", "Smooth", "fit", "fit_each", "smooth"]
+__all__ += ["Points"]
 __all__ += ["Coulomb", "Dahl", "FlashHeating", "LuGre"]
 __all__ += ["HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
 __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
@@ -74,4 +72,4 @@ __all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerSlipWeakening", 
 __all__ += ["SlipPlusRate", "SlipTimesRate"]
 
 if not TYPE_CHECKING:  # with it, type checkers would accept any name
-    __getattr__ = no_other_name(__name__)
+    __getattr__ = other_names(__name__)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics, OfLayers
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
@@ -21,8 +20,9 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.custom.from_function import as_law
 from stickslip.friction.pressed import Pressed
-from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics, OfLayers
 from stickslip.problem.ground import Ground
+from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
 
@@ -30,7 +30,7 @@ HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driv
 """Fields of a problem that are a loading history or nothing."""
 MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
 """Fields of a problem that may be a loading history."""
-A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+A_HISTORY = "; what varies in time is one of stickslip.problem.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
 LOAD = si_unit("load")
 """Unit of a load: Pa on a slab, N on a block, N m on what turns."""

@@ -10,7 +10,7 @@ from stickslip.foundation.given import PLACE, Given, Units, display_name, shown_
 from stickslip.foundation.names import KINDS, si_unit
 from stickslip.foundation.quantities import LawField, NumberSeries, Quantity, fields_of
 from stickslip.foundation.units import si_factor
-from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 
 P = ParamSpec("P")

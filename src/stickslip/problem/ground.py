@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import SILENT, LoadingHistory, Tone
+from stickslip.problem.loading import SILENT, LoadingHistory, Tone
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.lazy_names import no_other_name
+from stickslip.foundation.lazy_names import other_names
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import NumberSeries, Quantity, check_fields, declare, fields_of, quantity
 from stickslip.foundation.show import Declared, brief_repr
@@ -284,4 +284,4 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # with it, type checkers would accept any name
-    __getattr__ = no_other_name(__name__)
+    __getattr__ = other_names(__name__)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from stickslip.bodies import BodyOnCharacteristics
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import quantities_of
-from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.bodies import BodyOnCharacteristics
+from stickslip.problem.loading import VARYING, LoadingHistory
 
 ROUNDING = 1e-12
 """Relative difference (1) between two normal loads that is rounding by computers."""

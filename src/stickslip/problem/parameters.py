@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from stickslip.bodies import BodyOnCharacteristics
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.names import own_units
@@ -28,8 +27,9 @@ from stickslip.foundation.quantities import (
 )
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.fields import HISTORIES_ONLY, ProblemFields
+from stickslip.problem.loading import VARYING, LoadingHistory
 
 PRESSING = "pressing"
 """Name of the normal load with the initial load and the far stress in proportion: pressed harder, a contact is as near to slip."""

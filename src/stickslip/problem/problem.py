@@ -16,8 +16,8 @@ from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import Declared, brief, brief_repr, fields_in, html_table, shown_fields
 from stickslip.friction.contract import one_argument
-from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.fields import INITIAL_STATES, STEADY, ProblemFields
+from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, name_of
 from stickslip.problem.start import Start, start_of
@@ -94,7 +94,7 @@ class Problem(ProblemFields):
     `Problem.rate`. Any other starts at rest, and a contact without mass that never sticks then slips at once at the rate that load
     and friction determine.
 
-    At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
+    At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.problem.loading`). The initial velocity in a slab is
     linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver. With initial_rate="steady" it
     is the same everywhere.
 

@@ -18,7 +18,7 @@ from typing import Any, Protocol
 
 from stickslip.foundation.arguments import CheckedArguments, for_users
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.resistance import Branch, Resistance
+from stickslip.problem.resistance import Branch, Resistance
 
 PERFECT_DELAY = "perfect-delay"
 """Name of the rule that keeps a branch as long as it exists: the only one where folds move with slip."""

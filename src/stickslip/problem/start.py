@@ -16,8 +16,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import one_argument
-from stickslip.loading import LoadingHistory
 from stickslip.problem.fields import STEADY, ProblemFields
+from stickslip.problem.loading import LoadingHistory
 
 FASTEST, SLOWEST = 1e3, 1e-300
 """Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""

@@ -8,31 +8,31 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stickslip.engine.history.reach import Reach, reach_of
+from stickslip.engine.history.status import ENOUGH_EVENTS, UNDER_WAY, Status
+from stickslip.engine.history.tables import creep_note
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
-from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
-from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
-from stickslip.observables.energy.balance import trapped_note
-from stickslip.observables.event_stream import EventStream, Look
-from stickslip.observables.predictability import attributes_of, in_short, is_followed, predictability_of_events
-from stickslip.observables.proof import Proven, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import run_to_end
-from stickslip.trajectory.reach import Reach, reach_of
-from stickslip.trajectory.status import ENOUGH_EVENTS, UNDER_WAY, Status
-from stickslip.trajectory.tables import creep_note
+from stickslip.solution.files.catalogue_rows import Rows, RowsInMemory, check_catalogue
+from stickslip.solution.files.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
+from stickslip.solution.observables.energy.balance import trapped_note
+from stickslip.solution.observables.event_stream import EventStream, Look
+from stickslip.solution.observables.predictability import attributes_of, in_short, is_followed, predictability_of_events
+from stickslip.solution.observables.proof import Proven, proven
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
 CAPACITY = 16_384

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from typing_extensions import override
 
+from stickslip.engine.history.slip_events import default_event_rate
+from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, UNDER_WAY, Checkpoint, Crowd, Status
+from stickslip.engine.input.limits import MOST_PIECES, PATIENCE, leaps_over, lumps_by_itself
+from stickslip.engine.session import SPARE, Session
 from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, leaps_over, lumps_by_itself
-from stickslip.observables.event_stream import EventStream, Look
 from stickslip.run.progress import Doing, Pace, Report
-from stickslip.run.session import SPARE, Session
+from stickslip.solution.observables.event_stream import EventStream, Look
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, UNDER_WAY, Checkpoint, Crowd, Status
 
 
 @dataclass(eq=False)
@@ -100,7 +100,7 @@ class ExactRun(Session):
     def save(self) -> None:
         """Renew the checkpoint, if a file for it was given."""
         if self.options.checkpoint is not None:
-            from stickslip.io.netcdf import save_checkpoint
+            from stickslip.solution.files.netcdf import save_checkpoint
 
             save_checkpoint(self.solution(UNDER_WAY), self.options.checkpoint)
 

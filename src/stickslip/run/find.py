@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.contact.sliding import FROM_REST_WITHIN, FromRest, SteadySlidings
 from stickslip.contact.steady import steady_slidings
+from stickslip.engine.history.slip_events import share_sticking
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
@@ -18,14 +19,13 @@ from stickslip.foundation.show import brief
 from stickslip.problem.fields import INITIAL_STATES, STEADY
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
+from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.source import read_source
+from stickslip.run.longer_runs import held_in_longer_runs
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
-from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.source import read_source
+from stickslip.run.study import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.solution.solution import Solution
-from stickslip.studies.longer_runs import held_in_longer_runs
-from stickslip.study import StudyWithDataset, TextProgress, telling, uninterrupted
-from stickslip.trajectory.slip_events import share_sticking
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,6 +94,11 @@ class Edge(StudyWithDataset):
 
     def _about(self) -> Iterable[str]:
         return (self.text, f"{self.parameter} in {self.unit}" if self.unit not in ("", "1") else "")
+
+    def _figure(self) -> Any:
+        from stickslip.figures.runs import find as drawn
+
+        return drawn
 
     def _lines(self) -> Iterable[str]:
         return (self.text,)

@@ -7,14 +7,14 @@ from stickslip.contact.critical import critical_value
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.foundation.arguments import for_users
-from stickslip.observables.event_table import catalogue_statistics
-from stickslip.observables.predictability import predictability
-from stickslip.observables.severity import severity
 from stickslip.problem.problem import Problem
-from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.source import read_source
-from stickslip.studies.find import from_rest as runs_from_rest
-from stickslip.study import TextProgress, telling
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.source import read_source
+from stickslip.run.find import from_rest as runs_from_rest
+from stickslip.run.study import TextProgress, telling
+from stickslip.solution.observables.event_table import catalogue_statistics
+from stickslip.solution.observables.predictability import predictability
+from stickslip.solution.observables.severity import severity
 
 __all__ = ["catalogue_statistics", "critical_value", "predictability", "severity", "steady"]
 

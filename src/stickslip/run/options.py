@@ -9,20 +9,20 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
+from stickslip.engine.history.status import ENOUGH_EVENTS, STATUSES, TOO_MANY
+from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
+from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import declare
-from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
-from stickslip.scenarios.source import read_source
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, TOO_MANY
+from stickslip.problem.scenarios.source import read_source
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
 RTOL = 1e-10

@@ -7,24 +7,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from stickslip.engine.history.reach import Reach
+from stickslip.engine.history.status import engine
+from stickslip.extensions.planar.run import PlanarProgress, resume_planar
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
-from stickslip.io.catalogue_rows import Rows, check_catalogue
-from stickslip.io.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
-from stickslip.io.soundness import check_checkpoint, check_place
-from stickslip.observables.event_stream import EventStream, HistoryPlace
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
-from stickslip.run.planar_run import PlanarProgress, resume_planar
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
-from stickslip.solution.planar import PlanarSolution
+from stickslip.solution.files.catalogue_rows import Rows, check_catalogue
+from stickslip.solution.files.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
+from stickslip.solution.files.soundness import check_checkpoint, check_place
+from stickslip.solution.observables.event_stream import EventStream, HistoryPlace
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.reach import Reach
-from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
     import pandas as pd

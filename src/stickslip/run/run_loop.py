@@ -16,11 +16,11 @@ from signal import SIGINT, default_int_handler
 from types import FrameType
 from typing import Any, Generic, Protocol, Self, TypeVar
 
+from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, STATUSES
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
 from stickslip.run.progress import Pace
 from stickslip.run.solver import NewEvents, Solver
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, STATUSES
 
 MOMENT = 0.1
 """Wall-clock time that one call of the solver should take, s: short enough for Ctrl-C and for reports of progress."""

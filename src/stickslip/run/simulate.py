@@ -7,21 +7,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, overload
 
+from stickslip.extensions.planar.run import PlanarProgress, simulate_planar
+from stickslip.extensions.planar.slab import PlanarSlab
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.source import read_source, under_rule
 from stickslip.problem.selection_rule import SelectionRule
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
-from stickslip.run.planar_run import PlanarProgress, simulate_planar
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
-from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.source import read_source, under_rule
-from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
 
 
@@ -77,7 +77,7 @@ def simulate(
     Parameters
     ----------
     problem : Problem, Scenario, PlanarSlab, str or Path
-        The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
+        The problem itself, a scenario, the name of a bundled scenario (`stickslip.problem.scenarios` lists them), or a scenario file.
         Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
         `duration`, `frames`, `progress`, `checkpoint` and `checkpoint_every` only.
     duration : float or str
@@ -132,7 +132,7 @@ def simulate(
     in the same way.
 
     A slab under rate weakening may end in ever shorter events. As soon as a round trip has more than 4096 pieces, the run lumps
-    events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine_input.limits`). The run up to
+    events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine.input.limits`). The run up to
     there does not change; after it only the statistics of longer events are meaningful, and `solution.lumping_note` says so. A
     positive shortest_event sets another length and lumps from the start.
 

@@ -14,7 +14,7 @@ from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
 from stickslip.problem.given_units import in_given_units
 from stickslip.run.progress import reporting
-from stickslip.solution.accessors import figure_of_study, known_to_pyplot
+from stickslip.solution.accessors import known_to_pyplot
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
@@ -47,10 +47,7 @@ def uninterrupted(solution: Solution) -> Solution:
 
 
 class Study(NamesAttributes):
-    """The result of a study: a table, a text and a figure.
-
-    The figure is drawn by the module of `stickslip.figures.studies` that has the study's name.
-    """
+    """The result of a study: a table, a text and a figure."""
 
     table: Any
     """Results as a pandas.DataFrame; its columns are described in each study."""
@@ -76,7 +73,8 @@ class Study(NamesAttributes):
         return self
 
     def _figure(self) -> Any:
-        return figure_of_study(self)
+        """Return the module that draws it: `draw(result)`, or `data(result)` and `draw(dataset)`."""
+        raise NotImplementedError
 
     def _shown_table(self) -> pd.DataFrame:
         return self.table  # type: ignore[no-any-return]

@@ -10,7 +10,6 @@ from dataclasses import MISSING
 from types import MappingProxyType
 from typing import Any
 
-from stickslip.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS
@@ -18,15 +17,15 @@ from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
 from stickslip.foundation.show import brief, clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
-from stickslip.loading import HISTORIES
+from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import HISTORIES_ONLY
+from stickslip.problem.loading import HISTORIES
 from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.scenarios import library
-from stickslip.scenarios.entries import Source, describe, key_of, to_table
-from stickslip.scenarios.parameter_paths import find_parameter, put_into
-from stickslip.scenarios.scenario import scenario_of
-from stickslip.scenarios.schema import (
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.entries import Source, describe, key_of, to_table
+from stickslip.problem.scenarios.parameter_paths import find_parameter, put_into
+from stickslip.problem.scenarios.scenario import scenario_of
+from stickslip.problem.scenarios.schema import (
     KINDS,
     SOFT_TORQUE,
     TABLES,
@@ -37,7 +36,8 @@ from stickslip.scenarios.schema import (
     kind_of,
     read_part,
 )
-from stickslip.scenarios.stability import loading_rate
+from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.run.check.stability import loading_rate
 
 LOADINGS = 3
 """Number of loads from nothing to the strength in which a contact slips several times, as few events take all of the load."""

@@ -170,7 +170,7 @@ class Exports(Readings):
         and x. In a window the slip counts from the start of the event, and attributes hold the epoch. Raises InputError for more
         than 2e7 values of a quantity.
         """
-        from stickslip.io.netcdf import to_dataset
+        from stickslip.solution.files.netcdf import to_dataset
 
         check_size(t, x)
         return to_dataset(self, t, x)
@@ -180,34 +180,20 @@ class Exports(Readings):
 
         The headings name the units (SI). There are 1001 times from `start` to `end` (s; by default those of a figure), unless
         `points` or `sampling_rate` (Hz) says otherwise; with `antialias` the curves are low-passed to half that rate. A path that
-        ends in .nc makes a netCDF file. See `stickslip.io.curves.write_curves`.
+        ends in .nc makes a netCDF file. See `stickslip.solution.files.curves.write_curves`.
         """
-        from stickslip.io.curves import write_curves
+        from stickslip.solution.files.curves import write_curves
 
         return write_curves(self, as_path("to_csv: path", path), **evenly)
 
     def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
         """Write time, slip, slip rate and shear stress at a sampling rate (Hz) as SCEC's on-fault time series, and return the path.
 
-        The options are those of `stickslip.io.scec.write_scec`.
+        The options are those of `stickslip.solution.files.scec.write_scec`.
         """
-        from stickslip.io.scec import write_scec
+        from stickslip.solution.files.scec import write_scec
 
         return write_scec(self, path, sampling_rate, **options)
-
-
-def figure_of_study(study: object) -> Any:
-    """Return the module with the functions `data` and `draw` of a study."""
-    from stickslip.figures.studies import figure_of
-
-    return figure_of(study)
-
-
-def report_of_study(study: object, folder: Path, *others: object) -> Path:
-    """Write the report of a study to a folder, and return the path of its page; `others` are studies that it is compared with."""
-    from stickslip.reports import write_report
-
-    return write_report(study, folder, *others)
 
 
 def known_to_pyplot(drawn: T, place: Place) -> T:

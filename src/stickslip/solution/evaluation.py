@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.engine.history.history import History, Positions, Side
+from stickslip.engine.history.tables import shocks_table
 from stickslip.foundation.arguments import NamesAttributes, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.observables.at_driver import AtDriver, at_driver, fronts_at_driver
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Positions, Side
-from stickslip.trajectory.tables import shocks_table
+from stickslip.solution.observables.at_driver import AtDriver, at_driver, fronts_at_driver
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.observables.field import Field
+    from stickslip.solution.observables.field import Field
 
 Curve = Literal[
     "slip",
@@ -172,9 +172,9 @@ class Readings(NamesAttributes):
 
         `x` (m) and `t` (s) are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take
         at a wave front; at the end of a run on layers it is the left one. Raises InputError for a block, and for `x` outside the
-        body. See also `stickslip.observables.field`.
+        body. See also `stickslip.solution.observables.field`.
         """
-        from stickslip.observables.field import field
+        from stickslip.solution.observables.field import field
 
         return field(self.history, getattr(self, self.curves[0]), x, t, side)
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
+from stickslip.engine.history.tables import shocks_table
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.observables.field import slab_of
+from stickslip.problem.bodies import OfLayers
 from stickslip.solution.evaluation import Readings
+from stickslip.solution.observables.field import slab_of
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
-from stickslip.trajectory.tables import shocks_table
 
 FAINT = 0.1
 """A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""

@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.engine.history.history import History
+from stickslip.engine.history.reach import Reach, reach_of
+from stickslip.engine.history.slip_events import default_event_rate
+from stickslip.engine.history.status import Checkpoint, Status
+from stickslip.engine.history.tables import creep_note, creep_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, exactly, how_long, html_table
-from stickslip.observables.event_table import events_table
-from stickslip.observables.proof_of_run import ProofOfRun, proof_of_run
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
-from stickslip.scenarios.scenario import UNNAMED, Scenario
+from stickslip.problem.scenarios.scenario import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
+from stickslip.solution.observables.event_table import events_table
+from stickslip.solution.observables.proof_of_run import ProofOfRun, proof_of_run
 from stickslip.solution.window import Window, window_around
-from stickslip.trajectory.history import History
-from stickslip.trajectory.reach import Reach, reach_of
-from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import Checkpoint, Status
-from stickslip.trajectory.tables import creep_note, creep_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from stickslip.foundation.place import Place
-    from stickslip.observables.predictability import Predictability
-    from stickslip.observables.rule_influence import RuleInfluence
+    from stickslip.solution.observables.predictability import Predictability
+    from stickslip.solution.observables.rule_influence import RuleInfluence
 
 
 class SolutionPlots(Plots["Solution"]):
@@ -112,7 +112,7 @@ class Solution(Exports):
 
         That is a slip rate in m/s, or a text with a unit; the default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of
         mu) / sqrt(K m); 0 takes every slip. With `energy` the table has the energies of each event (J/m^2; block: J), which take
-        longer to compute. Columns and units are those of EVENT_COLUMNS and ENERGY_COLUMNS in `stickslip.observables.event_table`.
+        longer to compute. Columns and units are those of EVENT_COLUMNS and ENERGY_COLUMNS in `stickslip.solution.observables.event_table`.
         """
         return events_table(self.history, self._rate(event_rate), energy)
 
@@ -125,9 +125,9 @@ class Solution(Exports):
         """Return the energy budget of the slip events of `catalogue(event_rate)` as seismologists define it, one row per event.
 
         The columns are the parts of the energy (J/m^2; block: J), static and dynamic stress drop, overshoot, apparent stress and
-        efficiencies; their units are in `stickslip.observables.energetics.ENERGETICS_COLUMNS`.
+        efficiencies; their units are in `stickslip.solution.observables.energetics.ENERGETICS_COLUMNS`.
         """
-        from stickslip.observables.energetics import energetics_table
+        from stickslip.solution.observables.energetics import energetics_table
 
         return energetics_table(self.history, self._rate(event_rate))
 
@@ -135,9 +135,9 @@ class Solution(Exports):
         """Return the pulses of the slip events of `catalogue(event_rate)`, one row each.
 
         The columns are times, slip, largest slip rate, smallest traction and fracture energy; their units are in
-        `stickslip.observables.energy.pulses.PULSE_COLUMNS`.
+        `stickslip.solution.observables.energy.pulses.PULSE_COLUMNS`.
         """
-        from stickslip.observables.energy.pulses import pulses_table
+        from stickslip.solution.observables.energy.pulses import pulses_table
 
         return pulses_table(self.history, self._rate(event_rate))
 
@@ -187,9 +187,9 @@ class Solution(Exports):
     def energy(self, t: ArrayLike) -> xr.Dataset:
         """Return the energies of the run at times (s) as differences from its start.
 
-        See `stickslip.observables.energy.balance.energy`.
+        See `stickslip.solution.observables.energy.balance.energy`.
         """
-        from stickslip.observables.energy.balance import energy
+        from stickslip.solution.observables.energy.balance import energy
 
         return energy(self.history, t)
 
@@ -209,7 +209,7 @@ class Solution(Exports):
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the solution to a netCDF file, and return the path; `stickslip.open_solution` restores it bit for bit."""
-        from stickslip.io.netcdf import write_solution
+        from stickslip.solution.files.netcdf import write_solution
 
         return write_solution(self, path)
 
@@ -263,7 +263,7 @@ class Solution(Exports):
     @cached_property
     def trapped_note(self) -> str:
         """One line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
-        from stickslip.observables.energy.balance import trapped_note
+        from stickslip.solution.observables.energy.balance import trapped_note
 
         return trapped_note(self.history)
 
@@ -274,7 +274,7 @@ class Solution(Exports):
 
     @cached_property
     def _prediction(self) -> Predictability | None:
-        from stickslip.observables.predictability import is_followed, predictability
+        from stickslip.solution.observables.predictability import is_followed, predictability
 
         return predictability(self) if is_followed(self.problem) else None
 
@@ -289,14 +289,14 @@ class Solution(Exports):
     @property
     def short_note(self) -> str:
         """What is proven, what energy is trapped in waves, and how long events are predictable, in one short line."""
-        from stickslip.observables.predictability import in_short
+        from stickslip.solution.observables.predictability import in_short
 
         return in_short(self.proven.short, self.trapped_note, self._prediction.short if self._prediction else "")
 
     @cached_property
     def rule_influence(self) -> RuleInfluence:
         """The shocks that the selection rule decided, and the first time when it had a choice."""
-        from stickslip.observables.rule_influence import rule_influence
+        from stickslip.solution.observables.rule_influence import rule_influence
 
         return rule_influence(self.history, lambda: self.curve("load"))
 

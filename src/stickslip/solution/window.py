@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
+from stickslip.engine.history.history import Epoch, History
+from stickslip.engine.history.tables import shocks_table
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
 from stickslip.solution.accessors import Exports
 from stickslip.solution.evaluation import Curve
-from stickslip.trajectory.history import Epoch, History
-from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -84,7 +84,7 @@ class Window(Exports):
 
     def energy(self, t: ArrayLike) -> xr.Dataset:
         """Return the energies at local times t (s), as differences from the start of the event: see `Solution.energy`."""
-        from stickslip.observables.energy.balance import energy
+        from stickslip.solution.observables.energy.balance import energy
 
         return energy(self.history, t, origin=0.0)
 

@@ -1,11 +1,13 @@
-from .analogy import Analogy, analogy
-from .benchmarks import judge_series
-from .compare import Comparison, compare
-from .ensemble import Ensemble, ensemble
-from .find import Edge, find
-from .inference import Inference, Record, infer, ranking
-from .one_run import catalogue_statistics, critical_value, predictability, severity, steady
-from .schemes import Schemes, schemes
+from stickslip.extensions.inference.infer import infer
+from stickslip.extensions.inference.inference import Inference, ranking
+from stickslip.extensions.inference.record.record import Record
+from stickslip.extensions.schemes.benchmarks import judge_series
+from stickslip.extensions.schemes.schemes import Schemes, schemes
+from stickslip.extensions.studies.analogy import Analogy, analogy
+from stickslip.extensions.studies.compare import Comparison, compare
+from stickslip.extensions.studies.ensemble import Ensemble, ensemble
+from stickslip.run.find import Edge, find
+from stickslip.run.one_run import catalogue_statistics, critical_value, predictability, severity, steady
 
 __all__ = [
     "Analogy",

@@ -23,11 +23,12 @@ from stickslip.cli.options import (
 )
 from stickslip.cli.output.files import CATALOGUES
 from stickslip.cli.output.pictures import FILMS
+from stickslip.extensions.schemes.run import SCHEMES
 from stickslip.figures.runs import animation
-from stickslip.io import catalogue_rows
-from stickslip.scenarios import library, templates
-from stickslip.scenarios.scenario import load_scenario
-from stickslip.schemes.run import SCHEMES
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import load_scenario
+from stickslip.run import templates
+from stickslip.solution.files import catalogue_rows
 from tests.limits import limit_of_process
 from tests.problems import of_each_kind
 
@@ -295,7 +296,7 @@ def test_ensemble_shows_events_around_the_first_that_is_lost(command):
 
 
 def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = import_module("stickslip.studies.kept_runs").simulate
+    original = import_module("stickslip.extensions.studies.kept_runs").simulate
     done = []
 
     def stops(*arguments, **options):
@@ -304,7 +305,7 @@ def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_p
         done.append(original(*arguments, **options))
         return done[-1]
 
-    monkeypatch.setattr(import_module("stickslip.studies.kept_runs"), "simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.extensions.studies.kept_runs"), "simulate", stops)
     shown = command("ensemble", "cycles-block", "--out", "a.csv")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "Interrupted: 2 of 8 members." in shown.out
@@ -360,7 +361,7 @@ def test_paper_says_what_it_wrote(command, monkeypatch: pytest.MonkeyPatch):
         progress("figure 1")
         return out / "report.html"
 
-    monkeypatch.setattr("stickslip.paper.make", make)
+    monkeypatch.setattr("stickslip.extensions.paper.make.make", make)
     shown = command("paper", "--out", "new/folder")
     assert (shown.code, shown.out, shown.err) == (0, f"written: {Path('new/folder/report.html')}\n", "")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Outcome
+from tests.core.cli.conftest import Outcome
 
 Complete = Callable[[str, str], list[str]]
 SHELLS = ("bash", "zsh", "fish")

@@ -14,8 +14,8 @@ import pytest
 
 from stickslip.cli import installation
 from stickslip.cli.main import main
-from stickslip.scenarios.templates import template
-from tests.cli.conftest import Outcome
+from stickslip.run.templates import template
+from tests.core.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
 

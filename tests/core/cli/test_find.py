@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Outcome
+from tests.core.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
 

@@ -32,7 +32,7 @@ main({arguments!r})
     [
         ("rich", ["run", "fig6-slab"]),
         ("numpy", ["run", "fig6-slab"]),
-        ("stickslip.scenarios.examine", ["check", "fig6-slab"]),
+        ("stickslip.run.check.examine", ["check", "fig6-slab"]),
         ("numba", ["run", "fig6-slab"]),
         ("h5netcdf", ["run", "fig6-slab", "--out", "a.nc"]),
     ],

@@ -15,10 +15,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.output.files import file_size
-from stickslip.io.catalogue_rows import read_table
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.progress import Progress, Report
-from stickslip.scenarios.scenario import Scenario
-from tests.long_runs.problems import differences
+from stickslip.solution.files.catalogue_rows import read_table
+from tests.core.run.long_runs.problems import differences
 
 
 def test_a_run_continues(command, tmp_path: Path):
@@ -120,7 +120,7 @@ def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.Monkey
     monkeypatch.setattr("stickslip.run.run_loop.LARGEST_BUDGET", 100)  # so that it does not end before anybody can interrupt
     monkeypatch.setattr("stickslip.run.run_loop.FIRST_BUDGET", 100)
     with monkeypatch.context() as patch:
-        patch.setattr("stickslip.cli.long_run.progress_line", interrupting)
+        patch.setattr("stickslip.cli.request.progress_line", interrupting)
         shown = command("run", "cycles-block", *option)
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "interrupted: stopped by the user" in shown.out

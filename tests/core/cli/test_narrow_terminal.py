@@ -8,10 +8,10 @@ import pytest
 from rich.console import Console
 
 from stickslip.cli.output.show import print_words
-from stickslip.cli.output.studies import show_schemes
-from stickslip.scenarios.scenario import load_scenario
-from stickslip.studies.schemes import schemes
-from tests.cli.conftest import Outcome
+from stickslip.extensions.schemes.schemes import schemes
+from stickslip.extensions.studies.summary import show_schemes
+from stickslip.problem.scenarios.scenario import load_scenario
+from tests.core.cli.conftest import Outcome
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 COMMANDS = [

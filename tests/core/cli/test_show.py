@@ -13,8 +13,8 @@ import stickslip as ss
 from stickslip import __version__
 from stickslip.cli.options import complete_result, complete_scenario, complete_source
 from stickslip.cli.output.summary import statistics
-from stickslip.scenarios.scenario import load_scenario
-from tests.cli.conftest import Outcome
+from stickslip.problem.scenarios.scenario import load_scenario
+from tests.core.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
 

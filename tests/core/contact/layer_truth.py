@@ -8,10 +8,10 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from stickslip.bodies import OfLayers
-from stickslip.bodies.layers import Layers
 from stickslip.contact.disturbance import Response
 from stickslip.contact.wave_modes import Growth
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies.layers import Layers
 
 DIGITS = 40
 

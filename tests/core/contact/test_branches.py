@@ -15,7 +15,7 @@ from stickslip.contact.branches import branches, branches_of, rate_on, rates_at,
 from stickslip.contact.rules.selection import selection_table
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES
-from tests.friction.drawn import laws
+from tests.core.friction.drawn import laws
 from tests.limits import examples
 
 from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws

@@ -15,12 +15,12 @@ from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.critical import critical_normal_stress, critical_value, margin
 from stickslip.contact.folds import certificate, lowest_slope
 from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.engine.input.branch_table import table_of_branches
 from stickslip.engine.state.layout import BranchRow
-from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.friction import LAWS, FromExpression
-from stickslip.scenarios.scenario import read_scenario
-from stickslip.scenarios.templates import template
-from tests.friction.drawn import laws
+from stickslip.problem.scenarios.scenario import read_scenario
+from stickslip.run.templates import template
+from tests.core.friction.drawn import laws
 from tests.limits import examples
 
 from .laws import ALPHA_C, SLAB, S, Z, closed_critical_value, hyperbolic, slab_problem

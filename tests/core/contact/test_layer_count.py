@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.bodies import OfLayers
-from stickslip.bodies.layer_response import response_of
 from stickslip.contact import layer_count
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.layer_discs import LinePieces
@@ -18,7 +16,9 @@ from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.sliding import Sliding
 from stickslip.contact.steady import _Steady, steady_slidings
 from stickslip.contact.wave_modes import Growth
-from tests.contact.layer_truth import exact_root, sought_roots
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies.layer_response import response_of
+from tests.core.contact.layer_truth import exact_root, sought_roots
 
 BUNDLED = ("pipe-and-collar", "low-velocity-zone", "bowed-string-tenth", "steel-on-granite")
 APART = ss.TwoSlabs([153.182], [1522.85], [3978.43], [64.585], [2281.08], [1333.82], 215497, driver_impedance=6.05855e6)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.contact.branches import resistance
 from stickslip.contact.rules.selection import flaw, selection_table
+from stickslip.problem.resistance import Branch
 from stickslip.problem.selection_rule import SELECTION_RULES, SelectionTable, registered
-from stickslip.resistance import Branch
 from tests.limits import examples
 
 from .laws import Wavy, hyperbolic, slab_problem

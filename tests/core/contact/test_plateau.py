@@ -16,7 +16,7 @@ from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.foundation.axis import Axis
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES
-from tests.friction.drawn import laws
+from tests.core.friction.drawn import laws
 from tests.limits import examples
 
 from .laws import SLAB, S, Z, hyperbolic, slab_problem

@@ -13,8 +13,8 @@ import stickslip as ss
 from stickslip.contact.areas import area
 from stickslip.contact.branches import branches_of, rate_on, resistance
 from stickslip.contact.rules.selection import OF_LEVELS, RULES, levels, selection_table
+from stickslip.problem.resistance import Branch
 from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.resistance import Branch
 from tests.limits import examples
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws

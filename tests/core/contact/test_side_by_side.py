@@ -9,7 +9,7 @@ import stickslip as ss
 from stickslip.contact.folds import certificate, lowest_slope, lowest_slopes
 from stickslip.contact.slopes import pieces_of
 from stickslip.contact.turns import PROVEN, find_turns
-from stickslip.resistance import Resistance
+from stickslip.problem.resistance import Resistance
 
 from .laws import S, Z
 

@@ -11,7 +11,7 @@ import pytest
 import stickslip as ss
 from stickslip.contact.disturbance import Disturbed, Response, _all_left
 from stickslip.contact.steady import steady_slidings
-from stickslip.reference.rate_and_state import SteadySliding
+from stickslip.run.reference.rate_and_state import SteadySliding
 
 DENSITY, SPEED, THICKNESS, S = 2800.0, 3500.0, 1e4, 1e8
 Z, R = DENSITY * SPEED, 2 * THICKNESS / SPEED

@@ -9,12 +9,12 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.bodies import OfLayers
-from stickslip.bodies.layer_response import growth_on_layers, response_of, taken_by_layers
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.steady import steady_slidings
-from stickslip.reference.slab import growth_rate
-from stickslip.scenarios.stability import stability_of
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies.layer_response import growth_on_layers, response_of, taken_by_layers
+from stickslip.run.check.stability import stability_of
+from stickslip.run.reference.slab import growth_rate
 
 DENSITY, SPEED, THICKNESS, S = 2800.0, 3500.0, 1e4, 1e8
 Z, R = DENSITY * SPEED, 2 * THICKNESS / SPEED

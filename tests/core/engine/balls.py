@@ -19,7 +19,7 @@ from stickslip.engine.state.layout import Ball
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from tests.engine.formulas import FLOATS
+from tests.core.engine.formulas import FLOATS
 
 Complexes = NDArray[np.complex128]
 LEAVES = (e.SLIP, e.RATE, e.STATE)

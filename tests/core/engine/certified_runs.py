@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.engine.history.history import History, Positions
 from stickslip.engine.state.layout import HistoryPiece
-from stickslip.trajectory.history import History, Positions
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

@@ -1,6 +1,6 @@
 """Truth for the tests of leaps over creep: the printed slab of Fig. 5, pulled `faster` times faster, every round trip run.
 
-    python -m tests.engine.creep_truth 1 64000
+    python -m tests.core.engine.creep_truth 1 64000
 
 prints the time at which slip has grown by 1 cm, in the middle of the first dynamic pulse. The method shares nothing with the
 package: the load at so many offsets of the round trip, friction and slip by the implicit midpoint rule. With 64000 of them its

@@ -14,9 +14,9 @@ import stickslip as ss
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.fields import INITIAL_STATES
+from stickslip.problem.scenarios import read_scenario
 from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.scenarios import read_scenario
-from tests.friction.drawn import laws
+from tests.core.friction.drawn import laws
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e3, 1e8)
 BODIES: dict[str, Any] = {

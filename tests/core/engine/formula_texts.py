@@ -1,6 +1,6 @@
 """Hashes of the text that is generated for formulas: those of all laws, and of trees drawn at random.
 
-python -m tests.engine.formula_texts    # keeps the hashes of the present code in formula_texts.json
+python -m tests.core.engine.formula_texts    # keeps the hashes of the present code in formula_texts.json
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from stickslip.friction import LAWS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations import FUNCTIONS
-from tests.engine.drawn import example_law
+from tests.core.engine.drawn import example_law
 
 KEPT = Path(__file__).with_suffix(".json")
 TREES, GROUP = 300, 50

@@ -7,10 +7,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.friction import LAWS
-from tests.engine import problems
-from tests.engine.drawn import BODIES, SLAB, example_problem
-from tests.engine.problems import KINDS, away_from_jumps
-from tests.reference.method_of_steps import method_of_steps
+from tests.core.engine import problems
+from tests.core.engine.drawn import BODIES, SLAB, example_problem
+from tests.core.engine.problems import KINDS, away_from_jumps
+from tests.core.run.reference.method_of_steps import method_of_steps
 
 
 @pytest.mark.sampled(every=8)

@@ -14,14 +14,14 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.batch import run_members
-from stickslip.creep.stepper import CreepLeaps
+from stickslip.engine.creep.stepper import CreepLeaps
+from stickslip.engine.history.status import STATUSES
+from stickslip.engine.input.limits import AUTOMATIC_SHARE, MOST_PIECES, PATIENCE, creep_tolerance
 from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.limits import AUTOMATIC_SHARE, MOST_PIECES, PATIENCE, creep_tolerance
+from stickslip.extensions.sweeps.batch import run_members
 from stickslip.foundation.units import to_si
-from stickslip.trajectory.status import STATUSES
-from tests.engine.creep_truth import GROWN, ROUND, printed
-from tests.long_runs.problems import differences, stopped_and_continued
+from tests.core.engine.creep_truth import GROWN, ROUND, printed
+from tests.core.run.long_runs.problems import differences, stopped_and_continued
 
 SLOW = ss.load_scenario("second-event-perfect-delay").problem
 BODY = SLOW.body
@@ -82,7 +82,7 @@ def test_runs_that_cannot_be_lumped_or_leap_are_refused(problem: ss.Problem, opt
 
 DAYS = 3 * 86_400.0
 PULSE = 234901.286195246
-"""Time (s) at which slip of the printed slab has grown by 1 cm: `tests.engine.creep_truth 1 64000`."""
+"""Time (s) at which slip of the printed slab has grown by 1 cm: `tests.core.engine.creep_truth 1 64000`."""
 WEAKENING = ss.load_scenario("fig6-slab").problem
 
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 from numpy.polynomial import polynomial as poly
 
-from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.compiled_formula import compile_formula
+from stickslip.engine.lanes.workspace import apart
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii
 from stickslip.engine.series.polynomial import (
@@ -31,8 +31,8 @@ from stickslip.engine.state.layout import TERMS, Ball
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.text import to_text
-from tests.engine.balls import Disc, Drawn, drawn, exact_distance, farthest, radius_of
-from tests.engine.formulas import FORMULAS, JET, compiled
+from tests.core.engine.balls import Disc, Drawn, drawn, exact_distance, farthest, radius_of
+from tests.core.engine.formulas import FORMULAS, JET, compiled
 from tests.limits import all_tests, examples
 
 inside = st.floats(0.05, 0.95)

@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.engine.input.prepare import SAFETY, first_disc
 from stickslip.engine.state.layout import Counts
-from stickslip.engine_input.prepare import SAFETY, first_disc
-from tests.engine.certified_runs import RUNS, coefficient, duration, shortfall
+from tests.core.engine.certified_runs import RUNS, coefficient, duration, shortfall
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

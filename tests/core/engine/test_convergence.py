@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.reference.slab import PulseTrain
+from stickslip.run.reference.slab import PulseTrain
 from tests.problems import IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS, slip_law_block, slip_law_slab
 
 ALPHAS = 10.0 ** np.arange(1, 7)

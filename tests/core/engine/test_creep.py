@@ -12,11 +12,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.creep.pattern import Pattern, monotone_parts
+from stickslip.engine.creep.pattern import Pattern, monotone_parts
+from stickslip.engine.history.history import Epoch
+from stickslip.engine.history.series import horner
 from stickslip.engine.state.layout import TERMS
-from stickslip.trajectory.history import Epoch
-from stickslip.trajectory.series import horner
-from tests.engine.creep_truth import ROUND, printed
+from tests.core.engine.creep_truth import ROUND, printed
 
 F = ss.friction
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=10e3, normal_stress=100e6)

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.creep.creep_writer import HistoryWriter
-from stickslip.creep.landing import Piece
+from stickslip.engine.creep.creep_writer import HistoryWriter
+from stickslip.engine.creep.landing import Piece
 from stickslip.engine.state.layout import TERMS, new_store
 from stickslip.foundation.units import to_si
-from tests.long_runs.problems import continued, differences
+from tests.core.run.long_runs.problems import continued, differences
 
 RINGS = ss.load_scenario("fig5-slab-u0-1e-2").problem
 """A slab that creeps under the crest of the wave that its first event leaves."""

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.engine.history.phase_index import Phases
+from stickslip.engine.session import Session
 from stickslip.engine.state import layout as at
 from stickslip.engine.waves.echo_queue import NOTHING
 from stickslip.run.options import RunOptions
-from stickslip.run.session import Session
-from stickslip.trajectory.phase_index import Phases
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 FRAGMENTS = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=0.1234, initial_excess=0.0)

@@ -13,8 +13,8 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression
 from stickslip.friction.formula.functions import exp
 from stickslip.friction.formula.operations import OPERATIONS
-from tests.engine.balls import EXACT, drawn_formula, values_of
-from tests.engine.formulas import enclose
+from tests.core.engine.balls import EXACT, drawn_formula, values_of
+from tests.core.engine.formulas import enclose
 from tests.limits import examples
 
 mpmath = pytest.importorskip("mpmath")

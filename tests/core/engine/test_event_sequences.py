@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 
 import stickslip as ss
-from tests.truth.slab_events import ALPHA_ONE, COLUMNS, JUST_ABOVE_CRITICAL, Slab, Table
+from tests.core.engine.truth.slab_events import ALPHA_ONE, COLUMNS, JUST_ABOVE_CRITICAL, Slab, Table
 
 FOREVER = 1e12
 """s"""

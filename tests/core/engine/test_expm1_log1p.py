@@ -12,7 +12,7 @@ from numba import njit
 import stickslip as ss
 from stickslip.engine.formula_code.taylor_series import ORDER
 from stickslip.engine.series.sine import sine, versine
-from tests.engine.formulas import enclose, series
+from tests.core.engine.formulas import enclose, series
 
 ROUNDINGS = 5
 """Of numbers up to 2: what the libraries' functions and a product or two make."""

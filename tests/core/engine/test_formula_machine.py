@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.compile.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, NAMES
 from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
+from stickslip.engine.lanes.workspace import apart
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii, sine
 from stickslip.friction import LAWS
-from tests.engine.drawn import example_law
-from tests.engine.formula_texts import NAMES as PARAMETERS
-from tests.engine.formula_texts import tree
-from tests.engine.formulas import FLOATS
+from tests.core.engine.drawn import example_law
+from tests.core.engine.formula_texts import NAMES as PARAMETERS
+from tests.core.engine.formula_texts import tree
+from tests.core.engine.formulas import FLOATS
 
 Block = NDArray[np.float64]
 

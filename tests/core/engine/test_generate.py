@@ -13,12 +13,12 @@ from numpy.polynomial import Polynomial
 
 import stickslip as ss
 from stickslip.engine.compiled_formula import compile_formula
+from stickslip.engine.input import prepare
 from stickslip.engine.state.layout import TERMS
-from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions
-from tests.engine.balls import EXACT
-from tests.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
+from tests.core.engine.balls import EXACT
+from tests.core.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
 
 
 @pytest.mark.parametrize("name", FORMULAS)

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import stickslip as ss
 from stickslip.engine.series.radau_nodes import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES, interpolate, last_terms
 from stickslip.engine.state.layout import TERMS
-from tests.engine.states_truth import Truth, block_truth
+from tests.core.engine.states_truth import Truth, block_truth
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 STRENGTHENING = ss.friction.VelocityStrengthening(0.6, 0.01, 1e-6)

@@ -11,8 +11,8 @@ import pytest
 import stickslip as ss
 from stickslip.engine.radau.proof import DISCS, HIDDEN, LEBESGUE, PLACE
 from stickslip.friction.laws.rate_and_state import TwoStateRateAndState
-from stickslip.observables.proof import proven
-from tests.engine.certified_runs import coefficient, shortfall
+from stickslip.solution.observables.proof import proven
+from tests.core.engine.certified_runs import coefficient, shortfall
 
 F = ss.friction
 SLAB, BLOCK = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), ss.SpringBlock(1.0, 20.0, 10.0)

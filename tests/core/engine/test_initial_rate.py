@@ -12,12 +12,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.batch import why_not
+from stickslip.extensions.studies.separation import disturbed
+from stickslip.extensions.sweeps.batch import why_not
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import FrictionLaw
-from stickslip.scenarios import Scenario
-from stickslip.scenarios.stability import start_of
-from stickslip.studies.separation import disturbed
+from stickslip.problem.scenarios import Scenario
+from stickslip.run.check.stability import start_of
 from tests.messages import refused
 
 NORMAL, SPEED = 1e8, 1e-4

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from stickslip.batch.kernels.workspace import apart
+from stickslip.engine.lanes.workspace import apart
 from stickslip.engine.memory.addresses import ahead, floats, integers
 from stickslip.engine.memory.pointers import rows_of
 from stickslip.engine.memory.simd import WIDTH, chosen, store_across
@@ -28,7 +28,7 @@ from stickslip.engine.series.polynomial import (
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at
 from stickslip.engine.state.layout import TERMS
-from tests.engine.formulas import FORMULAS, JET, compiled
+from tests.core.engine.formulas import FORMULAS, JET, compiled
 
 Block = Any
 

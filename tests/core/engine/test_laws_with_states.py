@@ -11,9 +11,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.friction import FromExpression, FromFunction, TwoStateRateAndState
-from stickslip.scenarios import Scenario, read_scenario
-from tests.engine.drawn import example_problem
-from tests.engine.states_truth import AXIS, FAULT, HEALING, LIGHT, LUGRE, SLAB, two_states
+from stickslip.problem.scenarios import Scenario, read_scenario
+from tests.core.engine.drawn import example_problem
+from tests.core.engine.states_truth import AXIS, FAULT, HEALING, LIGHT, LUGRE, SLAB, two_states
 from tests.messages import refused
 
 

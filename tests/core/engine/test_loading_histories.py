@@ -10,9 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from tests.engine.problems import away_from_jumps
-from tests.reference.method_of_steps import method_of_steps
+from stickslip.problem.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from tests.core.engine.problems import away_from_jumps
+from tests.core.run.reference.method_of_steps import method_of_steps
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 LOSSY = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=4e6)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.bodies import ElasticSlab
+from stickslip.engine.history.phase_index import standing_behind
 from stickslip.engine.state.layout import Store, keep_only, trimmed
 from stickslip.foundation.errors import InputError
-from stickslip.reference.slab import StuckSlab
-from stickslip.trajectory.phase_index import standing_behind
-from tests.engine.machine_steps import Slab
+from stickslip.problem.bodies import ElasticSlab
+from stickslip.run.reference.slab import StuckSlab
+from tests.core.engine.machine_steps import Slab
 
 STRESS, THICKNESS = 1e6, 100.0
 RIGID = ElasticSlab(2800.0, 3500.0, THICKNESS, STRESS)

@@ -12,8 +12,8 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from tests.engine import problems
-from tests.reference.method_of_steps import method_of_steps
+from tests.core.engine import problems
+from tests.core.run.reference.method_of_steps import method_of_steps
 
 F = ss.friction
 BLOCK = ss.SpringBlock(2.0, 50.0, 10.0)

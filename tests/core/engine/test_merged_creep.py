@@ -11,7 +11,7 @@ import stickslip as ss
 from stickslip.engine.state.layout import NEVER, Stop
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
-from tests.long_runs.problems import continued, differences
+from tests.core.run.long_runs.problems import continued, differences
 
 PULSING = ss.load_scenario("fig5-slab-reconstructed").problem
 """A slab with a pulse every some months, before each of which twenty round trips creep under the crests of its waves."""

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
-from tests.engine.moving_folds import (
+from tests.core.engine.moving_folds import (
     FREE,
     KINKED,
     MATCHED,

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.sweeps.execution.chunk import MEANINGS
+from stickslip.extensions.sweeps.execution.chunk import MEANINGS
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 WITH_MASS = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e4)

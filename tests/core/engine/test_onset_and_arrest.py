@@ -11,9 +11,9 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.engine.history.turning_points import TURNS, Spare, descend
 from stickslip.run import catalogue as module
-from stickslip.trajectory.turning_points import TURNS, Spare, descend
-from tests.batch.cases import CASES as MEMBERS
+from tests.extensions.sweeps.batch.cases import CASES as MEMBERS
 from tests.problems import IMPEDANCE, NORMAL, ROUND, SLAB
 
 F = ss.friction

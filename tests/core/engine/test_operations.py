@@ -17,8 +17,8 @@ from stickslip.friction.formula.expression import RATE, SLIP, Expression, as_exp
 from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS, Operation
 from stickslip.friction.formula.text import parse, to_text
-from tests.engine.balls import EXACT, Disc, radius_of
-from tests.engine.formulas import series, written_slopes
+from tests.core.engine.balls import EXACT, Disc, radius_of
+from tests.core.engine.formulas import series, written_slopes
 
 Formula = Callable[[Any, Any], Any]
 """A formula of slip and slip rate, for nodes and for numbers of mpmath alike."""

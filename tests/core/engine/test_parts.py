@@ -10,10 +10,10 @@ import pytest
 import stickslip as ss
 from stickslip.engine import on_demand
 from stickslip.engine.on_demand import PARTS
+from stickslip.engine.session import Session
 from stickslip.engine.state.layout import EnginePart, NearFold
 from stickslip.engine.state.workspace import Run
 from stickslip.run.options import RunOptions
-from stickslip.run.session import Session
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

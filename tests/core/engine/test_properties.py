@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.friction import LAWS
 from stickslip.friction.contract import one_argument
-from stickslip.reference.slab import StuckSlab
-from tests.engine.drawn import NORMAL, few, problems, ran
+from stickslip.run.reference.slab import StuckSlab
+from tests.core.engine.drawn import NORMAL, few, problems, ran
 
 TIMES = 301
 COMPILED_ANEW = ("table", "expression", "product", "sum")

@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import argrelmax
 
 import stickslip as ss
-from stickslip.reference.rate_and_state import SteadySliding
+from stickslip.run.reference.rate_and_state import SteadySliding
 
 NORMAL, SPEED = 1e8, 1e-4
 LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)

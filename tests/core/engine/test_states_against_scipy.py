@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.engine.states_truth import (
+from tests.core.engine.states_truth import (
     AXIS,
     DAHL,
     FAULT,

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.creep.steady import Multiplier
-from stickslip.engine_input.limits import PATIENCE
+from stickslip.engine.creep.steady import Multiplier
+from stickslip.engine.input.limits import PATIENCE
 from stickslip.friction import FrictionLaw
-from tests.long_runs.problems import differences, stopped_and_continued
+from tests.core.run.long_runs.problems import differences, stopped_and_continued
 
 PLATE = 0.05 / ss.YEAR
 """A plate rate, m/s."""

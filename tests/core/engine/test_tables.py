@@ -15,13 +15,13 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import stickslip as ss
+from stickslip.engine.history.history import Epoch, History, Positions
+from stickslip.engine.history.phase_index import Phases, standing_behind
+from stickslip.engine.history.slip_events import EventTurns, SlipEvents, default_event_rate, group_turns
+from stickslip.engine.history.turning_points import Turn, keeps_its_sign
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings
 from stickslip.engine.state.layout import TERMS
-from stickslip.trajectory.history import Epoch, History, Positions
-from stickslip.trajectory.phase_index import Phases, standing_behind
-from stickslip.trajectory.slip_events import EventTurns, SlipEvents, default_event_rate, group_turns
-from stickslip.trajectory.turning_points import Turn, keeps_its_sign
-from tests.long_runs.problems import RUNS
+from tests.core.run.long_runs.problems import RUNS
 from tests.problems import SLAB
 
 F = ss.friction
@@ -279,7 +279,7 @@ def test_bounds_never_hide_a_change_of_sign() -> None:
 
 @pytest.mark.parametrize("name", ["block that heals", "slab that heals", "folds, lossy", "rate law, maximal"])
 def test_a_search_from_the_end_finds_the_waves_in_the_body(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.trajectory.phase_index.FEW", 4)
+    monkeypatch.setattr("stickslip.engine.history.phase_index.FEW", 4)
     history = ss.simulate(*RUNS[name]).history
     for one, other in zip(
         standing_behind(history.store, history.round_trip_time),

@@ -65,7 +65,7 @@ found = dask.compute(*[dask.delayed(slip)(one) for _ in range(16)], scheduler="t
 assert len(set(found)) == 1, found
 """,
     "runs, sweeps and checks": """
-from stickslip.scenarios.examine import examine
+from stickslip.run.check.examine import examine
 scenario = ss.load_scenario("fig6-slab")
 kinds = (
     lambda: slip(problem(0)),
@@ -78,9 +78,9 @@ assert found[:4] == found[4:], found
 """,
     "eight pages of the explorer": """
 from queue import Queue
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.server.desk import ThreadDesk
-from stickslip.scenarios.scenario import Scenario
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.server.desk import ThreadDesk
+from stickslip.problem.scenarios.scenario import Scenario
 calls, found, faults, scenario = Queue(), [], [], Scenario(problem(0), 20.0)
 desks = [ThreadDesk(calls.put) for _ in range(8)]
 for desk in desks:

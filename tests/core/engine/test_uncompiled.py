@@ -22,8 +22,8 @@ from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.compile.numba_privates import LLVM_LOCK
 from stickslip.engine.compile.one_module import LeanCompiler
 from stickslip.engine.compile.shortcuts import _variables_in
-from stickslip.trajectory.turning_points import search_history
-from tests.engine.uncompiled_runs import RUNS, results
+from stickslip.engine.history.turning_points import search_history
+from tests.core.engine.uncompiled_runs import RUNS, results
 
 TEXT = b'''"""Say what this is."""
 
@@ -135,7 +135,7 @@ def uncompiled(request: pytest.FixtureRequest) -> dict[str, dict[str, object]]:
     """Results of the runs that tests of this session ask for, in a process that compiles nothing."""
     cases = (getattr(item, "callspec", None) for item in request.session.items if request.path == item.path)
     names = [case.params["name"] for case in cases if case is not None and "name" in case.params]
-    command = [sys.executable, "-m", "tests.engine.uncompiled_runs", *names]
+    command = [sys.executable, "-m", "tests.core.engine.uncompiled_runs", *names]
     environment = os.environ | {"STICKSLIP_UNCOMPILED": "1"}
     answer = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     assert answer.returncode == 0, answer.stderr[-2000:]

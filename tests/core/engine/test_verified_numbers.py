@@ -65,8 +65,8 @@ def test_peak_times_of_the_reconstructed_slab() -> None:
 
 def peak_times(run: ss.Solution) -> list[float]:
     """Times of the maxima of the slip rate above half the largest, from the event's own table of pulses."""
-    from stickslip.trajectory.slip_events import walk
-    from stickslip.trajectory.turning_points import Turn
+    from stickslip.engine.history.slip_events import walk
+    from stickslip.engine.history.turning_points import Turn
 
     turns = Turn.of(walk(run.history, 0.5 * run.events.peak_rate.max()))
     tops: list[tuple[float, float]] = []

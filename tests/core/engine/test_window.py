@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS
+from stickslip.solution.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS
 from tests.problems import ROUND, SLAB, rate_law_slab, slip_law_slab
 
 F = ss.friction

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.creep import slow, steady_landing, stepper
-from tests.engine.creep_truth import ROUND, printed
+from stickslip.engine.creep import slow, steady_landing, stepper
+from tests.core.engine.creep_truth import ROUND, printed
 
 FAULT = ss.ElasticSlab(2700.0, 3000.0, 1e4, 50e6)
 SLOW = ss.Problem(FAULT, ss.friction.RateAndState(0.6, 0.01, 0.015, 0.02), pull_rate=-1e-5, initial_load=-29e6, initial_state=1e4)

@@ -12,12 +12,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import stickslip as ss
+from stickslip.extensions.inference.figures import measured as figure_of
+from stickslip.extensions.schemes import figure
 from stickslip.figures import plot_fit
-from stickslip.figures.contact import measured as figure_of
 from stickslip.figures.runs import energy
-from stickslip.figures.studies import schemes as figure
-from tests.figures.legible import BLOCK_PROBLEM, SLAB_PROBLEM, has_unit, labels
-from tests.observables.runs import RUNS, worst_imbalance
+from tests.core.figures.legible import BLOCK_PROBLEM, SLAB_PROBLEM, has_unit, labels
+from tests.core.solution.observables.runs import RUNS, worst_imbalance
 from tests.problems import RATE_LAW, Floats, measured
 
 RESULTS = ("rate", "slip", "smooth", "monotone")

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.bodies import BODIES
+from stickslip.extensions.sweeps.figures import sweep
 from stickslip.figures.names import parameter_name, plain_name
 from stickslip.figures.style import axis_text
-from stickslip.figures.sweeps import sweep
 from stickslip.foundation.names import for_readers
 from stickslip.foundation.quantities import NumberSeries, Quantity, fields_of, quantities_of
 from stickslip.friction import LAWS
+from stickslip.problem.bodies import BODIES
 from stickslip.problem.problem import Problem
 
 LONGEST = 66

@@ -15,7 +15,7 @@ import stickslip as ss
 from stickslip.figures.runs import catalogue
 from stickslip.figures.runs.run import draw
 from stickslip.figures.style import time_unit
-from tests.figures.legible import illegible
+from tests.core.figures.legible import illegible
 from tests.problems import SLAB, rate_law_slab
 
 UNIT = re.compile(r"\((year|day|s|ms|µs|m|mm|µm|nm)\)$")

@@ -19,7 +19,7 @@ from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
 from stickslip.figures.style import BLUE, INK, image
 from stickslip.foundation.axis import Axis
-from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, illegible, labels, size_of
+from tests.core.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, illegible, labels, size_of
 
 LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initial_load=60e6)
 

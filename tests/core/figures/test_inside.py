@@ -16,7 +16,7 @@ from PIL import Image
 
 import stickslip as ss
 from stickslip.figures.runs import animation, inside
-from tests.figures.legible import BLOCK_PROBLEM, SIZES, SLAB, SLAB_PROBLEM, labels
+from tests.core.figures.legible import BLOCK_PROBLEM, SIZES, SLAB, SLAB_PROBLEM, labels
 
 ROUND = SLAB.two_way_time
 PULSES = ss.load_scenario("fig5-slab-reconstructed")

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 import stickslip as ss
 from stickslip.figures.runs.packed import PEAKS, RANGE
 from stickslip.figures.runs.run import draw
-from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from tests.figures.legible import size_of
+from stickslip.problem.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from tests.core.figures.legible import size_of
 
 BLOCK = ss.SpringBlock(mass=2.8e12, stiffness=3.43e13, normal_force=1e14)
 LAW = ss.friction.LinearSlipWeakening(0.6, 0.57, 0.02, memory="since-arrest")

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 import stickslip as ss
 from stickslip.figures import sheet
 from stickslip.figures.sheet import StickslipFigure, read_size
-from tests.figures.legible import SLAB_PROBLEM
+from tests.core.figures.legible import SLAB_PROBLEM
 
 ONE_PANEL = ["slip", "slip_rate", "traction", "load", "friction", "energy", "path"]
 PANELS = ["__call__", "field", "snapshots", "catalogue"]

@@ -28,7 +28,7 @@ from stickslip.foundation.units import (
     to_si,
 )
 from stickslip.friction import LAWS
-from stickslip.loading import HISTORIES
+from stickslip.problem.loading import HISTORIES
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_the_table_leaves_all_else_to_the_library_of_units(unit: str) -> None:
 
 def test_bundled_scenarios_are_read_without_the_library_of_units() -> None:
     code = (
-        "import sys; from stickslip.scenarios.library import names; from stickslip.scenarios.scenario import load_scenario\n"
+        "import sys; from stickslip.problem.scenarios.library import names; from stickslip.problem.scenarios.scenario import load_scenario\n"
         "for name in names(): load_scenario(name)\n"
         "sys.exit('pint' in sys.modules)"
     )

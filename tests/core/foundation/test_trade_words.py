@@ -15,10 +15,10 @@ from stickslip.cli.app import COMMANDS
 from stickslip.cli.main import main
 from stickslip.foundation.errors import MOST_NAMED, InputError, meant, nearest
 from stickslip.foundation.synonyms import last, plain, rows
-from stickslip.scenarios import library
-from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
-from stickslip.scenarios.scenario import read_scenario
-from stickslip.scenarios.templates import template
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.parameter_paths import find_parameter, parameter_paths
+from stickslip.problem.scenarios.scenario import read_scenario
+from stickslip.run.templates import template
 
 scenario = cache(ss.load_scenario)
 
@@ -277,18 +277,18 @@ def test_the_list_that_answers_point_at_has_every_name(capsys: pytest.CaptureFix
 @cache
 def every_name() -> set[str]:
     """Return, in their plain form, the names that the package has at its doors."""
-    from stickslip.bodies import BODIES
     from stickslip.cli.app import _built
+    from stickslip.extensions.inference.fit.free import known_numbers
+    from stickslip.extensions.inference.fit.setup import SENSORS
+    from stickslip.extensions.sweeps.design.quantities import QUANTITIES as OF_SWEEPS
     from stickslip.figures.sheet import KEYWORDS
     from stickslip.foundation.headings import COLUMNS
     from stickslip.foundation.names import QUANTITIES
-    from stickslip.inference.fit.free import known_numbers
-    from stickslip.inference.fit.setup import SENSORS
-    from stickslip.loading import HISTORIES
+    from stickslip.problem.bodies import BODIES
+    from stickslip.problem.loading import HISTORIES
+    from stickslip.problem.scenarios.schema import CONTACT, TABLES, keys_of
     from stickslip.problem.selection_rule import SELECTION_RULES
-    from stickslip.scenarios.schema import CONTACT, TABLES, keys_of
-    from stickslip.studies.find import WHAT
-    from stickslip.sweeps.design.quantities import QUANTITIES as OF_SWEEPS
+    from stickslip.run.find import WHAT
 
     registered = (
         BODIES,

@@ -12,7 +12,7 @@ from stickslip.friction.formula.bounds import on_discs
 from stickslip.friction.formula.operations import OPERATIONS
 from stickslip.friction.formula.operations.sets import Disc
 from stickslip.friction.formula.text import to_text
-from tests.engine.balls import DIGITS, EXACT, LEAVES, Drawn, drawn, farthest, values_of
+from tests.core.engine.balls import DIGITS, EXACT, LEAVES, Drawn, drawn, farthest, values_of
 
 MANY, NOTHING = 500, 1e100
 NEGLIGIBLE = 1e-300

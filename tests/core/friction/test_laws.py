@@ -24,8 +24,8 @@ from stickslip.friction import (
 )
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.fields import INITIAL_STATES
-from stickslip.scenarios.scenario import Scenario, read_scenario
-from stickslip.scenarios.templates import template
+from stickslip.problem.scenarios.scenario import Scenario, read_scenario
+from stickslip.run.templates import template
 from tests.limits import examples
 
 from .drawn import compiled_value, laws

@@ -9,7 +9,7 @@ from stickslip.friction.formula.differences import slope_formula, value_and_slop
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, as_expression
 from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.operations import OPERATIONS
-from tests.engine.balls import drawn_formula
+from tests.core.engine.balls import drawn_formula
 
 U, V = 0.3, 0.7
 

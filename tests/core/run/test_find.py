@@ -14,9 +14,9 @@ from matplotlib import pyplot
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
+from stickslip.engine.history.slip_events import share_sticking
 from stickslip.figures.contact import steady
-from stickslip.trajectory.slip_events import share_sticking
-from tests.figures.legible import has_unit, labels
+from tests.core.figures.legible import has_unit, labels
 from tests.messages import refused
 
 BODY = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0, damping=5.0)
@@ -108,7 +108,7 @@ def test_without_hysteresis_one_run_tells():
 
 
 def test_runs_from_rest_have_a_limit(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(sys.modules["stickslip.studies.find"], "MOST_PIECES", 10)
+    monkeypatch.setattr(sys.modules["stickslip.run.find"], "MOST_PIECES", 10)
     assert "from rest: not known, because a run did not reach its end" in str(ss.studies.steady(AXIS))
 
 
@@ -157,12 +157,12 @@ def test_the_fastest_rate_is_that_at_which_the_surface_moves_as_fast_as_waves(bo
     ],
 )
 def test_what_is_not_known_from_rest_is_said_between_two_runs(limit: int, said: str, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(sys.modules["stickslip.studies.find"], "MOST_PIECES", limit)
+    monkeypatch.setattr(sys.modules["stickslip.run.find"], "MOST_PIECES", limit)
     assert f"from rest it {said}" in str(ss.studies.steady(AXIS))
 
 
 def test_what_is_not_known_from_rest_is_said_beyond_the_last_run(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(sys.modules["stickslip.studies.find"], "MOST_PIECES", 55_000)
+    monkeypatch.setattr(sys.modules["stickslip.run.find"], "MOST_PIECES", 55_000)
     rest = ss.studies.steady(ss.Problem(SLOW, RISES, pull_rate=0.5, initial_load=0.0)).from_rest
     assert rest is not None
     assert rest.stopped_at == pytest.approx(2.0 * rest.sticks_at, rel=1e-12, abs=0.0)

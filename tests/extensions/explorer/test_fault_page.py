@@ -16,20 +16,20 @@ import pytest
 from bokeh.models import Plot
 
 import stickslip as ss
-from stickslip.explorer.model import fault
-from stickslip.explorer.model.controls import controls_of
-from stickslip.explorer.model.difference import difference
-from stickslip.explorer.model.fault import FaultAnswer, _marks, solve_fault
-from stickslip.explorer.model.setting import Setting, parameters_of, setting_of
-from stickslip.explorer.model.tour import TOUR_OF_A_FAULT
-from stickslip.explorer.page.controls import Controls
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.files import OF_A_FAULT, export
-from stickslip.explorer.page.page import build
-from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.page.tools import begin, query_of
-from stickslip.explorer.page.view import headings_of, view_bytes
-from tests.explorer.desk_at_once import DeskAtOnce
+from stickslip.extensions.explorer.model import fault
+from stickslip.extensions.explorer.model.controls import controls_of
+from stickslip.extensions.explorer.model.difference import difference
+from stickslip.extensions.explorer.model.fault import FaultAnswer, _marks, solve_fault
+from stickslip.extensions.explorer.model.setting import Setting, parameters_of, setting_of
+from stickslip.extensions.explorer.model.tour import TOUR_OF_A_FAULT
+from stickslip.extensions.explorer.page.controls import Controls
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.files import OF_A_FAULT, export
+from stickslip.extensions.explorer.page.page import build
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.explorer.page.tools import begin, query_of
+from stickslip.extensions.explorer.page.view import headings_of, view_bytes
+from tests.extensions.explorer.desk_at_once import DeskAtOnce
 
 SETTING = Setting.bundled("planar-patch").with_value("contact.nodes", 32).with_value("run.duration", "0.5 s")
 LOAD = "contact.patches[0].initial.load"
@@ -133,7 +133,7 @@ def test_a_link_leads_to_the_same_run(explorer: Explorer) -> None:
 
 
 def test_a_link_to_more_nodes_than_a_page_shows_is_refused_before_they_are_made(explorer: Explorer, monkeypatch: Any) -> None:
-    monkeypatch.setattr("stickslip.planar.nodes.node_values", lambda *_: pytest.fail("they were made"))
+    monkeypatch.setattr("stickslip.extensions.planar.nodes.node_values", lambda *_: pytest.fail("they were made"))
     begin(explorer, {"scenario": "planar-plane", "contact.nodes": "2048", "contact.width_nodes": "2048"})
     with pytest.raises(ss.InputError, match="4194304 nodes, 1024 are the most that can be used here"):
         setting_of({"scenario": "planar-plane", "contact.nodes": "2048", "contact.width_nodes": "2048"})

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.page import OF_ONE_PLACE
-from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.page.panels.loading import BINS, thinned
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.page.page import OF_ONE_PLACE
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.explorer.page.panels.loading import BINS, thinned
 
 
 def test_the_ground_record_is_a_curve_with_its_unit() -> None:

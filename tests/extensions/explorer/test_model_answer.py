@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.findings import CAUSES, MOST_EVENTS, _jump
-from stickslip.explorer.model.pictures import COLUMNS, ROWS, _path, energy_picture, law_picture, slab_picture
-from stickslip.explorer.model.sampled_waves import EVEN, PHASES, TRIPS, SampledWaves, ShownInterval
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import EVEN_TIMES, MOST_PIECES, Stopped, companion_of, solve
+from stickslip.engine.history.history import History
+from stickslip.engine.session import SPARE
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.findings import CAUSES, MOST_EVENTS, _jump
+from stickslip.extensions.explorer.model.pictures import COLUMNS, ROWS, _path, energy_picture, law_picture, slab_picture
+from stickslip.extensions.explorer.model.sampled_waves import EVEN, PHASES, TRIPS, SampledWaves, ShownInterval
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import EVEN_TIMES, MOST_PIECES, Stopped, companion_of, solve
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.observables.energy.balance import energies
-from stickslip.observables.field import Field
-from stickslip.run.session import SPARE
-from stickslip.scenarios import library
-from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.history import History
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.solution.observables.energy.balance import energies
+from stickslip.solution.observables.field import Field
 from tests.problems import of_each_kind, scaled_rate
 
 NAMES = [
@@ -317,7 +317,7 @@ def test_long_run_that_is_stopped_is_shown_up_to_there() -> None:
 def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = answer(name).energy
     shown = ShownInterval.of(answer(name).solution)
-    monkeypatch.setattr("stickslip.explorer.model.pictures.LONG_HISTORY", 0)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.pictures.LONG_HISTORY", 0)
     rough = energy_picture(shown, SampledWaves(shown) if "slab" in name else None)
     assert set(rough.parts) == set(exact.parts)
     for part, values in exact.parts.items():
@@ -336,7 +336,7 @@ def test_energy_picture_of_a_slab_on_shaken_ground_is_that_of_the_run() -> None:
 
 def test_pictures_of_a_long_run_are_told_of_and_end_for_newer_work_but_not_for_a_stop(monkeypatch: pytest.MonkeyPatch) -> None:
     """A stop ends the run; what there is of it is shown, with all pictures."""
-    monkeypatch.setattr("stickslip.explorer.model.solve.LONG", 0)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.solve.LONG", 0)
     lines: list[str] = []
 
     def told(text: str, end: type[BaseException]) -> None:
@@ -356,14 +356,14 @@ def test_run_that_is_stopped_before_it_begins_is_refused_in_one_line(monkeypatch
     def stopped(*_: object, **__: object) -> None:
         raise Stopped
 
-    monkeypatch.setattr("stickslip.explorer.model.solve.simulate", stopped)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.solve.simulate", stopped)
     with pytest.raises(InputError, match="fig6-slab: stopped before the run had begun"):
         solve(Setting.bundled("fig6-slab").scenario())
 
 
 def test_memory_of_a_run_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     assert MOST_PIECES * 450 < 100e6  # bytes: 0.44 GB for a million pieces
-    monkeypatch.setattr("stickslip.explorer.model.solve.MOST_PIECES", 500)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.solve.MOST_PIECES", 500)
     found = solve(Setting.bundled("rate-and-state-slab").scenario())
     assert found.solution.status.name == "too many pieces"
     assert "too many pieces" in found.notes[0]
@@ -403,7 +403,7 @@ def test_law_of_backward_slip_is_odd_and_has_both_limits_where_friction_changes_
 def test_run_of_many_events_is_answered_without_a_look_at_each_pulse(
     most: int, duration: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("stickslip.explorer.model.findings.MOST_EVENTS", most)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.findings.MOST_EVENTS", most)
     found = solve(Setting.bundled("fig7-slab-critical").with_value("run.duration", duration).scenario())
     assert len(found.solution.events) > 2 * most
     assert "pulse" not in {mark.kind for mark in found.marks}
@@ -457,7 +457,7 @@ def test_pictures_over_many_round_trips_show_means_over_one_of_the_exact_energie
 @on_slabs
 def test_pictures_of_means_are_those_of_waves_within_a_pixel(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = answer(name)
-    monkeypatch.setattr("stickslip.explorer.model.sampled_waves.MANY", 0)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.sampled_waves.MANY", 0)
     shown = ShownInterval.of(exact.solution)
     waves = SampledWaves(shown)
     assert len(waves.samples.wave) == EVEN * PHASES

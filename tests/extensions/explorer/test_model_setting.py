@@ -12,19 +12,19 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.controls import Control, controls_of, unit_of
-from stickslip.explorer.model.difference import difference, toml_of
-from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.ranges import range_of
-from stickslip.explorer.model.setting import LONGEST, Setting, parameters_of, setting_of
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.controls import FIRST, offered, with_expression
-from stickslip.explorer.page.files import opened
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.controls import Control, controls_of, unit_of
+from stickslip.extensions.explorer.model.difference import difference, toml_of
+from stickslip.extensions.explorer.model.exchange import with_kind
+from stickslip.extensions.explorer.model.ranges import range_of
+from stickslip.extensions.explorer.model.setting import LONGEST, Setting, parameters_of, setting_of
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.page.controls import FIRST, offered, with_expression
+from stickslip.extensions.explorer.page.files import opened
 from stickslip.foundation.errors import InputError
 from stickslip.friction import LAWS
-from stickslip.scenarios import library
-from stickslip.scenarios.scenario import read_scenario
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import read_scenario
 from tests.problems import of_each_kind
 
 NAMES = library.in_1d()

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import SHOWN, Strip, setting_at, strip_range
-from stickslip.explorer.model.tour import TOUR
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.strip import StripView, place_of, view_of_strip
-from stickslip.explorer.page.words import Tour
-from tests.explorer.desk_at_once import DeskAtOnce
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.model.strip import SHOWN, Strip, setting_at, strip_range
+from stickslip.extensions.explorer.model.tour import TOUR
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.strip import StripView, place_of, view_of_strip
+from stickslip.extensions.explorer.page.words import Tour
+from tests.extensions.explorer.desk_at_once import DeskAtOnce
 
 SLAB = Setting.bundled("fig6-slab")
 

@@ -10,16 +10,16 @@ import numpy as np
 import panel as pn
 import pytest
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.page import Panels, build, build_for_notebook
-from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.page.panels.motion import DRAWN
-from stickslip.explorer.page.view import LegendKey, View, heading, limits, round_step, view_bytes
-from stickslip.explorer.page.words import Words
-from tests.explorer.desk_at_once import DeskAtOnce
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.page import Panels, build, build_for_notebook
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.explorer.page.panels.motion import DRAWN
+from stickslip.extensions.explorer.page.view import LegendKey, View, heading, limits, round_step, view_bytes
+from stickslip.extensions.explorer.page.words import Words
+from tests.extensions.explorer.desk_at_once import DeskAtOnce
 
 
 @pytest.fixture

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Backdrop
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import strip_range
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.panels import view_of
-from stickslip.inference.record.record import Record
-from stickslip.scenarios.scenario import Scenario
-from tests.explorer.desk_at_once import DeskAtOnce
-from tests.inference.laboratory import RateAndStateBlock, load_point
+from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.model.strip import strip_range
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.inference.record.record import Record
+from stickslip.problem.scenarios.scenario import Scenario
+from tests.extensions.explorer.desk_at_once import DeskAtOnce
+from tests.extensions.inference.laboratory import RateAndStateBlock, load_point
 from tests.problems import Floats
 
 SLAB = Setting.bundled("fig6-slab")

@@ -33,13 +33,13 @@ from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest, HTTPResponse
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.page import build
-from stickslip.explorer.server import serve as serving
-from stickslip.explorer.server.desk import ThreadDesk, Warming
-from stickslip.explorer.server.serve import Endpoint, ExplorerServer
-from stickslip.explorer.server.start import open_browser, start
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.page import build
+from stickslip.extensions.explorer.server import serve as serving
+from stickslip.extensions.explorer.server.desk import ThreadDesk, Warming
+from stickslip.extensions.explorer.server.serve import Endpoint, ExplorerServer
+from stickslip.extensions.explorer.server.start import open_browser, start
 from stickslip.foundation.errors import InputError
 
 TOKEN = re.compile(r'"token":"([^"]+)"')
@@ -508,7 +508,7 @@ def test_the_browser_is_opened_without_the_token_on_its_command_line(monkeypatch
 
 
 def test_pages_are_told_that_the_compiler_is_being_warmed_and_when_it_is_warm(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.explorer.server.desk.FIRST_RUNS", ())
+    monkeypatch.setattr("stickslip.extensions.explorer.server.desk.FIRST_RUNS", ())
     warming, lines, others = Warming(), [], []
     warming.tell(lines.append)
     warming.tell(others.append)()
@@ -529,7 +529,7 @@ def test_a_bokeh_without_a_private_name_gets_one_line(monkeypatch: pytest.Monkey
 LOGS = """
 import logging, select, time
 import panel  # whose log goes to standard output
-from stickslip.explorer.server import serve
+from stickslip.extensions.explorer.server import serve
 
 serve.MOST_LINES = 10_000  # nothing is lost before the pipe is full
 serve.log_to_stderr()

@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 
-from stickslip.explorer.model import solve as solving
-from stickslip.explorer.model.solve import Stopped, solve
-from stickslip.explorer.server import desk as desks
-from stickslip.explorer.server.desk import ThreadDesk
+from stickslip.extensions.explorer.model import solve as solving
+from stickslip.extensions.explorer.model.solve import Stopped, solve
+from stickslip.extensions.explorer.server import desk as desks
+from stickslip.extensions.explorer.server.desk import ThreadDesk
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios import load_scenario
+from stickslip.problem.scenarios import load_scenario
 
 LONG = 20.0
 """Time (s) after which a test gives up waiting."""

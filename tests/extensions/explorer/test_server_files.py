@@ -12,17 +12,17 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import strip_range
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.files import FORMATS, content_of, export, file_name, opened, plain_name
-from stickslip.explorer.page.tools import Tools, begin, query_of
-from stickslip.explorer.page.words import PinnedRun, words_of
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.exchange import with_kind
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.model.strip import strip_range
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.files import FORMATS, content_of, export, file_name, opened, plain_name
+from stickslip.extensions.explorer.page.tools import Tools, begin, query_of
+from stickslip.extensions.explorer.page.words import PinnedRun, words_of
 from stickslip.foundation.errors import InputError
-from tests.explorer.desk_at_once import DeskAtOnce
+from tests.extensions.explorer.desk_at_once import DeskAtOnce
 from tests.messages import refused
 
 SETTING = Setting.bundled("fig6-slab").with_value("friction.alpha", 0.7)

@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.page.components import Markup
-from stickslip.explorer.server import start
+from stickslip.extensions.explorer.page.components import Markup
+from stickslip.extensions.explorer.server import start
 from stickslip.foundation.errors import InputError
 
 
@@ -61,7 +61,7 @@ def test_scripts_and_style_sheets_come_from_the_packages(monkeypatch: pytest.Mon
 def test_of_many_explorers_the_oldest_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A cell that is run again and again must not leave a thread each time."""
     monkeypatch.setattr(start, "MOST_EXPLORERS", 1)
-    monkeypatch.setattr("stickslip.explorer.page.page.build_for_notebook", lambda explorer: SimpleNamespace())
+    monkeypatch.setattr("stickslip.extensions.explorer.page.page.build_for_notebook", lambda explorer: SimpleNamespace())
 
     monkeypatch.setattr(start, "_AT_WORK", deque())
 
@@ -100,7 +100,7 @@ def test_a_wrong_problem_is_one_line(wrong: Any, message: str) -> None:
 
 def test_without_its_libraries_the_explorer_says_how_to_install_them(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
-    monkeypatch.setattr("stickslip.explorer.notebook.find_spec", lambda name: None if name == "panel" else found(name))
+    monkeypatch.setattr("stickslip.extensions.explorer.notebook.find_spec", lambda name: None if name == "panel" else found(name))
     message = 'explore: the explorer needs panel: install them with pip install "stickslip[explorer]"'
     with pytest.raises(InputError) as caught:
         ss.explore("fig6-slab")

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from stickslip.cli.main import main
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.tour import TOUR
-from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.static import export
-from stickslip.explorer.static.export import COARSE, LEVELS, SHORT, check_folder, content_of, packed, script, write_tour
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.model.tour import TOUR
+from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.explorer.static import export
+from stickslip.extensions.explorer.static.export import COARSE, LEVELS, SHORT, check_folder, content_of, packed, script, write_tour
 from stickslip.foundation.errors import InputError
 
 

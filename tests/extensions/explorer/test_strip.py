@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import Stopped
-from stickslip.explorer.model.strip import KEPT, MEMBERS, Strip, present, strip_of, strip_range, strip_text, usual_range
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import Stopped
+from stickslip.extensions.explorer.model.strip import KEPT, MEMBERS, Strip, present, strip_of, strip_range, strip_text, usual_range
+from stickslip.extensions.sweeps.design.quantities import QUANTITIES
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios.parameter_paths import find_parameter
-from stickslip.sweeps.design.quantities import QUANTITIES
+from stickslip.problem.scenarios.parameter_paths import find_parameter
 from tests.messages import refused
 
 ALPHA = strip_range("friction.alpha", 0.05, 2.0)

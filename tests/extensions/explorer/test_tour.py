@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.strip import strip_of
-from stickslip.explorer.model.tour import TOUR, TourStep
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.strip import strip_of
+from stickslip.extensions.explorer.model.tour import TOUR, TourStep
 from stickslip.solution.solution import Solution
 
 NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?:e[+-]?\d+)?(?<!\.)")

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from tests.inference.laboratory import Floats
+from tests.extensions.inference.laboratory import Floats
 
 
 @dataclass(frozen=True)

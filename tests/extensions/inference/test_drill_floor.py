@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Backdrop
-from stickslip.inference.record.record import Record
+from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.inference.record.record import Record
 
 RPM = math.pi / 30.0
 KFT_LBF = 1000.0 * 0.3048 * 4.4482216152605  # N m

@@ -12,11 +12,11 @@ from scipy.optimize import curve_fit
 from scipy.stats import binom
 
 import stickslip as ss
+from stickslip.extensions.inference.points.fit import Fit
+from stickslip.extensions.inference.points.fit_search import leaves, rebuilt, slopes, template
 from stickslip.foundation.determined import misses_trend
 from stickslip.foundation.show import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
-from stickslip.friction.custom.fit import Fit
-from stickslip.friction.custom.fit_search import leaves, rebuilt, slopes, template
 from tests.messages import refused
 from tests.problems import RATE_LAW, measured
 

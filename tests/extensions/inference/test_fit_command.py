@@ -10,9 +10,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.options import complete_fitted, complete_table
-from stickslip.scenarios import library
-from stickslip.scenarios.scenario import load_scenario
-from stickslip.scenarios.templates import with_law
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import load_scenario
+from stickslip.run.templates import with_law
 from tests.problems import RATE_LAW, measured
 
 
@@ -117,7 +117,7 @@ def test_every_body_takes_the_law_and_keeps_all_else(name):
 
 
 def load_scenario_text(text):
-    from stickslip.scenarios.scenario import read_scenario
+    from stickslip.problem.scenarios.scenario import read_scenario
 
     return read_scenario(text, "mine.toml")
 

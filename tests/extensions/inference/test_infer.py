@@ -14,12 +14,26 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.inference.certainty.sampling import sample
+from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.record.loading import loading_of
 from stickslip.foundation.netcdf_file import read
-from stickslip.inference.certainty.sampling import sample
-from stickslip.inference.inference import Inference
-from stickslip.inference.record.loading import loading_of
-from tests.inference.laboratory import correlated, load_point
-from tests.inference.velocity_steps import CLOCK, GUESS, NEAR, RATES, STEPS, TIMES, TRUE, TRUTH, TWO, clean, inferred, plain, record
+from tests.extensions.inference.laboratory import correlated, load_point
+from tests.extensions.inference.velocity_steps import (
+    CLOCK,
+    GUESS,
+    NEAR,
+    RATES,
+    STEPS,
+    TIMES,
+    TRUE,
+    TRUTH,
+    TWO,
+    clean,
+    inferred,
+    plain,
+    record,
+)
 
 
 @pytest.fixture(scope="module")
@@ -194,7 +208,7 @@ def test_a_load_point_of_a_million_samples_with_noise_a_gap_and_a_jump_is_follow
 
 
 def test_ctrl_c_leaves_the_best_numbers_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
-    module, calls = import_module("stickslip.inference.fit.model"), []
+    module, calls = import_module("stickslip.extensions.inference.fit.model"), []
     original = module.simulate
 
     def stops(*args: Any, **options: Any) -> Any:
@@ -204,7 +218,7 @@ def test_ctrl_c_leaves_the_best_numbers_so_far(monkeypatch: pytest.MonkeyPatch) 
         return original(*args, **options)
 
     monkeypatch.setattr(module, "simulate", stops)
-    model = import_module("stickslip.inference.infer")
+    model = import_module("stickslip.extensions.inference.infer")
     monkeypatch.setattr(model, "certainty_of", lambda found: calls.clear() or original_certainty(found))
     study = inferred()
     assert not study.estimate.finished
@@ -212,7 +226,7 @@ def test_ctrl_c_leaves_the_best_numbers_so_far(monkeypatch: pytest.MonkeyPatch) 
     assert study.values["friction.reference"] == pytest.approx(0.62, rel=0.05)
 
 
-original_certainty = import_module("stickslip.inference.certainty.certainty").certainty_of
+original_certainty = import_module("stickslip.extensions.inference.certainty.certainty").certainty_of
 
 
 @pytest.mark.slow
@@ -243,8 +257,8 @@ def test_samples_go_on_bit_for_bit_where_a_program_that_was_killed_has_left_them
     asked: dict[str, Any] = {"free": ("friction.a", "friction.reference"), "samples": 96}
     rows, path = record().iloc[::3], tmp_path / "walk.nc"
     whole = inferred(rows, **asked)
-    monkeypatch.setattr("stickslip.inference.certainty.kept_walk.EVERY", 0.0)
-    monkeypatch.setattr("stickslip.inference.certainty.kept_walk.SHARE", math.inf)
+    monkeypatch.setattr("stickslip.extensions.inference.certainty.kept_walk.EVERY", 0.0)
+    monkeypatch.setattr("stickslip.extensions.inference.certainty.kept_walk.SHARE", math.inf)
 
     def die(text: str) -> None:
         if "sampling: step 21 " in text:
@@ -347,6 +361,6 @@ def test_samples_that_were_drawn_before_ctrl_c_are_kept(capfd: pytest.CaptureFix
 
 def test_samples_without_emcee_are_refused_with_the_way_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "emcee", None)
-    monkeypatch.setattr("stickslip.inference.infer.parts_of", lambda *_: pytest.fail("the record was looked at"))
+    monkeypatch.setattr("stickslip.extensions.inference.infer.parts_of", lambda *_: pytest.fail("the record was looked at"))
     with pytest.raises(ss.InputError, match=r"samples need emcee: pip install 'stickslip\[infer\]'"):
         inferred(samples=100)

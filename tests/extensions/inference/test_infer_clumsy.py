@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.errors import InputWarning
-from tests.inference.laboratory import correlated, load_point
+from tests.extensions.inference.laboratory import correlated, load_point
 from tests.messages import refused
 
 CLOCK = np.linspace(0.0, 100.0, 401)

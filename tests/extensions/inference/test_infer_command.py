@@ -11,8 +11,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.app import COMMANDS
-from stickslip.cli.output.studies import as_options
-from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
+from stickslip.extensions.studies.summary import as_options
+from tests.extensions.inference.laboratory import RateAndStateBlock, correlated, load_point
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.inference.laboratory import CoulombBlock, CoulombSlab, correlated
+from tests.extensions.inference.laboratory import CoulombBlock, CoulombSlab, correlated
 
 ROCK = ss.Problem(
     ss.SpringBlock(20.0, 6e7, 5e4),

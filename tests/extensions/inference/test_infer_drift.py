@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.fit.plateaus import PlateauDrift
-from stickslip.inference.fit.progress import OutOfTime, SearchProgress
-from stickslip.inference.fit.setup import parts_of
-from stickslip.inference.fit.starting import shown_drift
-from stickslip.inference.inference import Inference
-from stickslip.inference.record.record import Record
-from tests.inference.double_shear import FREE, GUESS, LONG, Rig
-from tests.inference.laboratory import correlated
+from stickslip.extensions.inference.fit.plateaus import PlateauDrift
+from stickslip.extensions.inference.fit.progress import OutOfTime, SearchProgress
+from stickslip.extensions.inference.fit.setup import parts_of
+from stickslip.extensions.inference.fit.starting import shown_drift
+from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.record.record import Record
+from tests.extensions.inference.double_shear import FREE, GUESS, LONG, Rig
+from tests.extensions.inference.laboratory import correlated
 
 FALLING = Rig(trend=-2.0)
 TWO = Rig(times=(0.0, 20.0), rates=(1e-5, 1e-4), lasts=40.0)
@@ -98,7 +98,7 @@ def test_from_two_plateaus_it_is_said_that_levels_cannot_tell_a_drift_from_the_e
 
 
 def test_a_drift_that_the_fit_does_not_need_is_held_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("stickslip.inference.fit.plateaus"), "SEEN", 0.0)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.plateaus"), "SEEN", 0.0)
     said: list[str] = []
     study = ss.studies.infer(NEAR, TWO.record(), ["a", "reference"], starts=1, progress=said.append)
     assert any("record." in one and "is free, too" in one for one in said)
@@ -109,7 +109,7 @@ def test_a_drift_that_the_fit_does_not_need_is_held_again(monkeypatch: pytest.Mo
 
 
 def test_after_its_time_a_search_gives_the_best_numbers_so_far_and_says_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("stickslip.inference.fit.progress"), "LOOKED", -1.0)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.progress"), "LOOKED", -1.0)
     said: list[str] = []
     study = ss.studies.infer(GUESS, FALLING.record(), FREE, trend="none", max_time="1 ns", progress=said.append)
     assert not study.estimate.finished
@@ -136,7 +136,7 @@ def test_time_that_is_over_is_told_once_and_not_before_a_trial_has_succeeded() -
 
 
 def test_progress_has_misfit_trials_and_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("stickslip.inference.fit.progress"), "LOOKED", -1.0)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.progress"), "LOOKED", -1.0)
     said: list[str] = []
     ss.studies.infer(NEAR, FALLING.record(), ["reference"], starts=1, trend="none", progress=said.append)
     last = [one for one in said if one.startswith("fit")][-1]

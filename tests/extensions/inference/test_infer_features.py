@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.fit.by_features import by_features, means_of
-from stickslip.inference.fit.memory import ResidualBlock, memory_of
-from stickslip.inference.fit.part import Part
-from stickslip.inference.inference import Inference
-from stickslip.inference.record.features import Samples, features_in
-from tests.inference.laboratory import CoulombBlock, CoulombSlab, correlated
+from stickslip.extensions.inference.fit.by_features import by_features, means_of
+from stickslip.extensions.inference.fit.memory import ResidualBlock, memory_of
+from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.record.features import Samples, features_in
+from tests.extensions.inference.laboratory import CoulombBlock, CoulombSlab, correlated
 from tests.messages import refused
 
 BLOCK, SLAB = CoulombBlock(), CoulombSlab()

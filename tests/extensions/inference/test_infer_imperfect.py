@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 import stickslip as ss
-from stickslip.inference.fit.memory import WHITE, Memory, ResidualBlock, memory_of, spread_by, spreads_of, unevenness
-from stickslip.inference.fit.part import Part, approached
-from stickslip.inference.record.record import Record
-from stickslip.loading import PiecewiseLinear, Steps
-from tests.inference.laboratory import correlated
+from stickslip.extensions.inference.fit.memory import WHITE, Memory, ResidualBlock, memory_of, spread_by, spreads_of, unevenness
+from stickslip.extensions.inference.fit.part import Part, approached
+from stickslip.extensions.inference.record.record import Record
+from stickslip.problem.loading import PiecewiseLinear, Steps
+from tests.extensions.inference.laboratory import correlated
 
 Floats = NDArray[np.float64]
 SLOW, FAST = 22.9e-6, 228.4e-6

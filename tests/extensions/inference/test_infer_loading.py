@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.record.loading import loading_of
-from tests.inference.laboratory import correlated
+from stickslip.extensions.inference.record.loading import loading_of
+from tests.extensions.inference.laboratory import correlated
 
 DIGIT = 0.0765e-6
 """Step (m) of the digitiser of a biaxial machine."""

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.record.loading import later, normal_of
-from stickslip.inference.record.record import Record
-from stickslip.loading import PiecewiseLinear, Steps
+from stickslip.extensions.inference.record.loading import later, normal_of
+from stickslip.extensions.inference.record.record import Record
+from stickslip.problem.loading import PiecewiseLinear, Steps
 
 FORCE, NOISE = 50e3, 2e-4
 BODY = ss.SpringBlock(mass=20.0, stiffness=5e6, normal_force=FORCE)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.record.record import Record
-from stickslip.inference.record.resample import resampled
-from stickslip.loading import Steps
-from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
+from stickslip.extensions.inference.record.record import Record
+from stickslip.extensions.inference.record.resample import resampled
+from stickslip.problem.loading import Steps
+from tests.extensions.inference.laboratory import RateAndStateBlock, correlated, load_point
 
 TIME = np.arange(20_000) * 0.01
 NOISE = 1e-3 * correlated(len(TIME), 0.0, 1)

@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.inference.inference import Inference
-from stickslip.reports.inference import _digits, _measured
+from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.report import _digits, _measured
+from tests.extensions.inference.velocity_steps import NEAR, TWO, inferred, record
 from tests.html_page import Page, check_alone, check_form, check_links
-from tests.inference.velocity_steps import NEAR, TWO, inferred, record
 from tests.pictures import blank
 
 FREE = (*TWO, "body.mass")

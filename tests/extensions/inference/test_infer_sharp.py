@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.inference.inference import Inference
-from stickslip.inference.record.resample import Jumps, spread, unsure
-from tests.inference.laboratory import CoulombSlab, WeakeningSlab, correlated
+from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.record.resample import Jumps, spread, unsure
+from tests.extensions.inference.laboratory import CoulombSlab, WeakeningSlab, correlated
 
 STRESS, NOISE, SLIP_NOISE, EVERY = 2.9e6, 2e3, 5e-8, 2e-6
 BODY = {"body.thickness": 0.1, "body.density": 1180.0, "initial.load": STRESS}

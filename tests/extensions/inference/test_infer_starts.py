@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.inference import Inference
-from tests.inference.laboratory import CoulombBlock, correlated
-from tests.inference.velocity_steps import GUESS, TRUE, record
+from stickslip.extensions.inference.inference import Inference
+from tests.extensions.inference.laboratory import CoulombBlock, correlated
+from tests.extensions.inference.velocity_steps import GUESS, TRUE, record
 
 BLOCK = CoulombBlock()
 
@@ -80,8 +80,8 @@ def test_a_stiffness_that_the_record_contradicts_is_asked_about() -> None:
 
 @pytest.mark.slow
 def test_of_many_parts_some_are_fitted_and_a_note_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("stickslip.inference.infer"), "MOST_PARTS", 3)
-    monkeypatch.setattr(import_module("stickslip.inference.infer"), "MOST_SEARCHED", 2)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.infer"), "MOST_PARTS", 3)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.infer"), "MOST_SEARCHED", 2)
     study = begun(guess(), stick_slip(6.0), ["static", "dynamic"], parts="rests")
     begins = [part.begins for part in study.parts]
     assert begins == pytest.approx([0.0, 0.16, 0.39], abs=0.02)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Backdrop
-from stickslip.inference.record.record import Record
+from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.inference.record.record import Record
 
 RPM = math.pi / 30.0
 LAW = ss.friction.ExponentialStribeck(static=0.8, dynamic=0.5, rate="5 rpm", exponent=1, viscosity="0.002 s/rad")

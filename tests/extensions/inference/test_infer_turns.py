@@ -10,23 +10,23 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.certainty.bends import rough_words
-from stickslip.inference.certainty.unresolved import unresolved
-from stickslip.inference.fit.asides import moved
-from stickslip.inference.fit.free import read_free
-from stickslip.inference.fit.loosened import loosened
-from stickslip.inference.fit.memory import Memory
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part, first_sizes
-from stickslip.inference.fit.setup import MANY_RATES, parts_of
-from stickslip.inference.fit.turns import changes_of, felt, moving
-from stickslip.inference.record.corners import Corners, corners_of, jumps_of
-from stickslip.inference.record.loading import loading_of
-from stickslip.inference.record.record import Record
-from stickslip.inference.record.resample import Jumps
-from stickslip.loading import PiecewiseLinear, Steps
-from stickslip.reports.inference import _left
-from tests.inference import thinned_double_shear as double_shear
+from stickslip.extensions.inference.certainty.bends import rough_words
+from stickslip.extensions.inference.certainty.unresolved import unresolved
+from stickslip.extensions.inference.fit.asides import moved
+from stickslip.extensions.inference.fit.free import read_free
+from stickslip.extensions.inference.fit.loosened import loosened
+from stickslip.extensions.inference.fit.memory import Memory
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.part import Part, first_sizes
+from stickslip.extensions.inference.fit.setup import MANY_RATES, parts_of
+from stickslip.extensions.inference.fit.turns import changes_of, felt, moving
+from stickslip.extensions.inference.record.corners import Corners, corners_of, jumps_of
+from stickslip.extensions.inference.record.loading import loading_of
+from stickslip.extensions.inference.record.record import Record
+from stickslip.extensions.inference.record.resample import Jumps
+from stickslip.extensions.inference.report import _left
+from stickslip.problem.loading import PiecewiseLinear, Steps
+from tests.extensions.inference import thinned_double_shear as double_shear
 
 BODY = ss.SpringBlock(20.0, 1.5e8, 5e4)
 LAW = ss.friction.RateAndState(0.62, 0.009, 0.0125, 15e-6)
@@ -231,9 +231,9 @@ def test_steps_of_each_record_are_free_also_where_those_of_another_one_are() -> 
 
 def test_a_search_that_goes_on_from_free_steps_has_each_of_them_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Many parts are searched in two turns, and a fit without derivatives goes on from the steps found."""
-    infer, estimate = (import_module(f"stickslip.inference.{name}") for name in ("infer", "fit.estimate"))
+    infer, estimate = (import_module(f"stickslip.extensions.inference.{name}") for name in ("infer", "fit.estimate"))
     monkeypatch.setattr(infer, "MOST_SEARCHED", 1)
-    monkeypatch.setattr(import_module("stickslip.inference.fit.search"), "SCREENED", 1)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.search"), "SCREENED", 1)
     polished = list[int]()
     for name, value in {"ROUGH": 0.0, "COMPETES": -1e9, "is_rough": lambda *_: True, "told_by": lambda *_: ""}.items():
         monkeypatch.setattr(estimate, name, value)

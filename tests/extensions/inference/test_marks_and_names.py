@@ -13,13 +13,13 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.extensions.schemes.series import read_series
 from stickslip.foundation.errors import InputWarning
 from stickslip.foundation.marks import MARKS, marked
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.text_columns import read_text
 from stickslip.friction import FromTable, Points
-from stickslip.io.series import read_series
-from tests.inference.laboratory import correlated
+from tests.extensions.inference.laboratory import correlated
 
 Floats = NDArray[np.float64]
 Record = ss.studies.Record

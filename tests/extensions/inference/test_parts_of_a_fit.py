@@ -12,12 +12,11 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.errors import InputError
-from stickslip.inference.certainty.certainty import _covariance
-from stickslip.inference.fit import search
-from stickslip.inference.fit.by_features import _with_gap
-from stickslip.inference.fit.free import DELAY, SERVO, TREND, Free
-from stickslip.inference.fit.memory import (
+from stickslip.extensions.inference.certainty.certainty import _covariance
+from stickslip.extensions.inference.fit import search
+from stickslip.extensions.inference.fit.by_features import _with_gap
+from stickslip.extensions.inference.fit.free import DELAY, SERVO, TREND, Free
+from stickslip.extensions.inference.fit.memory import (
     ACTIVE,
     WHITE,
     ResidualBlock,
@@ -25,15 +24,16 @@ from stickslip.inference.fit.memory import (
     spreads_of,
     unevenness,
 )
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part, shortened
-from stickslip.inference.fit.setup import LATER, LEAST, at_rests, own_of, parts_of, scales_of
-from stickslip.inference.fitted_record import FittedRecord
-from stickslip.inference.record import loading
-from stickslip.inference.record.features import Samples, features_in
-from stickslip.inference.record.noise import LOSSES, OUTLYING, cost_of, weights
-from stickslip.inference.record.record import Record
-from tests.inference.laboratory import correlated
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.part import Part, shortened
+from stickslip.extensions.inference.fit.setup import LATER, LEAST, at_rests, own_of, parts_of, scales_of
+from stickslip.extensions.inference.fitted_record import FittedRecord
+from stickslip.extensions.inference.record import loading
+from stickslip.extensions.inference.record.features import Samples, features_in
+from stickslip.extensions.inference.record.noise import LOSSES, OUTLYING, cost_of, weights
+from stickslip.extensions.inference.record.record import Record
+from stickslip.foundation.errors import InputError
+from tests.extensions.inference.laboratory import correlated
 
 RANDOM = np.random.default_rng(7)
 

@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.foundation.headings import COLUMNS, find
 from stickslip.foundation.text_columns import read_text
-from tests.inference.laboratory import correlated
+from tests.extensions.inference.laboratory import correlated
 
 Record = ss.studies.Record
 CLOCK = np.linspace(0.0, 100.0, 401)

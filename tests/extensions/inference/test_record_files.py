@@ -19,7 +19,7 @@ import stickslip as ss
 from stickslip.foundation.errors import InputWarning
 from stickslip.foundation.text_columns import read_text
 from stickslip.friction import Points
-from tests.inference.files_of_programs import CLOCK, FORCE, RAM, STEP, Segment, labview, log_ascii, universal
+from tests.extensions.inference.files_of_programs import CLOCK, FORCE, RAM, STEP, Segment, labview, log_ascii, universal
 
 Record = ss.studies.Record
 HALVES = (Segment(slice(0, 25)), Segment(slice(25, None)))

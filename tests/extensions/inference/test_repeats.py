@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.inference.record.repeats import repeats_in
-from tests.inference import velocity_steps
-from tests.inference.laboratory import correlated
+from stickslip.extensions.inference.record.repeats import repeats_in
+from tests.extensions.inference import velocity_steps
+from tests.extensions.inference.laboratory import correlated
 from tests.problems import Floats
 
 TIME = np.linspace(0.0, 49.9, 500)

@@ -10,9 +10,9 @@ import pytest
 from scipy.interpolate import make_smoothing_spline
 
 import stickslip as ss
+from stickslip.extensions.inference.points.penalised_spline import PenalisedSpline
 from stickslip.friction import Points, smooth
-from stickslip.friction.custom.penalised_spline import PenalisedSpline
-from stickslip.scenarios.scenario import Scenario, read_scenario
+from stickslip.problem.scenarios.scenario import Scenario, read_scenario
 from tests.messages import refused
 from tests.problems import RATE_LAW, SLAB, measured
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip.inference.fit.memory import ResidualBlock
-from stickslip.inference.fit.what_is_left import Residuals, near_changes, what_is_left, words
-from tests.inference.laboratory import Floats, correlated
+from stickslip.extensions.inference.fit.memory import ResidualBlock
+from stickslip.extensions.inference.fit.what_is_left import Residuals, near_changes, what_is_left, words
+from tests.extensions.inference.laboratory import Floats, correlated
 
 CHANGES = np.array([15.0, 25.0, 40.0, 50.0])
 RATES = np.array([1e-5, 1e-4, 1e-5, 3e-5, 1e-5])

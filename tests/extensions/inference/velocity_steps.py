@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 import stickslip as ss
-from stickslip.inference.inference import Inference
-from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
+from stickslip.extensions.inference.inference import Inference
+from tests.extensions.inference.laboratory import RateAndStateBlock, correlated, load_point
 from tests.problems import Floats
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]

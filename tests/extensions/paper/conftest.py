@@ -8,9 +8,9 @@ from unittest.mock import patch
 
 import pytest
 
-from stickslip.paper import make
-from stickslip.paper.cases import Runs
-from stickslip.paper.claims import CLAIMS, ClaimVerdict
+from stickslip.extensions.paper.cases import Runs
+from stickslip.extensions.paper.claims import CLAIMS, ClaimVerdict
+from stickslip.extensions.paper.make import make
 from tests.docs.pages import PAPER, run_page
 from tests.limits import all_tests
 from tests.pictures import blank
@@ -35,7 +35,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, Clai
     claims = {number: partial(kept, number, measure) for number, measure in CLAIMS.items()}
     with (
         contextlib.chdir(home),
-        patch("stickslip.paper.make", make_deep),
+        patch("stickslip.extensions.paper.make.make", make_deep),
         patch.dict(CLAIMS, claims),
         blank(*["png"] * all_tests()),
     ):

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from stickslip.paper.claims import CLAIMS, STATEMENTS, ClaimVerdict, Outcome
+from stickslip.extensions.paper.claims import CLAIMS, STATEMENTS, ClaimVerdict, Outcome
 
 PRINTED, READING, QUALIFIED, NOT = Outcome.PRINTED, Outcome.READING, Outcome.QUALIFIED, Outcome.NOT
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.paper.cases import problem
-from stickslip.paper.planar import (
+from stickslip.extensions.paper.cases import problem
+from stickslip.extensions.paper.planar import (
     ANSWER,
     LARGE,
     Fault,
@@ -25,7 +25,7 @@ from stickslip.paper.planar import (
     table,
     weakening,
 )
-from tests.reference.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
+from tests.extensions.planar.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 TRIP = 40.0 / 7.0
 PAGE = Path(__file__).parents[2] / "docs" / "pulses-in-2d-and-3d.md"
@@ -138,7 +138,7 @@ def test_the_length_that_counts_is_that_over_which_slip_begins_at_once(nucleus: 
 def test_without_the_library_the_chapter_shows_the_stored_run_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     now, origin = curve_in_2d()
     assert origin == "computed with this report"
-    monkeypatch.setitem(sys.modules, "stickslip.planar.solver", None)
+    monkeypatch.setitem(sys.modules, "stickslip.extensions.planar.solver", None)
     kept, origin = curve_in_2d()
     assert "the library JAX is missing" in origin
     assert np.interp(now[0], *kept) == pytest.approx(now[1], abs=0.02 * now[1].max())

@@ -12,10 +12,10 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from stickslip.extensions.paper.claims import STATEMENTS
+from stickslip.extensions.paper.make import make
+from stickslip.figures.page import number, save_text, symbols, with_unit
 from stickslip.foundation.atomic_write import write_atomically
-from stickslip.paper import make
-from stickslip.paper.claims import STATEMENTS
-from stickslip.reports.page import number, save_text, symbols, with_unit
 from tests.html_page import Page, check_alone, check_form, check_links
 
 
@@ -69,7 +69,7 @@ def test_a_file_is_whole_or_not_there(tmp_path: Path) -> None:
 
 
 def test_importing_the_package_imports_no_plotting() -> None:
-    code = "import sys, stickslip, stickslip.paper; print('matplotlib' in sys.modules, 'jinja2' in sys.modules)"
+    code = "import sys, stickslip, stickslip.extensions.paper; print('matplotlib' in sys.modules, 'jinja2' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False", "False"]
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from stickslip.planar.solver import functions_of
+from stickslip.extensions.planar.solver import functions_of
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.reference.planar_methods import PlanarCase, PlanarSeries, SlipWeakeningAtNodes
+from tests.extensions.planar.planar_methods import PlanarCase, PlanarSeries, SlipWeakeningAtNodes
 
 
 def weakening_patch(nodes: int = 64, driver_impedance: float = inf, **more: Any) -> PlanarCase:

@@ -1,7 +1,7 @@
 """Method B for a planar slab with friction: the volume method, and the contact equation that both reference methods solve.
 
 Friction acts at x = 0, where slip u is that of the slab itself. Stresses are counted from the initial load, in equilibrium. At
-the contact the half cell of the volume method (`stickslip.observables.energy.planar`) obeys
+the contact the half cell of the volume method (`stickslip.extensions.planar.energy`) obeys
 
     Z [u_0(n+1) - u_0(n-1)] / (2 dt) + tau(n) = tau0 + Z [cos(w dt) u_1(n) - u_0(n-1)] / dt,
 
@@ -22,11 +22,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.energy import PlanarMedium, Volume, Waves
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.law import FrictionLaw
-from stickslip.observables.energy.planar import PlanarMedium, Volume, Waves
 
 LeftSide = Callable[[Floats], tuple[Floats, Floats]]
 """The left side of the contact equation by the magnitude of the slip rate, with its slope."""

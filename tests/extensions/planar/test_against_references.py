@@ -6,12 +6,12 @@ from math import inf
 
 import numpy as np
 import pytest
-from tests.reference.convolution import convolution
-from tests.reference.planar_cases import weakening_patch, weakening_plane
-from tests.reference.planar_methods import PlanarCase, volume
 
 import stickslip as ss
-from stickslip.planar.solver import PlanarSolver
+from stickslip.extensions.planar.solver import PlanarSolver
+from tests.core.run.reference.convolution import convolution
+from tests.extensions.planar.planar_cases import weakening_patch, weakening_plane
+from tests.extensions.planar.planar_methods import PlanarCase, volume
 
 DURATION = 7.0  # in units of h/c: three echoes
 

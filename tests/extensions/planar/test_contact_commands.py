@@ -12,9 +12,9 @@ from typer import Context
 import stickslip as ss
 from stickslip.cli.app import COMMANDS
 from stickslip.cli.options import complete_scenario, complete_vary
+from stickslip.problem.scenarios import library, read_scenario
 from stickslip.run.run_loop import Interrupts
-from stickslip.scenarios import library, read_scenario
-from tests.cli.conftest import Outcome
+from tests.core.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
 SMALL = ("planar-patch", "--set", "contact.nodes=64", "--duration", "1 s")
@@ -165,7 +165,7 @@ def test_an_interrupted_run_is_shown_and_resumed(command: Command, monkeypatch: 
 
 
 def test_a_missing_library_is_named(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "stickslip.planar.solver", None)
+    monkeypatch.setitem(__import__("sys").modules, "stickslip.extensions.planar.solver", None)
     shown = command("run", *SMALL)
     assert shown.code == 2
     assert "pip install 'stickslip[planar]'" in shown.err

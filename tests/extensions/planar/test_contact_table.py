@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.planar.contact import Contact
+from stickslip.extensions.studies.compare import compare
+from stickslip.problem.scenarios import Scenario, library, load_scenario, read_scenario
+from stickslip.problem.scenarios.parameter_paths import parameter_paths
 from stickslip.run.simulate import PLANAR
-from stickslip.scenarios import Scenario, library, load_scenario, read_scenario
-from stickslip.scenarios.contact import Contact
-from stickslip.scenarios.parameter_paths import parameter_paths
-from stickslip.studies.compare import compare
 from tests.messages import refused
 
 NODE = """\

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip.reference.planar import SteadyFront
-from tests.reference.planar_methods import FrictionalVolume, PlanarCase, SlipWeakeningAtNodes
+from stickslip.extensions.planar.reference import SteadyFront
+from tests.extensions.planar.planar_methods import FrictionalVolume, PlanarCase, SlipWeakeningAtNodes
 
 Array = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.planar.patches import SLAB
-from tests.reference.planar_methods import LawAtNodes, PlanarCase, volume
 
 import stickslip as ss
-from stickslip.planar.solver import PlanarSolver
+from stickslip.extensions.planar.solver import PlanarSolver
+from tests.extensions.planar.patches import SLAB
+from tests.extensions.planar.planar_methods import LawAtNodes, PlanarCase, volume
 
 LENGTH, DURATION = 4e4, 1.5 * SLAB.two_way_time
 SMOOTH = ss.friction.FromExpression("0.6 - 0.1*tanh(u/2) + 0.1*v/(v + 2)")

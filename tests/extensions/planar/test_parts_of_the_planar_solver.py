@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.special import j1
-from tests.planar.patches import SLAB, patch
 
 import stickslip as ss
-from stickslip.engine_input.forcing import inflow_of
-from stickslip.planar import echo as echoes
-from stickslip.planar.driving import locked_load
-from stickslip.planar.memory import advanced, recurrence
-from stickslip.planar.nodes import node_values
-from stickslip.planar.solver import PlanarSolver, in_double_precision
+from stickslip.engine.input.forcing import inflow_of
+from stickslip.extensions.planar import echo as echoes
+from stickslip.extensions.planar.driving import locked_load
+from stickslip.extensions.planar.memory import advanced, recurrence
+from stickslip.extensions.planar.nodes import node_values
+from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from tests.extensions.planar.patches import SLAB, patch
 
 RANDOM = np.random.default_rng(3)
 

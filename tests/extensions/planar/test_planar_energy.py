@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.planar.patches import LAW, SLAB, patch
-from tests.reference.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 import stickslip as ss
-from stickslip.observables.energy.planar import NAMES
-from stickslip.planar import solver
-from stickslip.planar.friction import ContactOfNodes
-from stickslip.planar.memory import MemoryRecurrence
-from stickslip.solution.planar import PlanarSolution
+from stickslip.extensions.planar import solver
+from stickslip.extensions.planar.energy import NAMES
+from stickslip.extensions.planar.friction import ContactOfNodes
+from stickslip.extensions.planar.memory import MemoryRecurrence
+from stickslip.extensions.planar.solution import PlanarSolution
+from tests.extensions.planar.patches import LAW, SLAB, patch
+from tests.extensions.planar.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 DRIVERS: dict[str, dict[str, Any]] = {
     "rigid": {"pull_rate": 2.0},

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.planar.patches import LAW, SLAB, patch, state_patch
 
 import stickslip as ss
-from stickslip.planar.solver import functions_of
+from stickslip.extensions.planar.run import PlanarReport
+from stickslip.extensions.planar.solver import functions_of
 from stickslip.run import progress
-from stickslip.run.planar_run import PlanarReport
+from tests.extensions.planar.patches import LAW, SLAB, patch, state_patch
 
 STATE: dict[str, Any] = {"initial_load": 63e6, "initial_state": 1.0, "pull_rate": 1e-3}
 UNEVEN = {"initial.excess": lambda y: np.where(np.abs(y) < 4e3, 2e6, -2e6)}
@@ -49,7 +49,7 @@ def test_a_search_that_does_not_find_the_slip_rate_is_noticed(monkeypatch: pytes
     found = ss.simulate(slab, 3.0, frames=16)
     assert found.status.ok
     assert found.residual < 1e-13
-    monkeypatch.setattr("stickslip.planar.friction.ITERATIONS", 2)
+    monkeypatch.setattr("stickslip.extensions.planar.friction.ITERATIONS", 2)
     functions_of.cache_clear()
     missed = ss.simulate(slab, 3.0, frames=16)
     check_end(missed, "off the law")
@@ -58,7 +58,7 @@ def test_a_search_that_does_not_find_the_slip_rate_is_noticed(monkeypatch: pytes
 
 @pytest.mark.usefixtures("compiled_anew")
 def test_an_unstable_run_is_noticed_before_its_numbers_overflow(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.planar.slab.WIDEST_STEP", 10.0)
+    monkeypatch.setattr("stickslip.extensions.planar.slab.WIDEST_STEP", 10.0)
     run = ss.simulate(patch(nodes=128, length=2e4, courant=2.0), 12.0, frames=100)
     check_end(run, "unstable")
     assert np.abs(run.slip_rate).max() < 1e4
@@ -124,8 +124,8 @@ MEASURE = """
 import sys
 import jax
 import stickslip as ss
-from stickslip.planar import solver
-from tests.planar.patches import patch
+from stickslip.extensions.planar import solver
+from tests.extensions.planar.patches import patch
 
 def resident(name):
     return 1024.0 * next(int(line.split()[1]) for line in open("/proc/self/status") if line.startswith(name))

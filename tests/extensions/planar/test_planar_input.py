@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
-from stickslip.run.planar_run import memory_here
-from stickslip.scenarios.contact import Contact
-from stickslip.scenarios.entries import Source
-from stickslip.scenarios.scenario import scenario_of
+from stickslip.extensions.planar.contact import Contact
+from stickslip.extensions.planar.run import memory_here
+from stickslip.problem.scenarios.entries import Source
+from stickslip.problem.scenarios.scenario import scenario_of
+from tests.extensions.planar.patches import LAW, SLAB, patch
 
 PROBLEM = ss.Problem(SLAB, LAW, initial_load=60e6)
 GRID = {"nodes": 32, "length": 2e4}
@@ -85,7 +85,7 @@ def test_frames_are_refused_for_a_slab_in_1d() -> None:
 
 
 def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "stickslip.planar.solver", None)
+    monkeypatch.setitem(sys.modules, "stickslip.extensions.planar.solver", None)
     with pytest.raises(ss.InputError, match=r"pip install 'stickslip\[planar\]'"):
         ss.simulate(patch(**GRID), 3.0)
 
@@ -124,7 +124,7 @@ def rough(low: float, high: float) -> np.ndarray:
 def test_many_different_nodes_have_the_numbers_of_a_problem_each(problem: Any, along: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     grid = {"nodes": 32, "length": 2e4, "width": 1e4, "width_nodes": 16}
     few = ss.PlanarSlab(problem, along=along, **grid)
-    monkeypatch.setattr("stickslip.planar.nodes.MANY", 1000)
+    monkeypatch.setattr("stickslip.extensions.planar.nodes.MANY", 1000)
     each = ss.PlanarSlab(problem, along=along, **grid)
     assert (len(few.values.problems) <= 256, len(each.values.problems)) == (True, 512)
     for name in ("normal", "load", "excess", "slip", "law_slip", "states", "static_excess", "knots"):
@@ -165,7 +165,7 @@ def test_a_contact_of_as_many_nodes_as_can_be_used_is_read() -> None:
 
 def test_the_memory_of_the_machine_bounds_a_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     limit = tmp_path / "memory.max"
-    monkeypatch.setattr("stickslip.run.planar_run.LIMITS_OF_CONTAINER", (str(limit),))
+    monkeypatch.setattr("stickslip.extensions.planar.run.LIMITS_OF_CONTAINER", (str(limit),))
     limit.write_text("max\n")
     machine = memory_here()
     assert machine > 1e9

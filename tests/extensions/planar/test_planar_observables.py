@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
-from tests.planar.patches import SLAB, patch
 
 import stickslip as ss
-from stickslip.figures.runs.planar import stage
-from stickslip.observables.planar import pulses, rupture_speed, rupture_times
+from stickslip.extensions.planar.figure import stage
+from stickslip.extensions.planar.pulses import pulses, rupture_speed, rupture_times
+from tests.extensions.planar.patches import SLAB, patch
 
 TIMES = np.linspace(0.0, 10.0, 4001)
 

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.reference.planar import (
+from stickslip.extensions.planar.reference import (
     CRITICAL_PATCH,
     SteadyFront,
     growth_rate_on_half_space,
     growth_rate_on_slab,
     linear_fracture_energy,
 )
-from stickslip.reference.slab import growth_rate
-from tests.reference.convolution import convolution
-from tests.reference.planar_cases import slip_difference, weakening_patch, weakening_plane
-from tests.reference.planar_methods import (
+from stickslip.run.reference.slab import growth_rate
+from tests.core.run.reference.convolution import convolution
+from tests.extensions.planar.planar_cases import slip_difference, weakening_patch, weakening_plane
+from tests.extensions.planar.planar_methods import (
     FrictionalVolume,
     LawAtNodes,
     PlanarCase,

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.special import j1
-from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
-from stickslip.planar.echo import echo_weights
-from stickslip.planar.friction import ContactOfNodes, Nodes
-from stickslip.planar.memory import exponentials
-from stickslip.planar.solver import PlanarSolver, in_double_precision
+from stickslip.extensions.planar.echo import echo_weights
+from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
+from stickslip.extensions.planar.memory import exponentials
+from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from tests.extensions.planar.patches import LAW, SLAB, patch
 
 DENSITY, SPEED, THICKNESS, STRESS = 2800.0, 3500.0, 1e4, 1e8
 MODULUS = DENSITY * SPEED**2
@@ -72,7 +72,7 @@ def test_weights_of_echoes_are_integrals_of_the_kernel(phase: float) -> None:
 
 def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pytest.MonkeyPatch) -> None:
     """Five steps of Newton's method from 1 % beside the root, or from the root itself, meet the load to 1e-12."""
-    monkeypatch.setattr("stickslip.planar.friction.ITERATIONS", 5)
+    monkeypatch.setattr("stickslip.extensions.planar.friction.ITERATIONS", 5)
     law, impedance = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=0.1), SLAB.impedance
     problem = ss.Problem(SLAB, law, initial_load=60e6, initial_state=1.0)
     slab = ss.PlanarSlab(problem, nodes=64, length=2e4)
@@ -233,8 +233,8 @@ import json, re, sys
 import jax, numpy as np
 if len(sys.argv) > 1:
     jax.distributed.initialize(sys.argv[1], num_processes=2, process_id=int(sys.argv[2]))
-from stickslip.planar.solver import PlanarSolver, in_double_precision
-from tests.planar.patches import patch
+from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from tests.extensions.planar.patches import patch
 found = []
 for grid in ({"nodes": 32, "length": 2e4}, {"nodes": 32, "length": 2e4, "width": 2e4, "width_nodes": 16}):
     run = PlanarSolver(patch(**grid), 8.0)

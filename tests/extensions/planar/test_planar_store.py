@@ -19,15 +19,16 @@ import numpy as np
 import pytest
 import xarray
 import zarr
-from tests.planar.patches import patch, state_patch
 
 import stickslip as ss
+from stickslip.extensions.planar import store as planar_store
+from stickslip.extensions.planar import store_layout as planar_layout
+from stickslip.extensions.planar.run import PlanarReport
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.locks import held
 from stickslip.foundation.zarr_folder import unpacked_size
-from stickslip.io import planar_layout, planar_store
 from stickslip.run import run_loop
-from stickslip.run.planar_run import PlanarReport
+from tests.extensions.planar.patches import patch, state_patch
 
 GRID = {"nodes": 32, "length": 2e4}
 DURATION = 12.0  # three round trips, of 5.71 s

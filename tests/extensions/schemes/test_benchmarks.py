@@ -12,13 +12,20 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.schemes.benchmarks import (
+    BENCHMARKS,
+    benchmark_of,
+    exact_series,
+    judge_benchmark,
+    judge_series,
+    write_benchmark,
+)
+from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.run import SCHEMES, run_scheme
+from stickslip.extensions.schemes.schemes import schemes
+from stickslip.extensions.schemes.series import read_series
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import read
-from stickslip.io.series import read_series
-from stickslip.schemes.contract import Series
-from stickslip.schemes.run import SCHEMES, run_scheme
-from stickslip.studies.benchmarks import BENCHMARKS, benchmark_of, exact_series, judge_benchmark, judge_series, write_benchmark
-from stickslip.studies.schemes import schemes
 
 
 def test_a_column_that_is_missing_is_named_beside_those_that_are_there(tmp_path: Path) -> None:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.schemes.contract import Sample, Series
-from stickslip.schemes.run import SCHEMES, run_scheme
-from stickslip.studies.schemes import schemes
+from stickslip.extensions.schemes.contract import Sample, Series
+from stickslip.extensions.schemes.run import SCHEMES, run_scheme
+from stickslip.extensions.schemes.schemes import schemes
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 SMOOTH = ss.Problem(SLAB, ss.friction.SinusoidalSlip(1.0, 0.5, 2.0), pull_rate=0.3, initial_slip=np.pi / 4, initial_excess=0.0)

@@ -13,10 +13,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.io.series import read_series
-from stickslip.schemes.contract import Series
-from stickslip.studies.benchmarks import benchmark_of, judge_series
-from stickslip.studies.judgement import Judgement
+from stickslip.extensions.schemes.benchmarks import benchmark_of, judge_series
+from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.judgement import Judgement
+from stickslip.extensions.schemes.series import read_series
 
 NAME = "linear-weakening"
 """A problem with shocks, slip and rest, whose solution has a closed form."""

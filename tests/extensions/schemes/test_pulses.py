@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.schemes.run import SCHEMES, run_scheme
+from stickslip.extensions.schemes.run import SCHEMES, run_scheme
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 CRITICAL = 1.193

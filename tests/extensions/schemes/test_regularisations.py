@@ -14,12 +14,12 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.reference.folds import HyperbolicFolds, fold_delay
-from stickslip.schemes.contract import Scheme
-from stickslip.schemes.run import run_scheme
-from stickslip.studies.regularisations import LAB, Regularisation, with_contact_mass, with_lag
-from stickslip.studies.schemes import SETTLES, Schemes, schemes
-from stickslip.studies.verdict import local_orders
+from stickslip.extensions.schemes.contract import Scheme
+from stickslip.extensions.schemes.regularisations import LAB, Regularisation, with_contact_mass, with_lag
+from stickslip.extensions.schemes.run import run_scheme
+from stickslip.extensions.schemes.schemes import SETTLES, Schemes, schemes
+from stickslip.extensions.schemes.verdict import local_orders
+from stickslip.run.reference.folds import HyperbolicFolds, fold_delay
 
 LOOP = ss.load_scenario("fig4-loop")
 SECOND = ss.load_scenario("second-event-perfect-delay")
@@ -168,7 +168,7 @@ def test_after_312_years_of_rest_every_round_trip_creeps() -> None:
 
 
 def test_a_run_that_ends_early_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    module = import_module("stickslip.studies.regularisations")
+    module = import_module("stickslip.extensions.schemes.regularisations")
     monkeypatch.setattr(module, "simulate", partial(ss.simulate, max_pieces=256))
     with pytest.raises(ss.InputError, match=r"^schemes: contact-mass with 50 cells: its run ends at .* s \(too many pieces\)"):
         schemes(replace(SECOND.problem, pull_rate=0.1), 45 * R, "contact-mass", 50)
@@ -197,7 +197,9 @@ def test_an_interrupted_run_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> Non
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(import_module("stickslip.studies.regularisations"), "simulate", partial(ss.simulate, progress=stop))
+    monkeypatch.setattr(
+        import_module("stickslip.extensions.schemes.regularisations"), "simulate", partial(ss.simulate, progress=stop)
+    )
     with pytest.raises(KeyboardInterrupt):
         schemes(LOOP.problem, 1.0, "lag")
     found = schemes(LOOP.problem, 1.0, ["theta", "lag"], [20, 40])

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.schemes.contract import Meeting, Series
+from stickslip.extensions.schemes.implicit import Elements
+from stickslip.extensions.schemes.measures import arrest_in, period_of, pulses_in
+from stickslip.extensions.schemes.regularisations import LAB
+from stickslip.extensions.schemes.run import SCHEMES, SEARCHES, GridContact, _scan, grid_of, run_scheme
+from stickslip.extensions.schemes.sbp import NORMS, difference
+from stickslip.extensions.schemes.schemes import schemes
+from stickslip.extensions.schemes.series import read_series
 from stickslip.foundation.errors import InputError
-from stickslip.io.series import read_series
-from stickslip.schemes.contract import Meeting, Series
-from stickslip.schemes.implicit import Elements
-from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, _scan, grid_of, run_scheme
-from stickslip.schemes.sbp import NORMS, difference
-from stickslip.studies.regularisations import LAB
-from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in
-from stickslip.studies.schemes import schemes
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 SMOOTH = ss.Problem(SLAB, ss.friction.SinusoidalSlip(1.0, 0.5, 2.0), pull_rate=0.3, initial_slip=np.pi / 4, initial_excess=0.0)

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.schemes.contract import Series
-from stickslip.studies.benchmarks import judge_series
-from stickslip.studies.schemes import SETTLES, Schemes, schemes
-from stickslip.studies.verdict import NONE, STRICT, UNTOLD
+from stickslip.extensions.schemes.benchmarks import judge_series
+from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.schemes import SETTLES, Schemes, schemes
+from stickslip.extensions.schemes.verdict import NONE, STRICT, UNTOLD
 
 LOOP = ss.load_scenario("fig4-loop")
 TIME = np.linspace(0.0, 5.7, 2001)

@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.figures.studies.compare import drawn
-from stickslip.paper.claims import CLAIMS, Outcome, Runs
-from stickslip.studies.compare import COLUMNS, Comparison, compare, distinct
+from stickslip.extensions.paper.claims import CLAIMS, Outcome, Runs
+from stickslip.extensions.studies.compare import COLUMNS, Comparison, compare, distinct
+from stickslip.extensions.studies.figures.compare import drawn
 
 FIG6 = ("fig6-block-reconstructed", "fig6-slab")
 

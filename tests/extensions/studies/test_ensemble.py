@@ -16,14 +16,14 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.io.netcdf import save_checkpoint
+from stickslip.engine.history.status import UNDER_WAY
+from stickslip.extensions.studies import kept_runs
+from stickslip.extensions.studies.ensemble import Ensemble, ensemble
+from stickslip.extensions.studies.separation import disturbed, shared_events, slope
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
-from stickslip.studies import kept_runs
-from stickslip.studies.ensemble import Ensemble, ensemble
-from stickslip.studies.separation import disturbed, shared_events, slope
-from stickslip.trajectory.status import UNDER_WAY
-from tests.long_runs.problems import differences, killed
+from stickslip.solution.files.netcdf import save_checkpoint
+from tests.core.run.long_runs.problems import differences, killed
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 TRIP = SLAB.two_way_time
@@ -274,7 +274,7 @@ def test_an_interrupted_run_is_no_member(monkeypatch: pytest.MonkeyPatch) -> Non
         done.append(found)
         return found if len(done) < 3 else replace(found, status=replace(found.status, name="interrupted", ok=False))
 
-    monkeypatch.setattr(import_module("stickslip.studies.kept_runs"), "simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.extensions.studies.kept_runs"), "simulate", stops)
     found = ensemble(FAST, 20 * TRIP, members=4)
     assert len(found.runs) == 1
     assert found.stopped == "interrupted: 1 of 4 members"

@@ -10,11 +10,11 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.figures.studies import analogy as figure
+from stickslip.extensions.schemes.verdict import groups, local_orders
+from stickslip.extensions.studies.analogy import QUANTITIES, Analogy, _stands, analogy, block_for, weakening
+from stickslip.extensions.studies.figures import analogy as figure
 from stickslip.foundation.axis import Axis
-from stickslip.scenarios.scenario import Scenario
-from stickslip.studies.analogy import QUANTITIES, Analogy, _stands, analogy, block_for, weakening
-from stickslip.studies.verdict import groups, local_orders
+from stickslip.problem.scenarios.scenario import Scenario
 
 CASE = ss.load_scenario("block-or-slab")
 WAVELENGTH, ALPHA = "friction.parameters.wavelength", "friction.parameters.alpha"

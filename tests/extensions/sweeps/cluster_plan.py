@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.sweeps.execution.plan import Plan, make_plan
+from stickslip.extensions.sweeps.execution.plan import Plan, make_plan
 
 VARY = {
     "friction.alpha": np.linspace(0.05, 2.0, 6),

@@ -18,10 +18,10 @@ from urllib.request import urlopen
 import pytest
 
 import stickslip as ss
-from stickslip.sweeps.execution.cluster import ChunksLostError, cluster, on_cluster, stream
-from stickslip.sweeps.sweep import SweepProgress, carry_out
-from tests.sweeps.cluster_plan import VARY, plan_of
-from tests.sweeps.stores import files
+from stickslip.extensions.sweeps.execution.cluster import ChunksLostError, cluster, on_cluster, stream
+from stickslip.extensions.sweeps.sweep import SweepProgress, carry_out
+from tests.extensions.sweeps.cluster_plan import VARY, plan_of
+from tests.extensions.sweeps.stores import files
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -112,15 +112,15 @@ def test_few_chunks_are_in_flight(local: Client) -> None:
 
 
 def test_a_worker_of_another_version_is_refused(local: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.sweeps.execution.cluster.engine", lambda: "another")
+    monkeypatch.setattr("stickslip.extensions.sweeps.execution.cluster.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="another version of stickslip"):
         list(stream(local, square, [(1, 1)]))
 
 
 SUICIDAL = """
 import os, signal, sys
-from stickslip.sweeps.sweep import carry_out, runner_of
-from tests.sweeps.cluster_plan import plan_of
+from stickslip.extensions.sweeps.sweep import carry_out, runner_of
+from tests.extensions.sweeps.cluster_plan import plan_of
 
 def kill_all(report):
     if report.done >= 3:
@@ -161,7 +161,7 @@ def _alive(session: int) -> bool:
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere"])
 def test_a_scheduler_that_does_not_answer_is_refused(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.sweeps.execution.cluster.PATIENCE", 0.2)
+    monkeypatch.setattr("stickslip.extensions.sweeps.execution.cluster.PATIENCE", 0.2)
     with pytest.raises(ss.InputError, match=f"no dask scheduler answers at {address}"):
         ss.sweep("fig6-slab", VARY, scheduler=address)
 

@@ -11,11 +11,11 @@ import pint
 import pytest
 
 import stickslip as ss
-from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
-from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.sweeps.design.axis import DesignAxis, typed_axes
-from stickslip.sweeps.design.design import read_design
-from stickslip.sweeps.execution.plan import make_plan, tile_of
+from stickslip.extensions.sweeps.design.axis import DesignAxis, typed_axes
+from stickslip.extensions.sweeps.design.design import read_design
+from stickslip.extensions.sweeps.execution.plan import make_plan, tile_of
+from stickslip.problem.scenarios.parameter_paths import find_parameter, parameter_paths
+from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
 from tests.messages import refused
 
 SLAB = load_scenario("fig6-slab")

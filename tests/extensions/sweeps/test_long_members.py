@@ -10,13 +10,13 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.batch import run
-from stickslip.cli.output.sweep_summary import show_slowest
-from stickslip.sweeps.execution.chunk import NOT_RUN
-from stickslip.sweeps.execution.plan import make_plan
-from stickslip.sweeps.sweep import SweepProgress
-from tests.batch.cases import CASES
-from tests.sweeps.stores import files
+from stickslip.extensions.sweeps.batch import run
+from stickslip.extensions.sweeps.execution.chunk import NOT_RUN
+from stickslip.extensions.sweeps.execution.plan import make_plan
+from stickslip.extensions.sweeps.summary import show_slowest
+from stickslip.extensions.sweeps.sweep import SweepProgress
+from tests.extensions.sweeps.batch.cases import CASES
+from tests.extensions.sweeps.stores import files
 
 DURATIONS = [1e3, 2e5, 2e3, 1e5, 4e3, 3e3]
 LONG = [1, 3]

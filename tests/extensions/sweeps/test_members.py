@@ -12,15 +12,24 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.energy.balance import energy
-from stickslip.observables.severity import severity
-from stickslip.scenarios.scenario import load_scenario, read_scenario
-from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, ERROR, MEANINGS, NOT_RUN, ChunkResult, Work, one_by_one, run_chunk
-from stickslip.sweeps.execution.plan import make_plan
-from stickslip.sweeps.results.store import ResultStore
-from stickslip.sweeps.sweep import SweepProgress, Tally
-from tests.batch.cases import sticking
+from stickslip.extensions.sweeps.design.quantities import QUANTITIES, quantities_named
+from stickslip.extensions.sweeps.execution.chunk import (
+    BAD_PARAMETERS,
+    ERROR,
+    MEANINGS,
+    NOT_RUN,
+    ChunkResult,
+    Work,
+    one_by_one,
+    run_chunk,
+)
+from stickslip.extensions.sweeps.execution.plan import make_plan
+from stickslip.extensions.sweeps.results.store import ResultStore
+from stickslip.extensions.sweeps.sweep import SweepProgress, Tally
+from stickslip.problem.scenarios.scenario import load_scenario, read_scenario
+from stickslip.solution.observables.energy.balance import energy
+from stickslip.solution.observables.severity import severity
+from tests.extensions.sweeps.batch.cases import sticking
 from tests.messages import refused
 
 PULSES = load_scenario("fig5-slab-reconstructed")
@@ -210,7 +219,7 @@ def test_a_tally_counts_failures_and_names_the_slowest() -> None:
 
 
 def test_a_run_that_does_not_reach_its_end_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.sweeps.execution.chunk.MAX_PIECES", 600)
+    monkeypatch.setattr("stickslip.extensions.sweeps.execution.chunk.MAX_PIECES", 600)
     plan = make_plan(PULSES, {"thickness": [100, 10e3]}, quantities="slip")
     found = one_by_one(plan.work, plan.values(0))
     assert [MEANINGS[code] for code in found.status] == ["too_many_pieces", "finished"]

@@ -18,13 +18,13 @@ import xarray as xr
 import zarr
 
 import stickslip as ss
-from stickslip.run.session import Session
-from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, NOT_RUN
-from stickslip.sweeps.execution.plan import make_plan
-from stickslip.sweeps.results.store import ResultStore, open_store
-from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
+from stickslip.engine.session import Session
+from stickslip.extensions.sweeps.execution.chunk import BAD_PARAMETERS, NOT_RUN
+from stickslip.extensions.sweeps.execution.plan import make_plan
+from stickslip.extensions.sweeps.results.store import ResultStore, open_store
+from stickslip.extensions.sweeps.sweep import SweepProgress, carry_out, on_threads
+from tests.extensions.sweeps.stores import FINE, MEMBERS, SAVED, VARY, files, sweep
 from tests.messages import refused
-from tests.sweeps.stores import FINE, MEMBERS, SAVED, VARY, files, sweep
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +141,7 @@ def test_a_chunk_of_another_size_gives_the_same_numbers(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from tests.sweeps.stores import sweep
+from tests.extensions.sweeps.stores import sweep
 
 rename, left = Path.replace, [int(sys.argv[2])]
 def replace(self, target):
@@ -256,7 +256,7 @@ def test_another_sweep_is_refused(store: Path, whole: dict[str, bytes], asked: d
 def test_another_scenario_and_another_version_are_refused(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ss.InputError, match="was made from another scenario"):
         ss.sweep("second-event-maxwell", VARY, out=store, **SAVED)
-    monkeypatch.setattr("stickslip.sweeps.results.layout.engine", lambda: "another")
+    monkeypatch.setattr("stickslip.extensions.sweeps.results.layout.engine", lambda: "another")
     with pytest.raises(ss.InputError, match=r"was made by another version of stickslip \('\w+', this is 'another'\)"):
         sweep(store)
 

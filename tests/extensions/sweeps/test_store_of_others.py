@@ -14,10 +14,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.sweeps.results.layout import FORMAT
-from stickslip.sweeps.results.store import open_store
-from stickslip.sweeps.sweep import SweepProgress
-from tests.sweeps.stores import VARY, files, sweep
+from stickslip.extensions.sweeps.results.layout import FORMAT
+from stickslip.extensions.sweeps.results.store import open_store
+from stickslip.extensions.sweeps.sweep import SweepProgress
+from tests.extensions.sweeps.stores import VARY, files, sweep
 
 
 @pytest.fixture(scope="module")

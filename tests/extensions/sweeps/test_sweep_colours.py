@@ -19,16 +19,16 @@ from matplotlib.mathtext import MathTextParser
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.extensions.sweeps.figures.colours import FEW, colours_of, shades
+from stickslip.extensions.sweeps.figures.curves import jumps
+from stickslip.extensions.sweeps.figures.varied import ShownQuantity
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.style import image
-from stickslip.figures.sweeps.colours import FEW, colours_of, shades
-from stickslip.figures.sweeps.curves import jumps
-from stickslip.figures.sweeps.varied import ShownQuantity
 from stickslip.foundation.names import readable_unit, sizes_of
-from stickslip.scenarios.library import names
-from stickslip.scenarios.parameter_paths import ParameterPath, parameter_paths
-from tests.figures.legible import SIZES, SLAB_PROBLEM
+from stickslip.problem.scenarios.library import names
+from stickslip.problem.scenarios.parameter_paths import ParameterPath, parameter_paths
+from tests.core.figures.legible import SIZES, SLAB_PROBLEM
 
 
 def declared() -> list[ParameterPath]:

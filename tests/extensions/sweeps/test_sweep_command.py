@@ -8,8 +8,8 @@ import xarray as xr
 from typer import Context
 
 from stickslip.cli.options import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
-from stickslip.sweeps.results.store import ResultStore
-from stickslip.sweeps.sweep import SweepProgress
+from stickslip.extensions.sweeps.results.store import ResultStore
+from stickslip.extensions.sweeps.sweep import SweepProgress
 
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stickslip.cli.output.sweep_summary import ChangeAlongKey, cases, changes
-from stickslip.sweeps.execution import cluster
+from stickslip.extensions.sweeps.execution import cluster
+from stickslip.extensions.sweeps.summary import ChangeAlongKey, cases, changes
 
 MAP = ["sweep", "fig6-slab", "-v", "friction.alpha=0.1..0.4:3", "-v", "body.normal_stress=50MPa..200MPa:3"]
 
@@ -17,7 +17,7 @@ def test_chunks_that_a_cluster_lost_are_reported(command, monkeypatch: pytest.Mo
         raise cluster.ChunksLostError("sweep: the dask scheduler is lost")
         yield
 
-    monkeypatch.setattr("stickslip.sweeps.sweep.on_threads", lambda threads: lose)
+    monkeypatch.setattr("stickslip.extensions.sweeps.sweep.on_threads", lambda threads: lose)
     shown = command(*MAP, "--out", "map.zarr")
     assert (shown.code, shown.err) == (1, "stickslip: sweep: the dask scheduler is lost\n")
     with xr.open_zarr("map.zarr") as found:

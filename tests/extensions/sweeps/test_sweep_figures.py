@@ -19,10 +19,10 @@ from matplotlib.image import imread
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.extensions.sweeps.figures.curves import ALL, BESIDE
+from stickslip.extensions.sweeps.figures.varied import is_logarithmic
 from stickslip.figures.style import PALE
-from stickslip.figures.sweeps.curves import ALL, BESIDE
-from stickslip.figures.sweeps.varied import is_logarithmic
-from stickslip.scenarios.parameter_paths import parameter_paths
+from stickslip.problem.scenarios.parameter_paths import parameter_paths
 
 Floats = NDArray[np.float64]
 ALPHA, THICKNESS, STRESS = "friction.alpha", "body.thickness", "body.normal_stress"

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from stickslip.contact.folds import Fold
     from stickslip.contact.sliding import SteadySlidings
     from stickslip.contact.uniqueness import Uniqueness
-    from stickslip.scenarios.examine import Examination
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.run.check.examine import Examination
 
 PARAMETERS = "List the names, units and meanings of all numbers that --set, --vary and --free take, and stop."
 RUNS = "Make a dozen short exact runs from rest, where steady sliding becomes stable at a critical rate."
@@ -65,7 +65,7 @@ def check(
         --map "normal_stress=10 MPa..500 MPa" --figure map.png
     """
     from stickslip.cli.overrides import load
-    from stickslip.scenarios.examine import examine
+    from stickslip.run.check.examine import examine
 
     check_targets(Target("--figure", figure), Target("--steady-figure", steady_figure))
     look.check(figure, steady_figure)
@@ -93,7 +93,7 @@ def check(
 
 def _show_parameters(loaded: Scenario) -> None:
     """Print the names of all parameters of a scenario with their units and meanings."""
-    from stickslip.scenarios.parameter_paths import parameter_paths
+    from stickslip.problem.scenarios.parameter_paths import parameter_paths
 
     rows = [(one.name, "" if one.unit == "1" else one.unit, one.declared.meaning) for one in parameter_paths(loaded)]
     print_words(titled(loaded), ("name", "unit", "meaning"), rows)
@@ -101,8 +101,8 @@ def _show_parameters(loaded: Scenario) -> None:
 
 def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
     """Return what is found about steady sliding, with runs from rest if they are wanted."""
+    from stickslip.run.one_run import steady
     from stickslip.run.progress import progress_line
-    from stickslip.studies.one_run import steady
 
     with progress_line("runs from rest:") as report:
         return steady(loaded, from_rest=runs, progress=report)
@@ -110,9 +110,9 @@ def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
 
 def _show_contact(loaded: Scenario, drawing_wanted: object) -> None:
     """Print what was found about a scenario with a contact of many nodes. Raises InputError if a drawing is wanted."""
-    from stickslip.cli.output.contact import size_of
-    from stickslip.scenarios.examine_contact import examine_contact
-    from stickslip.scenarios.facts import Fact
+    from stickslip.extensions.planar.examine import examine_contact
+    from stickslip.extensions.planar.summary import size_of
+    from stickslip.run.check.facts import Fact
 
     if drawing_wanted:
         raise InputError("check: figures and maps draw the contact equation of a single place: leave them out with a [contact]")

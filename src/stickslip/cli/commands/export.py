@@ -12,8 +12,8 @@ from stickslip.cli.output.files import announce, check_target
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
+    from stickslip.extensions.studies.compare import RunSource
     from stickslip.solution.solution import Solution
-    from stickslip.studies.compare import RunSource
 
 RUN = "A TOML file, a bundled name, a file or folder of `run --out`, or - for a scenario from standard input."
 FILE = "What to write: curves (.csv or .nc), or the text of the SCEC (.txt or .dat)."
@@ -60,8 +60,8 @@ def export(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
+    from stickslip.problem.scenarios.text_of_files import is_scenario_name
     from stickslip.run.progress import progress_line
-    from stickslip.scenarios.text_of_files import is_scenario_name
 
     if is_scenario_name(str(file)):
         raise InputError(f"export: the run comes first, and then the file: `stickslip export {file} {run}`")
@@ -96,7 +96,7 @@ def _check_fitting(file: Path, for_scec: dict[str, bool], for_curves: dict[str, 
 
 def _export_contact(folder: Path, file: Path, given: dict[str, Any]) -> None:
     """Write the run of a contact of many nodes in a folder at its own frames. Raises InputError for other options."""
-    from stickslip.io.planar_layout import open_planar
+    from stickslip.extensions.planar.store_layout import open_planar
 
     wrong = [name for name, value in given.items() if value is not None]
     if wrong or file.suffix.lower() in OF_SCEC:
@@ -107,8 +107,8 @@ def _export_contact(folder: Path, file: Path, given: dict[str, Any]) -> None:
 
 def _source(run: str, duration: str | None) -> RunSource:
     from stickslip.cli.overrides import STDIN, load, read
-    from stickslip.scenarios.schema import read_duration
-    from stickslip.studies.compare import read_source
+    from stickslip.extensions.studies.compare import read_source
+    from stickslip.problem.scenarios.schema import read_duration
 
     length = read(read_duration, duration, "export", "duration")
     return read_source(load(run, "export") if run == STDIN else run, length, who="export")

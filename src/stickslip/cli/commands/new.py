@@ -41,7 +41,7 @@ def new(
     elif name is None:
         raise InputError("new: which scenario? `stickslip new --list` lists them")
     else:
-        from stickslip.scenarios.templates import template
+        from stickslip.run.templates import template
 
         typer.echo(template(name, friction, pull), nl=False)
 
@@ -49,8 +49,8 @@ def new(
 def _print_list(about: str | None) -> None:
     """Print what can be printed, or what has a word in its name, its trade or what it shows. Raises InputError if nothing has."""
     from stickslip.friction import LAWS
-    from stickslip.loading import HISTORIES
-    from stickslip.scenarios import library
+    from stickslip.problem.loading import HISTORIES
+    from stickslip.problem.scenarios import library
 
     screen, entries = console(), library.entries()
     groups = {"Starters, with every key explained": {name: one.meaning for name, one in library.STARTERS.items()}}

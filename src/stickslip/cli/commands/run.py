@@ -23,7 +23,7 @@ from stickslip.cli.output.files import announce, write_files
 from stickslip.cli.output.pictures import Pictures
 
 if TYPE_CHECKING:
-    from stickslip.trajectory.status import Status
+    from stickslip.engine.history.status import Status
 
 CREEP_RTOL = (
     "Leap over slow creep between pulses (under a law of slip) and over steady sliding from the start, with an error of slip of at "
@@ -89,9 +89,9 @@ def run(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.long_run import Request, list_events, solve, solve_contact
-    from stickslip.cli.output.contact import show_run
     from stickslip.cli.output.summary import show_catalogue, show_solution
+    from stickslip.cli.request import Request, list_events, solve, solve_contact
+    from stickslip.extensions.planar.summary import show_run
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
@@ -129,7 +129,7 @@ def run(
 
 def _say_how_to_go_on(status: Status, file: Path | None, pieces: int) -> None:
     """Say in one line how a run whose history is full goes on from its file, if it has one."""
-    from stickslip.trajectory.status import SHORT_OF_MEMORY, TOO_MANY
+    from stickslip.engine.history.status import SHORT_OF_MEMORY, TOO_MANY
 
     if file is None or status.name != TOO_MANY:
         return

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.problem.problem import Problem
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.solution.planar import PlanarSolution
+    from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
 RESULT = "A file or folder of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
@@ -152,7 +152,7 @@ class StoredContact(Stored):
 
     def summarise(self, *, everything: bool = False) -> None:
         """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
-        from stickslip.cli.output.contact import announce_run, show_run
+        from stickslip.extensions.planar.summary import announce_run, show_run
 
         announce_run(self.own, streamed=True)
         show_run(self.solution)
@@ -176,7 +176,7 @@ class StoredEvents(Stored):
     @cached_property
     def problem(self) -> Problem | None:
         """The problem of the run; None if neither the catalogue nor a checkpoint beside it holds the scenario."""
-        from stickslip.scenarios.scenario import read_scenario
+        from stickslip.problem.scenarios.scenario import read_scenario
 
         return read_scenario(self.scenario(), self.path.stem).problem if "scenario" in self.about else None
 
@@ -198,7 +198,7 @@ class StoredEvents(Stored):
     def to_csv(self, path: Path) -> Path:
         """Write the slip events with the units of their columns, and return the path. Raises InputError if these are not known."""
         from stickslip.foundation.atomic_write import write_table
-        from stickslip.observables.event_table import with_units
+        from stickslip.solution.observables.event_table import with_units
 
         if self.problem is None:
             raise InputError(f"{self.path}: does not say of what body it is, so that its units are not known: leave out --csv")
@@ -218,13 +218,13 @@ class StoredSweep(Stored):
         if others:
             raise InputError(f"{self.path}: the results of a sweep have no {', '.join(others)}: --figure draws a quantity")
         if self.quantity is not None:
-            from stickslip.figures.sweeps.sweep import data
+            from stickslip.extensions.sweeps.figures.sweep import data
 
             data(self.dataset, self.quantity)
 
     def summarise(self, *, everything: bool = False) -> None:
         """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
-        from stickslip.cli.output.sweep_summary import show_sweep
+        from stickslip.extensions.sweeps.summary import show_sweep
 
         show_sweep(self.path.stem, self.dataset)
         self.print_origin()
@@ -232,15 +232,15 @@ class StoredSweep(Stored):
     def draw(self, pictures: Pictures) -> None:
         """Draw the pictures and say which files were written."""
         if pictures.figure is not None:
-            from stickslip.figures.sweeps.sweep import plot_sweep
+            from stickslip.extensions.sweeps.figures.sweep import plot_sweep
 
             drawing(partial(plot_sweep, self.dataset, self.quantity), pictures.look)(pictures.figure)
         super().draw(pictures)
 
     def to_csv(self, path: Path) -> Path:
         """Write a row for each member, with the units of the columns, and return the path."""
+        from stickslip.extensions.sweeps.results.layout import table_of
         from stickslip.foundation.atomic_write import write_table
-        from stickslip.sweeps.results.layout import table_of
 
         return write_table(path, table_of(self.dataset), [made_by(self.about)])
 
@@ -259,19 +259,19 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
     if quantity is not None and (is_planar or not path.is_dir()):
         raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is not a sweep")
     if is_planar:
-        from stickslip.io.planar_layout import open_planar, opened, scenario_in
+        from stickslip.extensions.planar.store_layout import open_planar, opened, scenario_in
 
         return StoredContact(path, opened(path).attrs, open_planar(path), scenario_in(path))
     if path.is_dir():
-        from stickslip.sweeps.results.layout import FORMAT
-        from stickslip.sweeps.results.store import open_store
+        from stickslip.extensions.sweeps.results.layout import FORMAT
+        from stickslip.extensions.sweeps.results.store import open_store
 
         with FORMAT.reading(path):
             dataset = open_store(path).load()
         return StoredSweep(path, dataset.attrs, dataset, quantity)
     suffix = path.suffix.lower()
     if suffix in (".csv", ".parquet"):
-        from stickslip.io.catalogue_rows import read_table
+        from stickslip.solution.files.catalogue_rows import read_table
 
         return _events(path, read_table(path), _beside(path))
     if suffix != ".nc":
@@ -280,16 +280,16 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
 
 
 def _is_planar(path: Path) -> bool:
-    from stickslip.io.planar_layout import FORMAT
+    from stickslip.extensions.planar.store_layout import FORMAT
 
     return FORMAT.is_in(path)
 
 
 def _netcdf(path: Path) -> Stored:
     from stickslip.foundation import netcdf_file
-    from stickslip.io.catalogue_rows import read_table
-    from stickslip.io.netcdf import CATALOGUE, to_solution
     from stickslip.run.resume import PausedCatalogue
+    from stickslip.solution.files.catalogue_rows import read_table
+    from stickslip.solution.files.netcdf import CATALOGUE, to_solution
 
     dataset = netcdf_file.read(path, "a result")
     if CATALOGUE in dataset.attrs:
@@ -301,7 +301,7 @@ def _netcdf(path: Path) -> Stored:
 
 
 def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> StoredEvents:
-    from stickslip.observables.event_table import NEEDED
+    from stickslip.solution.observables.event_table import NEEDED
 
     missing = [name for name in NEEDED if name not in table]
     if missing:
@@ -312,14 +312,14 @@ def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> Stored
 def _beside(path: Path) -> Mapping[str, Any]:
     """Return the attributes of the checkpoint beside the table of a catalogue, or nothing if there is none."""
     from stickslip.foundation.netcdf_file import attributes
-    from stickslip.io.catalogue_rows import Rows
     from stickslip.run.catalogue import checkpoint_of
+    from stickslip.solution.files.catalogue_rows import Rows
 
     return attributes(checkpoint_of(Rows(path)))
 
 
 def _not_results(path: Path) -> str:
-    from stickslip.scenarios import library
+    from stickslip.problem.scenarios import library
 
     if not path.exists() and str(path) not in library.names():
         return f"{path}: no such file"

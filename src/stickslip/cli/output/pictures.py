@@ -15,8 +15,8 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
+    from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.problem.problem import Problem
-    from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
 ANIMATION = "Save the slab in motion (.gif; .mp4 and .webm need ffmpeg)."

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 WIDE = 132
 """Width (columns) of tables that go to a file, so that their rows keep their lines."""

@@ -26,8 +26,8 @@ from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.problem.resistance import Branch, Resistance
 from stickslip.problem.selection_rule import SelectionRule, SelectionTable, registered
-from stickslip.resistance import Branch, Resistance
 
 MOST_COMPARED = 150
 """Largest number of branches that Maxwell's rule compares: a minute's work."""

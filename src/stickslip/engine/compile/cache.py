@@ -46,21 +46,27 @@ OF_SEAL = len(SEAL) + hashlib.sha256().digest_size
 """Number of bytes before the content of a file."""
 NOT_COMPILED = ("cache.py", "lock.py", "private_folder.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
-COMPILED_FOLDERS = ("engine", "batch/kernels", "friction/formula/operations")
+COMPILED_FOLDERS = (
+    *("engine/compile", "engine/contact", "engine/contact_step", "engine/folds", "engine/formula_code", "engine/lanes", "engine/memory"),
+    *("engine/radau", "engine/series", "engine/state", "engine/waves", "friction/formula/operations"),
+)
 """Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""
 COMPILED_FILES = (
-    "creep/pattern.py",
-    "engine_input/branch_table.py",
+    "engine/compiled_formula.py",
+    "engine/creep/pattern.py",
+    "engine/input/branch_table.py",
+    "engine/loop.py",
+    "engine/on_demand.py",
     "foundation/constants.py",
     "friction/formula/expression.py",
-    "observables/layer_records.py",
-    "observables/layer_replay.py",
-    "trajectory/history.py",
-    "trajectory/machine_motion.py",
-    "trajectory/phase_index.py",
-    "trajectory/slip_events.py",
-    "trajectory/status.py",
-    "trajectory/turning_points.py",
+    "solution/observables/layer_records.py",
+    "solution/observables/layer_replay.py",
+    "engine/history/history.py",
+    "engine/history/machine_motion.py",
+    "engine/history/phase_index.py",
+    "engine/history/slip_events.py",
+    "engine/history/status.py",
+    "engine/history/turning_points.py",
 )
 """Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
 VERSIONS = f"{numba.__version__} {sys.version}"

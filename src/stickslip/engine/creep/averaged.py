@@ -35,11 +35,11 @@ from typing import Any, Self
 
 import numpy as np
 
-from stickslip.creep.pattern import Pattern
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
+from stickslip.engine.creep.pattern import Pattern
+from stickslip.engine.input.branch_table import strength_change
 from stickslip.engine.state.layout import Ball, Floats
-from stickslip.engine_input.branch_table import strength_change
 from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression
 from stickslip.problem.problem import Problem

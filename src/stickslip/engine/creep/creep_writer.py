@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from stickslip.creep.averaged import AveragedCreep
-from stickslip.creep.landing import Piece
-from stickslip.creep.planner import CreepPlan, hermite
+from stickslip.engine.creep.averaged import AveragedCreep
+from stickslip.engine.creep.landing import Piece
+from stickslip.engine.creep.planner import CreepPlan, hermite
 from stickslip.engine.state.layout import TERMS, Counts, Floats, HistoryPiece, State, Store
 from stickslip.problem.problem import Problem
 

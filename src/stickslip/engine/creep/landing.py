@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from stickslip.creep.averaged import AveragedCreep, Creep
+from stickslip.engine.creep.averaged import AveragedCreep, Creep
 from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
 

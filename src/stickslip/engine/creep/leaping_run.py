@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from stickslip.engine.history.status import Checkpoint
 from stickslip.engine.state.layout import Counts, Integers, Setup, State, Store
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.status import Checkpoint
 
 
 class LeapingRun(Protocol):

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.history.series import horner
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.trajectory.series import horner
 
 SMALLEST = 1e-300
 """Smallest divisor: it keeps a division by zero from occurring."""

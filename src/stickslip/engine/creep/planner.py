@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.creep.averaged import AveragedCreep, Creep
+from stickslip.engine.creep.averaged import AveragedCreep, Creep
 from stickslip.engine.state.layout import Floats
 
 SAFETY = 4.0

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from stickslip.creep.leaping_run import LeapingRun
-from stickslip.creep.slow import BOTH, NODES, PLACES, RoundTrip, to_powers
-from stickslip.creep.slow_leaps import RATE_SHARE, SlowLeap
-from stickslip.creep.steady import integrals
-from stickslip.creep.steady_landing import continue_after, write_piece
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.slow import BOTH, NODES, PLACES, RoundTrip, to_powers
+from stickslip.engine.creep.slow_leaps import RATE_SHARE, SlowLeap
+from stickslip.engine.creep.steady import integrals
+from stickslip.engine.creep.steady_landing import continue_after, write_piece
 from stickslip.engine.state.layout import Floats
 
 ROUNDINGS = 64.0

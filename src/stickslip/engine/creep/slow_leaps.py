@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.creep.leaping_run import LeapingRun
-from stickslip.creep.slow import BOTH, HEAVY, PLAIN, Offsets, SlowMotion
-from stickslip.creep.steady import SHORTEST_LEAP
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.slow import BOTH, HEAVY, PLAIN, Offsets, SlowMotion
+from stickslip.engine.creep.steady import SHORTEST_LEAP
+from stickslip.engine.history.series import horner
 from stickslip.engine.state.layout import Floats
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.series import horner
 
 MOST_OFFSETS = 12_000
 """Largest number of offsets that are followed: a round trip of more than a thousand pieces is not leaped over."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.creep.leaping_run import LeapingRun
-from stickslip.creep.steady import Deviation, Leap, integrals
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.steady import Deviation, Leap, integrals
 from stickslip.engine.state.layout import Floats, HistoryPiece, Store
 
 

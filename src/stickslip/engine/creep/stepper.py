@@ -6,23 +6,23 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stickslip.creep.averaged import AveragedCreep, Strength
-from stickslip.creep.creep_writer import HistoryWriter, seen
-from stickslip.creep.cycles import CycleLeap, leap_over_cycles
-from stickslip.creep.landing import Piece, landing
-from stickslip.creep.leaping_run import LeapingRun
-from stickslip.creep.pattern import Pattern, monotone_parts
-from stickslip.creep.planner import CreepPlan, Planner
-from stickslip.creep.slow_landing import SlowLanding
-from stickslip.creep.slow_leaps import SlowLeaps
-from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps
-from stickslip.creep.steady_landing import SteadyLanding
-from stickslip.creep.swing_landing import SwingLanding
-from stickslip.creep.swing_leaps import SwingLeaps
+from stickslip.engine.creep.averaged import AveragedCreep, Strength
+from stickslip.engine.creep.creep_writer import HistoryWriter, seen
+from stickslip.engine.creep.cycles import CycleLeap, leap_over_cycles
+from stickslip.engine.creep.landing import Piece, landing
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.pattern import Pattern, monotone_parts
+from stickslip.engine.creep.planner import CreepPlan, Planner
+from stickslip.engine.creep.slow_landing import SlowLanding
+from stickslip.engine.creep.slow_leaps import SlowLeaps
+from stickslip.engine.creep.steady import SHORTEST_LEAP, SteadyLeaps
+from stickslip.engine.creep.steady_landing import SteadyLanding
+from stickslip.engine.creep.swing_landing import SwingLanding
+from stickslip.engine.creep.swing_leaps import SwingLeaps
+from stickslip.engine.history.history import NO_LEAPS
+from stickslip.engine.input.limits import PATIENCE, leaps_over
 from stickslip.engine.state.layout import NEVER, Counts, Floats, Incoming, Stop
-from stickslip.engine_input.limits import PATIENCE, leaps_over
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import NO_LEAPS
 
 Landing = SteadyLanding | SlowLanding | SwingLanding | CycleLeap
 """A leap over sliding, ready to be written."""

@@ -30,7 +30,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.creep.averaged import Strength
+from stickslip.engine.creep.averaged import Strength
 
 SAFETY = 4.0
 """Bound of the error as a multiple of the terms that are left out."""

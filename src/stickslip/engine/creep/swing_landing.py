@@ -8,13 +8,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from stickslip.creep.leaping_run import LeapingRun
-from stickslip.creep.planner import hermite
-from stickslip.creep.slow import PLACES, to_powers
-from stickslip.creep.slow_landing import ROUNDINGS
-from stickslip.creep.steady import integrals
-from stickslip.creep.steady_landing import continue_after, write_piece
-from stickslip.creep.swing_leaps import LastPeriods, SwingLeap, nodes_of, stretches
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.planner import hermite
+from stickslip.engine.creep.slow import PLACES, to_powers
+from stickslip.engine.creep.slow_landing import ROUNDINGS
+from stickslip.engine.creep.steady import integrals
+from stickslip.engine.creep.steady_landing import continue_after, write_piece
+from stickslip.engine.creep.swing_leaps import LastPeriods, SwingLeap, nodes_of, stretches
 from stickslip.engine.state.layout import TERMS, Floats
 
 CONTINUES = 1e-6

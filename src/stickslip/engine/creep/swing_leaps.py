@@ -8,14 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.creep.averaged import Strength
-from stickslip.creep.leaping_run import LeapingRun
-from stickslip.creep.planner import INTERPOLATION, hermite
-from stickslip.creep.steady import SHORTEST_LEAP
-from stickslip.creep.swing import SAFETY, CreepPlace, Swing, SwingingBlock
+from stickslip.engine.creep.averaged import Strength
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.planner import INTERPOLATION, hermite
+from stickslip.engine.creep.steady import SHORTEST_LEAP
+from stickslip.engine.creep.swing import SAFETY, CreepPlace, Swing, SwingingBlock
+from stickslip.engine.history.slip_events import default_event_rate
 from stickslip.engine.state.layout import Floats
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.slip_events import default_event_rate
 
 SLOWLY = 0.01
 """Largest relative change of the frequency in a radian: nearer to where creep turns dynamic each cycle is computed."""

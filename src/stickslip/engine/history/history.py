@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.history.machine_motion import MachineMotion, machine_motion
+from stickslip.engine.history.phase_index import Phases
+from stickslip.engine.history.series import integrals_at, values_at
+from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.engine.state.layout import Integers, Store
-from stickslip.engine_input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.machine_motion import MachineMotion, machine_motion
-from stickslip.trajectory.phase_index import Phases
-from stickslip.trajectory.series import integrals_at, values_at
 
 Side = Literal["left", "right"]
 

@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.history.series import horner
+from stickslip.engine.input.forcing import EDGE, Inflow, inflow_of, machine_at_first, pull_of, settled_rate, wave_before
 from stickslip.engine.state.layout import TERMS, Store
-from stickslip.engine_input.forcing import EDGE, Inflow, inflow_of, machine_at_first, pull_of, settled_rate, wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.series import horner
 
 FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""

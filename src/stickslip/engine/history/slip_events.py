@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.history.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
 from stickslip.engine.memory.pointers import record_at
 from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
@@ -15,8 +17,6 @@ from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import EVENT_SHARE
-from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
 
 LAST_THIRD = 2.0 / 3.0
 """After this share of a run (1), transients from its start count as over."""

@@ -14,10 +14,7 @@ from stickslip.engine.state.layout import Counts, Floats, Integers, Stop
 from stickslip.engine.state.workspace import NO_WAVES
 from stickslip.foundation.show import brief
 
-DECIDE = (
-    *("batch", "bodies", "contact", "creep", "engine", "engine_input"),
-    *("friction", "loading", "observables", "resistance", "run", "solution", "trajectory"),
-)
+DECIDE = ("contact", "engine", "friction", "problem", "run", "solution")
 """Folders and files of the package whose code decides the result of a run."""
 
 
@@ -46,7 +43,7 @@ ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engi
 @cache
 def engine(folders: tuple[str, ...] = DECIDE) -> str:
     """Return a hash of the code that decides the result of a run; a run that continues with other code may differ in its digits."""
-    package, digest = Path(__file__).parents[1], hashlib.sha256(SOURCES.encode())
+    package, digest = Path(__file__).parents[2], hashlib.sha256(SOURCES.encode())
     files = [path for name in folders for path in (*package.glob(f"{name}.py"), *(package / name).rglob("*.py"))]
     for path in sorted(files):
         digest.update(path.read_bytes())

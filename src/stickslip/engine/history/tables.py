@@ -9,10 +9,10 @@ import numpy as np
 from stickslip.contact.sliding import driven_at, slides_on
 from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import regime_when_pressed
-from stickslip.engine_input.branch_table import is_algebraic
-from stickslip.engine_input.limits import leaps_over
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.input.branch_table import is_algebraic
+from stickslip.engine.input.limits import leaps_over
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Positions
 
 if TYPE_CHECKING:
     import pandas as pd

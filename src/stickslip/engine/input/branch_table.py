@@ -18,8 +18,8 @@ from stickslip.contact.uniqueness import regime_when_pressed
 from stickslip.engine.state.layout import BranchRow, Counts, Floats, Params, Setup, State
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
+from stickslip.problem.resistance import Branch
 from stickslip.problem.selection_rule import SelectionTable
-from stickslip.resistance import Branch
 
 
 def is_algebraic(problem: Problem) -> bool:

@@ -16,12 +16,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
-from stickslip.loading import SILENT, LoadingHistory, Segment, Tone
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.problem.ground import Ground
+from stickslip.problem.loading import SILENT, LoadingHistory, Segment, Tone
 from stickslip.problem.problem import Problem
 
 

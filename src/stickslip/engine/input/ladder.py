@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
-from stickslip.bodies.layers import Layers
+from stickslip.engine.input.forcing import far_excess
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
-from stickslip.engine_input.forcing import far_excess
 from stickslip.foundation.constants import RIGID
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies.layers import Layers
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 NO_LADDER = LadderCell.table(0)

@@ -18,12 +18,12 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from stickslip.bodies import BodyOnCharacteristics, OfLayers, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
 from stickslip.friction import FrictionLaw
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers, has_dashpot
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 MOST_ROUND_TRIPS = 2**53

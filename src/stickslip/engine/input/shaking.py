@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine_input.forcing import Inflow, inflow_of
+from stickslip.engine.input.forcing import Inflow, inflow_of
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import Tone
 from stickslip.problem.ground import Ground
+from stickslip.problem.loading import Tone
 from stickslip.problem.problem import Problem
 
 STILL = 1e-15

@@ -12,16 +12,6 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from stickslip.batch.kernels.lane_block import (
-    LaneBlock,
-    block_in_all_lanes,
-    block_in_one_lane,
-    lend_rate,
-    lend_step,
-    note_disc,
-    put_in,
-    take_out,
-)
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.pieces import note_slip
 from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
@@ -51,6 +41,17 @@ from stickslip.engine.contact_step.keep_step import unload_bent, unload_straight
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
 from stickslip.engine.contact_step.taylor_step import duration_of, note_shock, unit_from
+from stickslip.engine.history.turning_points import SAME, Known
+from stickslip.engine.lanes.lane_block import (
+    LaneBlock,
+    block_in_all_lanes,
+    block_in_one_lane,
+    lend_rate,
+    lend_step,
+    note_disc,
+    put_in,
+    take_out,
+)
 from stickslip.engine.loop import ROOM
 from stickslip.engine.memory.addresses import ahead, call_jet, call_radii, call_values, integers
 from stickslip.engine.memory.pointers import numbers_of, rows_of
@@ -69,7 +70,6 @@ from stickslip.engine.series.polynomial import (
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
-from stickslip.trajectory.turning_points import SAME, Known
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""

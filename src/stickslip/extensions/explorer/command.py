@@ -12,7 +12,7 @@ from stickslip.cli.options import SCENARIO, Changes, Columns, argument, complete
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.explorer.model.answer import Backdrop
+    from stickslip.extensions.explorer.model.answer import Backdrop
     from stickslip.problem.problem import Problem
 
 SERVER = "Server"
@@ -68,7 +68,7 @@ def explore(
     Exit code: 0 ended by Ctrl-C, 2 unusable input.
     """
     from stickslip.cli.overrides import load
-    from stickslip.explorer.notebook import check_extra
+    from stickslip.extensions.explorer.notebook import check_extra
 
     check_extra("explore")
     if static is not None:
@@ -77,9 +77,9 @@ def explore(
     loaded = load(scenario or FIRST, "explore", changes, contact=True)
     if loaded.contact is not None and (loaded.planar_slab.is_plane or record is not None):
         raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
-    from stickslip.explorer.model.setting import Setting
-    from stickslip.explorer.server.serve import Endpoint
-    from stickslip.explorer.server.start import start
+    from stickslip.extensions.explorer.model.setting import Setting
+    from stickslip.extensions.explorer.server.serve import Endpoint
+    from stickslip.extensions.explorer.server.start import start
 
     setting = Setting.of(loaded)
     for name in allow_origin or ():
@@ -93,10 +93,10 @@ def explore(
 def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None, sensor: str, problem: Problem) -> Backdrop:
     """Return the record that is drawn behind all runs. Raises InputError."""
     from stickslip.cli.overrides import typed_columns
-    from stickslip.explorer.model.answer import Backdrop
+    from stickslip.extensions.explorer.model.answer import Backdrop
+    from stickslip.extensions.inference.record.record import Record
     from stickslip.foundation.quantities import Quantity
-    from stickslip.inference.record.record import Record
-    from stickslip.scenarios.entries import typed_number
+    from stickslip.problem.scenarios.entries import typed_number
 
     time = Quantity("s", "time of the record")
     found = {name: time.check("explore", name, typed_number(text)) for name, text in ends.items() if text is not None}
@@ -105,7 +105,7 @@ def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None,
 
 def _write(folder: Path, scenario: str | None, changes: list[str] | None, record: Path | None) -> None:
     """Write the tour into a folder and say how large it is. Raises InputError."""
-    from stickslip.explorer.static.export import write_tour
+    from stickslip.extensions.explorer.static.export import write_tour
     from stickslip.foundation.errors import InputError
     from stickslip.run.progress import progress_line
 

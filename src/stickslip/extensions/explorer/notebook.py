@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 LIBRARIES = ("panel", "bokeh")
 """The libraries of the extra `explorer`."""
@@ -76,9 +76,9 @@ def explore(
     'Irregular: several slip rates at some lo'
     """
     check_extra("explore")
-    from stickslip.explorer.server.start import shown_in_notebook
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.scenarios.source import read_source
+    from stickslip.extensions.explorer.server.start import shown_in_notebook
+    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.source import read_source
 
     found = read_source("explore", problem, contact=True)
     if isinstance(found, Problem):
@@ -89,8 +89,8 @@ def explore(
     if record is not None and found.contact is not None:
         raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")
     if record is not None:
-        from stickslip.explorer.model.answer import Backdrop
-        from stickslip.inference.record.record import Record
+        from stickslip.extensions.explorer.model.answer import Backdrop
+        from stickslip.extensions.inference.record.record import Record
 
         behind = Backdrop.of(Record.read(record), sensor, found.problem)
     return shown_in_notebook(found, behind)

@@ -12,22 +12,22 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.certainty.certainty import Certainty, Profile
+from stickslip.extensions.inference.certainty.sampling import PosteriorWalk
+from stickslip.extensions.inference.fit.by_features import FeatureModel
+from stickslip.extensions.inference.fit.estimate import Estimate
+from stickslip.extensions.inference.fit.free import Free
+from stickslip.extensions.inference.fit.looks import looks_of
+from stickslip.extensions.inference.fit.memory import WHITE
+from stickslip.extensions.inference.fit.model import OF_NO_ZERO, Model
+from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.fit.pieces import pieces_of
+from stickslip.extensions.inference.fit.what_is_left import ResidualLook
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.inference.certainty.certainty import Certainty, Profile
-from stickslip.inference.certainty.sampling import PosteriorWalk
-from stickslip.inference.fit.by_features import FeatureModel
-from stickslip.inference.fit.estimate import Estimate
-from stickslip.inference.fit.free import Free
-from stickslip.inference.fit.looks import looks_of
-from stickslip.inference.fit.memory import WHITE
-from stickslip.inference.fit.model import OF_NO_ZERO, Model
-from stickslip.inference.fit.part import Part
-from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.what_is_left import ResidualLook
 from stickslip.problem.problem import Problem
+from stickslip.run.study import StudyWithDataset
 from stickslip.solution.solution import Solution
-from stickslip.study import StudyWithDataset
 
 
 @dataclass(frozen=True, eq=False, repr=False)

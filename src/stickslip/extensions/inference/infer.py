@@ -11,40 +11,58 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip.extensions.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
+from stickslip.extensions.inference.certainty.directions import IDLE
+from stickslip.extensions.inference.certainty.drifting import (
+    TRENDS,
+    Offer,
+    lacking,
+    needed,
+    offered,
+    said,
+    with_number,
+    without_number,
+)
+from stickslip.extensions.inference.certainty.kept_walk import KeptWalk
+from stickslip.extensions.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
+from stickslip.extensions.inference.certainty.unresolved import unresolved
+from stickslip.extensions.inference.fit.asides import with_servo
+from stickslip.extensions.inference.fit.by_features import FeatureModel, by_features, scatter_of
+from stickslip.extensions.inference.fit.estimate import Estimate, estimate, windows_of
+from stickslip.extensions.inference.fit.free import LOAD, Free, read_free, with_scale
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.part import Part, first_sizes, share_of, shortened
+from stickslip.extensions.inference.fit.progress import OutOfTime, SearchProgress, Tell
+from stickslip.extensions.inference.fit.search import COMPETES
+from stickslip.extensions.inference.fit.setup import (
+    at_rests,
+    evenly,
+    hints_of,
+    own_of,
+    parts_of,
+    rounded_times,
+    scales_of,
+    with_parts,
+)
+from stickslip.extensions.inference.fit.starting import with_starts
+from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.record.noise import LOSSES
+from stickslip.extensions.inference.record.record import Record
+from stickslip.extensions.inference.record.resample import MOST_FITTED, resampled
 from stickslip.foundation.arguments import as_path, check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
-from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
-from stickslip.inference.certainty.directions import IDLE
-from stickslip.inference.certainty.drifting import TRENDS, Offer, lacking, needed, offered, said, with_number, without_number
-from stickslip.inference.certainty.kept_walk import KeptWalk
-from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
-from stickslip.inference.certainty.unresolved import unresolved
-from stickslip.inference.fit.asides import with_servo
-from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
-from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
-from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part, first_sizes, share_of, shortened
-from stickslip.inference.fit.progress import OutOfTime, SearchProgress, Tell
-from stickslip.inference.fit.search import COMPETES
-from stickslip.inference.fit.setup import at_rests, evenly, hints_of, own_of, parts_of, rounded_times, scales_of, with_parts
-from stickslip.inference.fit.starting import with_starts
-from stickslip.inference.inference import Inference
-from stickslip.inference.record.noise import LOSSES
-from stickslip.inference.record.record import Record
-from stickslip.inference.record.resample import MOST_FITTED, resampled
 from stickslip.problem.parameters import PRESSING
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
-from stickslip.scenarios.source import read_source
-from stickslip.study import TextProgress, telling
+from stickslip.problem.scenarios.source import read_source
+from stickslip.run.study import TextProgress, telling
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 WAYS = ("samples", "features")
 """Data to fit: each sample of a record, or features of its slip events."""

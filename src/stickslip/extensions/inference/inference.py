@@ -12,6 +12,17 @@ from typing import Any, Self
 import numpy as np
 import pandas as pd
 
+from stickslip.extensions.inference.certainty.sampling import MOST_SAMPLES, sample
+from stickslip.extensions.inference.fit.free import DELAY, DRIFT, TREND
+from stickslip.extensions.inference.fit.looks import cure_of
+from stickslip.extensions.inference.fit.memory import EVEN, LONGEST, WHITE
+from stickslip.extensions.inference.fit.part import first_sizes
+from stickslip.extensions.inference.fit.progress import SearchProgress
+from stickslip.extensions.inference.fit.what_is_left import words
+from stickslip.extensions.inference.fitted_record import FittedRecord
+from stickslip.extensions.inference.record.features import arrests_in
+from stickslip.extensions.inference.record.noise import rounding_of
+from stickslip.extensions.inference.record.record import SHEAR
 from stickslip.foundation.arguments import check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
@@ -21,21 +32,9 @@ from stickslip.foundation.netcdf_file import write
 from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
 from stickslip.friction.law import FrictionLaw
-from stickslip.inference.certainty.sampling import MOST_SAMPLES, sample
-from stickslip.inference.fit.free import DELAY, DRIFT, TREND
-from stickslip.inference.fit.looks import cure_of
-from stickslip.inference.fit.memory import EVEN, LONGEST, WHITE
-from stickslip.inference.fit.part import first_sizes
-from stickslip.inference.fit.progress import SearchProgress
-from stickslip.inference.fit.what_is_left import words
-from stickslip.inference.fitted_record import FittedRecord
-from stickslip.inference.record.features import arrests_in
-from stickslip.inference.record.noise import rounding_of
-from stickslip.inference.record.record import SHEAR
-from stickslip.io.netcdf import origin
-from stickslip.scenarios.scenario import Scenario
-from stickslip.solution.accessors import report_of_study
-from stickslip.study import TextProgress, telling
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.run.study import TextProgress, telling
+from stickslip.solution.files.netcdf import origin
 
 MISSED, MISSED_SHARE = 3.0, 0.2
 """A run misses a record if residuals exceed this multiple of the noise of neighbouring samples and this share of the scatter."""
@@ -151,7 +150,14 @@ class Inference(FittedRecord):
         numbers do not run to the end of the record, or if `others` are of another record, and OSError if the folder cannot be
         written.
         """
-        return report_of_study(self, Path(folder), *others)
+        from stickslip.extensions.inference.report import write
+
+        return write(self, Path(folder), *others)
+
+    def _figure(self) -> Any:
+        from stickslip.extensions.inference.figures import inference as drawn
+
+        return drawn
 
     def _lines(self) -> Iterator[str]:
         yield self.headline

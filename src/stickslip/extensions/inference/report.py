@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 import stickslip as ss
-from stickslip.figures.studies import inference as figures
+from stickslip.extensions.inference.figures import inference as figures
+from stickslip.extensions.inference.inference import Inference, in_shown_unit, minima_of, noise_of, ranking, record_of, warnings_of
+from stickslip.figures.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 from stickslip.foundation.names import name_of
 from stickslip.foundation.show import about_time, brief, number, sentence
-from stickslip.inference.inference import Inference, in_shown_unit, minima_of, noise_of, ranking, record_of, warnings_of
 from stickslip.problem.given_units import in_given_units
-from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 
 PAGE = "report.html"
 """Name of the page in the folder of a report."""

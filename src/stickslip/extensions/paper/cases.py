@@ -6,7 +6,7 @@ from typing import TypeVar
 
 import stickslip as ss
 from stickslip.problem.problem import Problem
-from stickslip.scenarios import load_scenario
+from stickslip.problem.scenarios import load_scenario
 from stickslip.solution.solution import Solution
 
 T = TypeVar("T")

@@ -27,7 +27,7 @@ def paper(
     from stickslip.run.progress import progress_line
 
     check_folder(out, "--out")
-    from stickslip.paper import make
+    from stickslip.extensions.paper.make import make
 
     with progress_line("paper") as report:
         announce(make(out, report))

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import stickslip as ss
-from stickslip.paper.cases import REFERENCE, Runs
-from stickslip.paper.claims import CLAIMS, STATEMENTS, ClaimVerdict
+from stickslip.extensions.paper.cases import REFERENCE, Runs
+from stickslip.extensions.paper.claims import CLAIMS, STATEMENTS, ClaimVerdict
 
 if TYPE_CHECKING:
-    from stickslip.paper.plates import Plate
+    from stickslip.extensions.paper.plates import Plate
 
 
 def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rtol: float = 1e-10) -> Path:
@@ -21,10 +21,10 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
     of text before each step, and `rtol` is the relative tolerance of all runs. Raises OSError if the folder cannot be written, and
     RuntimeError if the engine gives up on a run.
     """
-    from stickslip.paper.plates import PLATES
-    from stickslip.paper.report import report
-    from stickslip.paper.tables import all_tables
-    from stickslip.reports.page import save_text
+    from stickslip.extensions.paper.plates import PLATES
+    from stickslip.extensions.paper.report import report
+    from stickslip.extensions.paper.tables import all_tables
+    from stickslip.figures.page import save_text
 
     say = progress or (lambda _: None)
     folder, runs = Path(out), Runs(rtol)
@@ -46,8 +46,8 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
 
 def _make_figure(path: Path, runs: Runs, plate: Plate) -> bytes:
     """Write a figure as netCDF, PNG and SVG under a path without suffix, and return the bytes of the SVG file."""
+    from stickslip.figures.page import save_figure
     from stickslip.foundation.netcdf_file import write
-    from stickslip.reports.page import save_figure
 
     dataset = plate.data(runs)
     about = {"Conventions": "CF-1.11", "source": f"stickslip {ss.__version__}", "references": REFERENCE, "rtol": runs.rtol}

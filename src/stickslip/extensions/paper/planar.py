@@ -18,15 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.bodies import as_slab
+from stickslip.extensions.paper.cases import Runs, problem, typed
+from stickslip.extensions.planar.pulses import pulses
+from stickslip.extensions.planar.slab import PROCESS_ZONE
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, quantity, styled
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.planar import pulses
-from stickslip.paper.cases import Runs, problem, typed
-from stickslip.planar.slab import PROCESS_ZONE
+from stickslip.problem.bodies import as_slab
 from stickslip.problem.problem import Problem
-from stickslip.solution.planar import PlanarSolution
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.extensions.paper import planar
+from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.figures.contact import resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
-from stickslip.paper import planar
-from stickslip.paper.cases import Runs, problem, typed
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,12 +8,12 @@ from collections.abc import Mapping, Sequence
 import pandas as pd
 
 import stickslip as ss
-from stickslip.paper.cases import REFERENCE, Runs
-from stickslip.paper.claims import ClaimVerdict, Outcome
-from stickslip.paper.planar import ANSWER, BASIS, table
-from stickslip.paper.plates import PLATES
-from stickslip.paper.tables import cases_table, constants
-from stickslip.reports.page import DIGITS, number, picture, rendered, with_unit
+from stickslip.extensions.paper.cases import REFERENCE, Runs
+from stickslip.extensions.paper.claims import ClaimVerdict, Outcome
+from stickslip.extensions.paper.planar import ANSWER, BASIS, table
+from stickslip.extensions.paper.plates import PLATES
+from stickslip.extensions.paper.tables import cases_table, constants
+from stickslip.figures.page import DIGITS, number, picture, rendered, with_unit
 
 MARKS = {Outcome.PRINTED: "✓", Outcome.READING: "◐", Outcome.QUALIFIED: "≈", Outcome.NOT: "✗"}
 """A sign for each outcome, so that colour alone need not tell them apart."""
@@ -23,7 +23,7 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[ClaimVerd
     """Return the page as HTML, from the figures (SVG by number) and the verdicts; runs that are missing are made."""
     counts, cases = Counter(v.outcome for v in verdicts), cases_table(runs)
     return rendered(
-        "stickslip.paper",
+        "stickslip.extensions.paper",
         "report.html.j2",
         version=ss.__version__,
         reference=REFERENCE,

@@ -4,3 +4,22 @@
 from the driver, `friction.py` what the contact answers, `layout.py` how fields and modes are spread over devices. `step.py` takes a
 step of time with these, and `solver.py` a run.
 """
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from stickslip.extension import Extension
+
+
+class PlanarExtension(Extension):
+    """`ss.PlanarSlab`, the table [contact] of scenario files, and the solver of both."""
+
+    name = "planar"
+
+    def public(self) -> Mapping[str, str]:
+        """Return `ss.PlanarSlab`."""
+        return {"PlanarSlab": "stickslip.extensions.planar.slab:PlanarSlab"}
+
+
+EXTENSION = PlanarExtension()

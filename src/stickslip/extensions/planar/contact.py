@@ -9,12 +9,12 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.nodes import full_names, varying
+from stickslip.extensions.planar.slab import COUNTS, PlanarSlab
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, fields_of
-from stickslip.planar.nodes import full_names, varying
-from stickslip.planar.slab import COUNTS, PlanarSlab
 from stickslip.problem.problem import Problem
 
 LOCKED = "locked"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import ElasticSlab
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 

@@ -3,7 +3,7 @@
 The field inside the slab is found from the slip of the contact, by methods that share no code with the solver: the mean motion by
 the two waves of the slab in 1D, and the rest by the volume method (`Volume`), whose contact is made to slip as in the run. The heat
 is that of the law. So the balance tests the run: it closes only if the waves made by this slip bring the load that makes the law
-slip in this way. Tests add friction to the volume method, as a solver of their own (`tests/reference/planar_methods.py`).
+slip in this way. Tests add friction to the volume method, as a solver of their own (`tests/extensions/planar/planar_methods.py`).
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.driving import locked_load
+from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.planar.driving import locked_load
-from stickslip.planar.slab import PlanarSlab
 
 NAMES = ("work", "stored", "elastic", "kinetic", "heat", "radiated", "balance")
 """The energies of a planar slab, with the meaning that they have in `balance.LONG_NAMES`."""

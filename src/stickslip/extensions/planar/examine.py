@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from stickslip.extensions.planar.contact import LOCKED, Contact, Patch, PointsAlong
+from stickslip.extensions.planar.nodes import varying
+from stickslip.extensions.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
-from stickslip.planar.nodes import varying
-from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
-from stickslip.scenarios.contact import LOCKED, Contact, Patch, PointsAlong
-from stickslip.scenarios.examine import LARGE_STRAIN, Examination, examine
-from stickslip.scenarios.facts import Fact
-from stickslip.scenarios.scenario import Scenario, doubts
-from stickslip.scenarios.stability import loading_rate
+from stickslip.problem.scenarios.scenario import Scenario, doubts
+from stickslip.run.check.examine import LARGE_STRAIN, Examination, examine
+from stickslip.run.check.facts import Fact
+from stickslip.run.check.stability import loading_rate
 
 
 def examine_contact(scenario: Scenario) -> Examination:

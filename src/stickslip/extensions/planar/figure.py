@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.runs.animation import FRAMES, Stage, Told, film
 from stickslip.figures.runs.curves import marks_in
@@ -19,7 +20,6 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
-from stickslip.solution.planar import PlanarSolution
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -12,11 +12,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from stickslip.extensions.planar.nodes import NodeValues
 from stickslip.friction.formula.differences import limited
 from stickslip.friction.formula.expression import STATES, VARIABLES, Expression, nodes_of
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, operation_of
 from stickslip.friction.law import FrictionLaw
-from stickslip.planar.nodes import NodeValues
 
 ITERATIONS = 80
 """Largest number of steps of Newton's method or bisection; from the slip rate of the step before it takes two to four."""

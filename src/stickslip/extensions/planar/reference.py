@@ -32,7 +32,7 @@ def growth_rate_on_slab(weakening: float, wavenumber: float, thickness: float, w
     Notes
     -----
     u = exp(lambda t) cos(k y) sinh(q (h - x)) solves the wave equation if lambda = c sqrt(q^2 - k^2), and friction at x = 0 if
-    q coth(q h) = alpha_w. For k = 0 this is `stickslip.reference.slab`.
+    q coth(q h) = alpha_w. For k = 0 this is `stickslip.run.reference.slab`.
     """
     from scipy.optimize import brentq  # here, because it takes a quarter of a second to import
 

@@ -13,23 +13,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from stickslip.engine.history.status import INTERRUPTED, UNSTABLE
 from stickslip.engine.state.layout import Stop
+from stickslip.extensions.planar.slab import PlanarSlab
+from stickslip.extensions.planar.solution import Frames, PlanarSolution
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
-from stickslip.planar.slab import PlanarSlab
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace, how_far, how_fast
 from stickslip.run.run_loop import WholeHistory, run_to_end
-from stickslip.scenarios.scenario import Scenario
-from stickslip.solution.planar import Frames, PlanarSolution
-from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
 
 if TYPE_CHECKING:
-    from stickslip.io.planar_store import PlanarStore
-    from stickslip.planar.solver import PlanarSolver
-    from stickslip.planar.step import PlanarMotion
+    from stickslip.extensions.planar.solver import PlanarSolver
+    from stickslip.extensions.planar.step import PlanarMotion
+    from stickslip.extensions.planar.store import PlanarStore
 
 FRAMES = 100
 """Frames in a two-way travel time, by default."""
@@ -134,7 +134,7 @@ def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> Plana
     with ExitStack() as stack:
         frames: Frames = Frames(slab, solver.steps, title=options.title)
         if path is not None:
-            from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
+            from stickslip.extensions.planar.store import PlanarStore  # with zarr, which takes half a second to load
 
             about = Scenario(slab.problem, duration) if isinstance(source, PlanarSlab) else replace(source, duration=duration)
             frames = stack.enter_context(PlanarStore.new(path, slab, about, options.frames or FRAMES, solver))
@@ -146,7 +146,7 @@ def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> Plana
 
 def resume_planar(path: Path, duration: float | str | WithUnit | None = None, **given: Any) -> PlanarSolution:
     """Continue the run of a planar slab in its folder, up to its own duration if none is given: see `stickslip.resume`."""
-    from stickslip.io.planar_store import PlanarStore
+    from stickslip.extensions.planar.store import PlanarStore
 
     with PlanarStore.at(path) as store:
         before = store.duration
@@ -167,7 +167,7 @@ def check_duration(store: PlanarStore, before: float) -> None:
     slab, wanted, reached = store.slab, store.duration, store.times[-1]
     if wanted == before:
         return
-    from stickslip.planar.memory import horizon  # with scipy
+    from stickslip.extensions.planar.memory import horizon  # with scipy
 
     horizon_trips = horizon(slab.round_trips(before))
     if wanted < reached:
@@ -188,7 +188,7 @@ def begun(slab: PlanarSlab, options: RunOptions, time: float) -> tuple[PlanarSol
     """
     solved, here = slab.alone_for(options.duration)
     try:
-        from stickslip.planar.solver import PlanarSolver
+        from stickslip.extensions.planar.solver import PlanarSolver
     except ImportError:
         raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
     memory = check_memory(solved, options.duration, 0 if options.checkpoint is not None else options.frames or FRAMES)

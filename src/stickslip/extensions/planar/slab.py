@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import MACHINE, ElasticSlab, has_dashpot
 from stickslip.contact.uniqueness import regime_of
+from stickslip.extensions.planar.nodes import NodeValues, full_names, node_values, varying
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
-from stickslip.planar.nodes import NodeValues, full_names, node_values, varying
+from stickslip.problem.bodies import MACHINE, ElasticSlab, has_dashpot
 from stickslip.problem.problem import Problem, check_problem
 
 Profile = ArrayLike | Callable[..., Any]
@@ -218,7 +218,7 @@ class PlanarSlab(CheckedArguments):
         It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes: the length over which
         strength that falls linearly with distance takes the fracture energy of linear slip weakening. (Between two half-spaces it
         is 9 pi/32, for which codes cite Day et al. 2005.) Zones of slow fronts were measured to have 5/6 of it, in
-        `tests/reference/test_long_faults.py`; those of fronts of speed V are shorter by sqrt(1 - V^2/c^2).
+        `tests/extensions/planar/test_long_faults.py`; those of fronts of speed V are shorter by sqrt(1 - V^2/c^2).
 
         Parameters
         ----------

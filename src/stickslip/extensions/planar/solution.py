@@ -12,26 +12,26 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.engine.history.slip_events import default_event_rate
+from stickslip.engine.history.status import STATUSES, Status
+from stickslip.extensions.planar.pulses import pulses, rupture_speed, rupture_times
+from stickslip.extensions.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import in_files, si_unit
 from stickslip.foundation.show import brief
-from stickslip.observables.energy.balance import LONG_NAMES
-from stickslip.observables.planar import pulses, rupture_speed, rupture_times
-from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.problem.given_units import in_given_units
 from stickslip.solution.accessors import known_to_pyplot
-from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import STATUSES, Status
+from stickslip.solution.observables.energy.balance import LONG_NAMES
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from stickslip.extensions.planar.solver import PlanarSolver
+    from stickslip.extensions.planar.step import PlanarMotion
     from stickslip.foundation.place import Place
-    from stickslip.planar.solver import PlanarSolver
-    from stickslip.planar.step import PlanarMotion
 
 FIELDS = {name: in_files(si_unit(name, "Pa")) for name in ("slip", "slip_rate", "traction", "heat")}
 """Unit of each field of a frame."""
@@ -52,7 +52,7 @@ class PlanarPlots(NamesAttributes):
     @in_given_units
     def __call__(self, **place: Unpack[Place]) -> Figure:
         """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
-        from stickslip.figures.runs import planar
+        from stickslip.extensions.planar import figure as planar
 
         return known_to_pyplot(planar.draw(self._run, **place), place)
 
@@ -73,7 +73,7 @@ class PlanarPlots(NamesAttributes):
         kept. `progress` is called with the number of finished frames and the number of all frames. Raises InputError for fewer than
         two frames, and if the software that writes such a file is missing.
         """
-        from stickslip.figures.runs import planar
+        from stickslip.extensions.planar import figure as planar
 
         return planar.animate(self._run, path, start, end, frames=frames, progress=progress)
 
@@ -179,7 +179,7 @@ class PlanarSolution(NamesAttributes):
 
     @cached_property
     def pulses(self) -> NDArray[np.int64]:
-        """The number of pulses that have passed each node: see `stickslip.observables.planar.pulses`."""
+        """The number of pulses that have passed each node: see `stickslip.extensions.planar.pulses.pulses`."""
         return pulses(self.slip_rate, self.threshold)
 
     @property
@@ -200,7 +200,7 @@ class PlanarSolution(NamesAttributes):
 
     @cached_property
     def _energies(self) -> dict[str, Floats]:
-        from stickslip.observables.energy.planar import energies  # with scipy, which no other run needs
+        from stickslip.extensions.planar.energy import energies  # with scipy, which no other run needs
 
         fields = {"slip": self.slip, "slip_rate": self.slip_rate, "heat": self.heat}
         return energies(self.slab, self.times, **fields, steps=self._steps_of_energies)
@@ -224,7 +224,7 @@ class PlanarSolution(NamesAttributes):
         """
         import xarray
 
-        from stickslip.observables.energy.planar import NAMES
+        from stickslip.extensions.planar.energy import NAMES
 
         times = self.times if t is None else np.atleast_1d(np.asarray(t, float))
         if len(self.times) < 2:
@@ -239,7 +239,7 @@ class PlanarSolution(NamesAttributes):
     @property
     def knows_energy(self) -> bool:
         """True if the energies of the run are known within about two seconds."""
-        from stickslip.observables.energy.planar import cost
+        from stickslip.extensions.planar.energy import cost
 
         return len(self.times) > 2 and cost(self.slab, self.times[-1], self._steps_of_energies) <= QUICK
 
@@ -276,7 +276,7 @@ class PlanarSolution(NamesAttributes):
 
         The headings name the units (SI). A path that ends in .nc makes a netCDF file of `dataset`, with all nodes.
         """
-        from stickslip.io.curves import write_contact
+        from stickslip.solution.files.curves import write_contact
 
         return write_contact(self, as_path("to_csv: path", path))
 

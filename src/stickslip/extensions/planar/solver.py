@@ -23,14 +23,14 @@ import numpy as np
 from jax.sharding import PartitionSpec
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.driving import locked_load
+from stickslip.extensions.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
+from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
+from stickslip.extensions.planar.layout import Layout, whole
+from stickslip.extensions.planar.memory import horizon, recurrence
+from stickslip.extensions.planar.slab import PlanarSlab
+from stickslip.extensions.planar.step import Constants, PlanarMotion, PlanarStep, PlanarWaves
 from stickslip.foundation.arrays import Floats
-from stickslip.planar.driving import locked_load
-from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
-from stickslip.planar.friction import ContactOfNodes, Nodes
-from stickslip.planar.layout import Layout, whole
-from stickslip.planar.memory import horizon, recurrence
-from stickslip.planar.slab import PlanarSlab
-from stickslip.planar.step import Constants, PlanarMotion, PlanarStep, PlanarWaves
 
 ALIKE = PartitionSpec()
 """How an array is spread that every device holds."""

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-from stickslip.planar.friction import ContactOfNodes, Nodes
-from stickslip.planar.layout import Layout
-from stickslip.planar.memory import advanced
+from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
+from stickslip.extensions.planar.layout import Layout
+from stickslip.extensions.planar.memory import advanced
 
 
 class PlanarMotion(NamedTuple):

@@ -18,14 +18,11 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from typing_extensions import override
 
+from stickslip.engine.history.status import INTERRUPTED, STATUSES, UNDER_WAY, engine
 from stickslip.engine.state.layout import Stop
-from stickslip.foundation import netcdf_file, zarr_folder
-from stickslip.foundation.arrays import Floats
-from stickslip.foundation.atomic_write import sync
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.locks import held
-from stickslip.foundation.netcdf_file import Variable
-from stickslip.io.planar_layout import (
+from stickslip.extensions.planar.slab import PlanarSlab
+from stickslip.extensions.planar.solution import FIELDS, Frames, PlanarSolution
+from stickslip.extensions.planar.store_layout import (
     FORMAT,
     SENT,
     attributes,
@@ -37,21 +34,24 @@ from stickslip.io.planar_layout import (
     opened,
     slab_in,
 )
-from stickslip.io.soundness import number, whole_number
-from stickslip.io.zarr_store import create
-from stickslip.planar.slab import PlanarSlab
-from stickslip.scenarios.scenario import Scenario
-from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
-from stickslip.trajectory.status import INTERRUPTED, STATUSES, UNDER_WAY, engine
+from stickslip.foundation import netcdf_file, zarr_folder
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.atomic_write import sync
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.locks import held
+from stickslip.foundation.netcdf_file import Variable
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.solution.files.soundness import number, whole_number
+from stickslip.solution.files.zarr_store import create
 
 if TYPE_CHECKING:
-    from stickslip.planar.solver import PlanarSolver
-    from stickslip.planar.step import PlanarMotion
+    from stickslip.extensions.planar.solver import PlanarSolver
+    from stickslip.extensions.planar.step import PlanarMotion
 
 STATE = "state.nc"
 """File of the checkpoint."""
 BUSY = "another run is writing into it"
-DECIDE = ("bodies", "friction", "loading", "planar", "problem")
+DECIDE = ("extensions/planar", "friction", "problem")
 """Folders of the package whose code decides the result of a planar run."""
 
 

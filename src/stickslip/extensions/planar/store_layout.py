@@ -18,21 +18,21 @@ from typing_extensions import override
 from zarr.storage import MemoryStore
 
 import stickslip
+from stickslip.engine.history.status import STATUSES, UNDER_WAY, Status
+from stickslip.extensions.planar.contact import GRID, Contact
+from stickslip.extensions.planar.slab import COUNTS, MOST_NODES, PlanarSlab
+from stickslip.extensions.planar.solution import FIELDS, PlanarSolution
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
-from stickslip.io.soundness import number, whole_number
-from stickslip.io.zarr_store import FolderFormat, check_layout
-from stickslip.planar.slab import COUNTS, MOST_NODES, PlanarSlab
-from stickslip.scenarios.contact import GRID, Contact
-from stickslip.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
-from stickslip.solution.planar import FIELDS, PlanarSolution
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
+from stickslip.problem.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
+from stickslip.solution.files.soundness import number, whole_number
+from stickslip.solution.files.zarr_store import FolderFormat, check_layout
 
 if TYPE_CHECKING:
-    from stickslip.planar.solver import PlanarSolver
+    from stickslip.extensions.planar.solver import PlanarSolver
 
 SENT = "waves/sent"
 """Array of what the contact has sent."""

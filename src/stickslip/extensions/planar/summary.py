@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 from stickslip.cli.output.files import file_size
 from stickslip.cli.output.show import console, say, titled
 from stickslip.foundation.show import brief
-from stickslip.scenarios.scenario import doubts
+from stickslip.problem.scenarios.scenario import doubts
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.solution.planar import PlanarSolution
+    from stickslip.extensions.planar.solution import PlanarSolution
+    from stickslip.problem.scenarios.scenario import Scenario
 
 
 def size_of(scenario: Scenario, *, streamed: bool = False) -> str:
     """Return the memory that a run of a scenario needs, in words; less of it if its frames are `streamed` to a folder."""
-    from stickslip.run.planar_run import FRAMES, memory_of
+    from stickslip.extensions.planar.run import FRAMES, memory_of
 
     assert scenario.contact is not None
     solved, _ = scenario.planar_slab.alone_for(scenario.duration)

@@ -16,24 +16,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import stickslip
-from stickslip.bodies import ElasticSlab
+from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.judgement import TOLERANCE
+from stickslip.extensions.schemes.run import check_suitable
+from stickslip.extensions.schemes.schemes import Schemes
+from stickslip.extensions.schemes.shocks import check_length, check_units
+from stickslip.extensions.schemes.verdict import exact_runs
 from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
 from stickslip.friction.laws.of_rate import Coulomb
+from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.problem import Problem
+from stickslip.problem.scenarios import Scenario, library, load_scenario
+from stickslip.problem.scenarios.source import read_duration_and_problem, read_source
 from stickslip.run.simulate import simulate
-from stickslip.scenarios import Scenario, library, load_scenario
-from stickslip.scenarios.source import read_duration_and_problem, read_source
-from stickslip.schemes.contract import Series
-from stickslip.schemes.run import check_suitable
-from stickslip.studies.judgement import TOLERANCE
-from stickslip.studies.scheme_shocks import check_length, check_units
-from stickslip.studies.schemes import Schemes
-from stickslip.studies.verdict import exact_runs
-from stickslip.study import TextProgress, telling
+from stickslip.run.study import TextProgress, telling
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -149,11 +149,11 @@ def judge_series(
     Parameters
     ----------
     series : Series, str, Path or sequence of them
-        Slip since t = 0, slip rate and traction over time, or files of them, which `stickslip.io.series.read_series` reads.
+        Slip since t = 0, slip rate and traction over time, or files of them, which `stickslip.extensions.schemes.series.read_series` reads.
     problem : Problem, Scenario, str or Path, optional
         As for `schemes`; by default the benchmark or the bundled scenario that has the name of the first series.
     tolerance : float
-        Largest share by which a series that passes may be off; see `stickslip.studies.judgement.Judgement`.
+        Largest share by which a series that passes may be off; see `stickslip.extensions.schemes.judgement.Judgement`.
     columns : dict, optional
         What headings of the files mean, as in {"slip": "D (mm)", "time": 1}.
 
@@ -170,7 +170,7 @@ def judge_series(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    from stickslip.io.series import read_series
+    from stickslip.extensions.schemes.series import read_series
 
     given_series = [series] if isinstance(series, Series | str | Path) else list(series)
     several = tuple(one if isinstance(one, Series) else read_series(one, columns=columns) for one in given_series)
@@ -241,7 +241,7 @@ def judge_benchmark(
     columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
 ) -> Schemes:
-    """Compare the series of another program, in a file that `stickslip.io.series.read_series` reads, with the exact solution.
+    """Compare the series of another program, in a file that `stickslip.extensions.schemes.series.read_series` reads, with the exact solution.
 
     The problem is by default that with the name of the file; the other arguments are as for `judge_series`. Raises InputError if
     the name is unknown, or the file cannot be read.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.extensions.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact, strain_energy
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact, strain_energy
 
 
 class CentralDifferences:

@@ -17,7 +17,7 @@ from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
-    from stickslip.studies.schemes import Schemes
+    from stickslip.extensions.schemes.schemes import Schemes
 
 MOST_CURVES = 4
 """Largest number of schemes whose curves are drawn."""

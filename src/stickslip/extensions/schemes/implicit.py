@@ -13,8 +13,8 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu, spsolve
 
+from stickslip.extensions.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact, strain_energy
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact, strain_energy
 
 
 class Elements(ABC):

@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.schemes.measures import MeasuredSeries
+from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.studies.scheme_measures import MeasuredSeries
-from stickslip.studies.verdict import UNTOLD, RulePaths
 
 TOLERANCE = 0.05
 """Largest share of the exact values by which a series may be off, if no other is given."""

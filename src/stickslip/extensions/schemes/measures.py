@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.history.slip_events import default_event_rate
+from stickslip.extensions.schemes.contract import Energies, Series
+from stickslip.extensions.schemes.shocks import Shock, shadow, shocks_of
+from stickslip.extensions.schemes.verdict import mean_magnitude
 from stickslip.foundation.arrays import Floats
 from stickslip.friction import FrictionLaw
-from stickslip.schemes.contract import Energies, Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
-from stickslip.studies.verdict import mean_magnitude
-from stickslip.trajectory.slip_events import default_event_rate
 
 COLUMNS = {
     "scheme": ("", "name of the scheme, or of the program"),

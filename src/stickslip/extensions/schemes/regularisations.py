@@ -14,14 +14,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import as_slab
+from stickslip.extensions.schemes.contract import Grid, Sample, Scheme, SchemeContact
+from stickslip.extensions.schemes.run import SCHEMES
 from stickslip.foundation.errors import InputError
 from stickslip.friction import LaggedFriction
+from stickslip.problem.bodies import as_slab
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
-from stickslip.schemes.contract import Grid, Sample, Scheme, SchemeContact
-from stickslip.schemes.run import SCHEMES
-from stickslip.study import uninterrupted
+from stickslip.run.study import uninterrupted
 
 
 class Regularisation:

@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from stickslip.bodies import MACHINE, ElasticSlab, as_slab, has_dashpot
+from stickslip.extensions.schemes.contract import Grid, Meeting, Met, Sample, Scheme, Series
+from stickslip.extensions.schemes.explicit import CentralDifferences, Characteristics, MassRedistribution, Regularised
+from stickslip.extensions.schemes.implicit import Newmark, Theta
+from stickslip.extensions.schemes.sbp import SummationByParts
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.problem.bodies import MACHINE, ElasticSlab, as_slab, has_dashpot
 from stickslip.problem.problem import Problem
-from stickslip.schemes.contract import Grid, Meeting, Met, Sample, Scheme, Series
-from stickslip.schemes.explicit import CentralDifferences, Characteristics, MassRedistribution, Regularised
-from stickslip.schemes.implicit import Newmark, Theta
-from stickslip.schemes.sbp import SummationByParts
 
 _ALL: tuple[Scheme, ...] = (
     Characteristics(),

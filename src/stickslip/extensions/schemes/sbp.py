@@ -13,8 +13,8 @@ from functools import cache
 import numpy as np
 from scipy.sparse import csr_array, lil_array
 
+from stickslip.extensions.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact
 
 NORMS = {
     2: (1 / 2,),

@@ -11,30 +11,30 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 import stickslip
+from stickslip.extensions.schemes.contract import Scheme, Series
+from stickslip.extensions.schemes.judgement import TOLERANCE, Judgement
+from stickslip.extensions.schemes.measures import COLUMNS, MeasuredSeries
+from stickslip.extensions.schemes.regularisations import LAB
+from stickslip.extensions.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
+from stickslip.extensions.schemes.shocks import SHOCK_COLUMNS
+from stickslip.extensions.schemes.verdict import NONE, SAME, UNTOLD, RulePaths, change, exact_runs, local_orders
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.scenarios.source import read_duration_and_problem
-from stickslip.schemes.contract import Scheme, Series
-from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
+from stickslip.problem.scenarios.source import read_duration_and_problem
+from stickslip.run.study import Study, TextProgress, telling
 from stickslip.solution.solution import Solution
-from stickslip.studies.judgement import TOLERANCE, Judgement
-from stickslip.studies.regularisations import LAB
-from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
-from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.verdict import NONE, SAME, UNTOLD, RulePaths, change, exact_runs, local_orders
-from stickslip.study import Study, TextProgress, telling
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 CELLS = (25, 50, 100, 200)
 """Meshes that are taken if none are given."""
@@ -116,7 +116,7 @@ class Schemes(Study):
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Each exact shock beside that of each series; columns and units are in `stickslip.studies.scheme_shocks.SHOCK_COLUMNS`."""
+        """Each exact shock beside that of each series; columns and units are in `stickslip.extensions.schemes.shocks.SHOCK_COLUMNS`."""
         pairs = [(one.series, shock) for one in self.measured for shock in one.shocks]
         rows = [{"scheme": series.name, "cells": series.cells, **shock._asdict()} for series, shock in pairs]
         return pd.DataFrame(rows, columns=list(SHOCK_COLUMNS))
@@ -166,6 +166,11 @@ class Schemes(Study):
         for name, (unit, meaning) in self.columns.items():
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
 
+    def _figure(self) -> Any:
+        from stickslip.extensions.schemes import figure
+
+        return figure
+
     def _lines(self) -> Iterator[str]:
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"
         if self.interrupted:
@@ -191,7 +196,7 @@ def _scheme_of(scheme: str | Scheme) -> Scheme:
         return LAB[scheme]
     missing = [name for name in ("name", "title", "order", "courant", "largest_courant", "begin") if not hasattr(scheme, name)]
     if missing:
-        raise InputError(f"schemes: a scheme needs {', '.join(missing)}: see stickslip.schemes.contract.Scheme")
+        raise InputError(f"schemes: a scheme needs {', '.join(missing)}: see stickslip.extensions.schemes.contract.Scheme")
     return scheme
 
 
@@ -217,11 +222,11 @@ def schemes(
     duration : float or str, optional
         Duration of each run (s, or a text with a unit); by default the scenario's.
     scheme : str, Scheme or sequence of them
-        Names in `stickslip.studies.regularisations.LAB`, each once, or objects like `stickslip.schemes.contract.Scheme`.
+        Names in `stickslip.extensions.schemes.regularisations.LAB`, each once, or objects like `stickslip.extensions.schemes.contract.Scheme`.
     cells : int or sequence of int
         Number of cells in the thickness, for each mesh.
     search : str
-        How the contact looks for a root: a name in `stickslip.schemes.run.SEARCHES`.
+        How the contact looks for a root: a name in `stickslip.extensions.schemes.run.SEARCHES`.
     courant : float, optional
         Courant number c dt / dx, by default each scheme's own.
     rtol : float

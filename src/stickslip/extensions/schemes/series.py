@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from stickslip.extensions.schemes.contract import Series
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import example, has_unit, is_of_scec
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.text_columns import read_file
-from stickslip.schemes.contract import Series
 
 LARGEST_FILE = 200_000_000
 """Largest size of a file, bytes."""

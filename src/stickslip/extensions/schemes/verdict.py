@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import as_slab
+from stickslip.extensions.schemes.contract import Series
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.bodies import as_slab
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
-from stickslip.schemes.contract import Series
+from stickslip.run.study import TextProgress, uninterrupted
 from stickslip.solution.solution import Solution
-from stickslip.study import TextProgress, uninterrupted
 
 
 def local_orders(sizes: Floats, errors: Floats) -> Floats:

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 import pandas as pd
 
-from stickslip.bodies import BodyWithWaves
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import put_both, two_parameters
 from stickslip.foundation.arguments import for_users
@@ -26,13 +25,14 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.problem.bodies import BodyWithWaves
 from stickslip.problem.problem import Problem
+from stickslip.problem.scenarios.source import read_duration_and_problem
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.source import read_duration_and_problem
-from stickslip.study import StudyWithDataset, TextProgress, telling, uninterrupted
+from stickslip.run.study import StudyWithDataset, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 
 Quantity = Literal["slip", "peak_rate", "duration"]
@@ -88,6 +88,11 @@ class Analogy(StudyWithDataset):
         ratios = ((name, known[f"{name}_ratio"]) for name in QUANTITIES)
         ranges = (f"{name.replace('_', ' ')} {ratio.min():.2g} to {ratio.max():.2g}" for name, ratio in ratios)
         return f"{where}; {noun} over block: {', '.join(ranges)}"
+
+    def _figure(self) -> Any:
+        from stickslip.extensions.studies.figures import analogy as drawn
+
+        return drawn
 
     def _lines(self) -> tuple[str, ...]:
         return (self.text,)

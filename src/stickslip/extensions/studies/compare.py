@@ -11,24 +11,24 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 import stickslip
+from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+from stickslip.extensions.studies.reach_of_runs import reach_of_runs
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.io.netcdf import read_solution
-from stickslip.observables.energetics import extreme_tractions
-from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
+from stickslip.problem.scenarios import Scenario, load_scenario
+from stickslip.problem.scenarios.source import all_slips_alike
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
-from stickslip.scenarios import Scenario, load_scenario
-from stickslip.scenarios.source import all_slips_alike
+from stickslip.run.study import Study, TextProgress, telling, uninterrupted
+from stickslip.solution.files.netcdf import read_solution
+from stickslip.solution.observables.energetics import extreme_tractions
+from stickslip.solution.observables.energy.pulses import Pulses
 from stickslip.solution.solution import Solution
-from stickslip.studies.reach_of_runs import reach_of_runs
-from stickslip.study import Study, TextProgress, telling, uninterrupted
-from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),
@@ -108,7 +108,7 @@ class Comparison(Study):
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """The table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
+        """The table with one row for each run; columns and units are in `stickslip.extensions.studies.compare.COLUMNS`."""
         return pd.DataFrame([_row(name, solution) for name, solution in self.runs.items()], columns=list(COLUMNS))
 
     @property
@@ -127,6 +127,11 @@ class Comparison(Study):
 
     def __repr__(self) -> str:
         return f"{super().__repr__()}\n{self._shown_table().to_string(float_format='{:.6g}'.format)}"
+
+    def _figure(self) -> Any:
+        from stickslip.extensions.studies.figures import compare as drawn
+
+        return drawn
 
     def _lines(self) -> Iterator[str]:
         yield f"of {', '.join(self.runs)}"

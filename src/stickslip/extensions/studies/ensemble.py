@@ -6,28 +6,28 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.extensions.studies.kept_runs import KeptRuns
+from stickslip.extensions.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
-from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
+from stickslip.problem.scenarios.source import read_duration_and_problem
 from stickslip.run.options import RunOptions
-from stickslip.scenarios.source import read_duration_and_problem
+from stickslip.run.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
+from stickslip.solution.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.solution.solution import Solution
-from stickslip.studies.kept_runs import KeptRuns
-from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope
-from stickslip.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 
 MAX_TOTAL = 2_000_000
@@ -187,6 +187,11 @@ class Ensemble(RunsCompared):
         horizon = self.prediction.horizon
         lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon in this time"
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
+
+    def _figure(self) -> Any:
+        from stickslip.extensions.studies.figures import ensemble as drawn
+
+        return drawn
 
     def _lines(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from stickslip.engine.history.status import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, engine
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
-from stickslip.io.netcdf import read_solution
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.run.resume import resume_run
 from stickslip.run.simulate import simulate
+from stickslip.solution.files.netcdf import read_solution
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.status import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, engine
 
 STOPPED = (STATUSES[UNDER_WAY].name, STATUSES[INTERRUPTED].name)
 """Names of the statuses of runs that go on when they are asked for again."""

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.observables.predictability import LOST
 from stickslip.problem.problem import Problem, resistance_slope, written_out
+from stickslip.solution.observables.predictability import LOST
 from stickslip.solution.solution import Solution
 
 LEAST_DISTURBANCE, LARGEST_DISTURBANCE = 1e-15, 1e-2

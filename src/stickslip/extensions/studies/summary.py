@@ -9,21 +9,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
+from stickslip.engine.history.reach import shown_slip
 from stickslip.foundation.given import preferred, show_in
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, clean, number, with_unit
 from stickslip.problem.given_units import units_shared
-from stickslip.trajectory.reach import shown_slip
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from stickslip.inference.inference import Inference
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.studies.analogy import Analogy
-    from stickslip.studies.compare import Comparison
-    from stickslip.studies.ensemble import Ensemble
-    from stickslip.studies.schemes import Schemes
+    from stickslip.extensions.inference.inference import Inference
+    from stickslip.extensions.schemes.schemes import Schemes
+    from stickslip.extensions.studies.analogy import Analogy
+    from stickslip.extensions.studies.compare import Comparison
+    from stickslip.extensions.studies.ensemble import Ensemble
+    from stickslip.problem.scenarios.scenario import Scenario
 
 FIRST = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
@@ -155,7 +155,7 @@ def as_options(text: str) -> str:
 
 def show_ranking(*found: Inference) -> None:
     """Print a table of laws, the best prediction first."""
-    from stickslip.inference.inference import ranking
+    from stickslip.extensions.inference.inference import ranking
 
     screen = console()
     say(screen, "\nerrors in units of the noise: of the part that was fitted, and of the part that was left out\n")
@@ -175,7 +175,7 @@ def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Calla
 
 def show_schemes(scenario: Scenario, study: Schemes) -> None:
     """Print errors, orders, pulses and the rule that each run follows on standard output."""
-    from stickslip.studies.scheme_measures import period_of
+    from stickslip.extensions.schemes.measures import period_of
 
     screen = titled(scenario)
     own = study.own

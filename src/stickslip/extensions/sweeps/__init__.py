@@ -2,3 +2,29 @@
 
 Results are kept in a store. A sweep that was killed continues from its store.
 """
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from stickslip.extension import Command, Extension
+
+
+class SweepsExtension(Extension):
+    """The command `sweep`, `ss.sweep` and `ss.figures.plot_sweep`."""
+
+    name = "sweeps"
+
+    def commands(self) -> Mapping[str, Sequence[Command]]:
+        """Return the command `sweep`."""
+        from stickslip.extensions.sweeps.command import sweep
+
+        return {"Questions that need many runs": (sweep,)}
+
+    def public(self) -> Mapping[str, str]:
+        """Return the function and the figure of its results."""
+        home = "stickslip.extensions.sweeps"
+        return {"figures.plot_sweep": f"{home}.figures.sweep:plot_sweep", "sweep": f"{home}.sweep:sweep"}
+
+
+EXTENSION = SweepsExtension()

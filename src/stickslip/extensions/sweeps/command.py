@@ -26,8 +26,8 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.sweeps.execution.plan import Plan
-    from stickslip.sweeps.sweep import SweepProgress
+    from stickslip.extensions.sweeps.execution.plan import Plan
+    from stickslip.extensions.sweeps.sweep import SweepProgress
 
 VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key."
 Vary = Annotated[list[str] | None, option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]
@@ -94,12 +94,12 @@ def sweep(
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.sweep_summary import show_plan, show_slowest, show_sweep
     from stickslip.cli.overrides import load_with
-    from stickslip.sweeps.design.axis import typed_axes
-    from stickslip.sweeps.design.quantities import DEFAULT
-    from stickslip.sweeps.execution.chunk import NOT_RUN
-    from stickslip.sweeps.execution.plan import make_plan
+    from stickslip.extensions.sweeps.design.axis import typed_axes
+    from stickslip.extensions.sweeps.design.quantities import DEFAULT
+    from stickslip.extensions.sweeps.execution.chunk import NOT_RUN
+    from stickslip.extensions.sweeps.execution.plan import make_plan
+    from stickslip.extensions.sweeps.summary import show_plan, show_slowest, show_sweep
 
     _check_files(vary, table, out, figure)
     look.check(figure)
@@ -125,7 +125,7 @@ def sweep(
     with _losses():
         found, spent = _found(plan, out, resources)
     if out is not None:
-        from stickslip.sweeps.results.layout import FORMAT
+        from stickslip.extensions.sweeps.results.layout import FORMAT
 
         with FORMAT.reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
@@ -146,7 +146,7 @@ def sweep(
 def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, figure: Path | None) -> None:
     """Raise InputError unless either axes or a table are given, and all files can be written."""
     from stickslip.cli.output.files import check_target
-    from stickslip.sweeps.sweep import check_out
+    from stickslip.extensions.sweeps.sweep import check_out
 
     if (table is None) == (not vary):
         got = "both" if vary else "neither; as in --vary friction.alpha=0.1..1:20"
@@ -167,7 +167,7 @@ def _check_can_be_drawn(plan: Plan) -> None:
 @contextmanager
 def _losses() -> Iterator[None]:
     """Report in one line what a cluster has lost, and exit with code 1."""
-    from stickslip.sweeps.execution.cluster import ChunksLostError
+    from stickslip.extensions.sweeps.execution.cluster import ChunksLostError
 
     try:
         yield
@@ -178,8 +178,8 @@ def _losses() -> Iterator[None]:
 
 def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.Dataset, SweepProgress | None]:
     """Return the results of a sweep and its last progress."""
+    from stickslip.extensions.sweeps.sweep import carry_out, runner_of
     from stickslip.run.progress import progress_line
-    from stickslip.sweeps.sweep import carry_out, runner_of
 
     last: list[SweepProgress] = []
     with runner_of(**resources) as run, progress_line(f"{plan.scenario.name}:") as tell:
@@ -193,6 +193,6 @@ def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.
 
 
 def _draw(dataset: xr.Dataset, quantity: str, figure: Path, look: FigureLook) -> None:
-    from stickslip.figures.sweeps.sweep import plot_sweep
+    from stickslip.extensions.sweeps.figures.sweep import plot_sweep
 
     drawing(partial(plot_sweep, dataset, quantity), look)(figure)

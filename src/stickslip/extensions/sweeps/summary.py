@@ -17,8 +17,8 @@ from stickslip.foundation.show import about_time, clean, number, with_unit
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.sweeps.execution.plan import Plan
-    from stickslip.sweeps.sweep import SweepProgress
+    from stickslip.extensions.sweeps.execution.plan import Plan
+    from stickslip.extensions.sweeps.sweep import SweepProgress
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 FIRST = 5
@@ -38,9 +38,9 @@ def show_plan(plan: Plan) -> None:
 
 def show_sweep(title: str, dataset: xr.Dataset) -> int:
     """Print the summary of a sweep on standard output. Returns the exit code of the sweep: 1 if every member failed."""
-    from stickslip.sweeps.design.design import GRID, in_words
-    from stickslip.sweeps.execution.chunk import FIRST_FAILURE
-    from stickslip.sweeps.results.layout import read_design
+    from stickslip.extensions.sweeps.design.design import GRID, in_words
+    from stickslip.extensions.sweeps.execution.chunk import FIRST_FAILURE
+    from stickslip.extensions.sweeps.results.layout import read_design
 
     dataset, screen = dataset.load(), console()
     kind, keys, _ = read_design(dataset.attrs)
@@ -55,8 +55,8 @@ def show_sweep(title: str, dataset: xr.Dataset) -> int:
 
 def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
     """Return a line if members without a mass at the contact start in another way than those with one."""
-    from stickslip.scenarios.scenario import read_scenario
-    from stickslip.scenarios.stability import other_start
+    from stickslip.problem.scenarios.scenario import read_scenario
+    from stickslip.run.check.stability import other_start
 
     problem = read_scenario(dataset.attrs["scenario"], "sweep").problem
     mass = f"body.{problem.body.mass_field}"
@@ -67,14 +67,14 @@ def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
 
 def quantities_of(dataset: xr.Dataset) -> list[str]:
     """Return the names of the quantities in the results of a sweep."""
-    from stickslip.sweeps.execution.chunk import PREFIX
-    from stickslip.sweeps.results.layout import REASON, STATUS
+    from stickslip.extensions.sweeps.execution.chunk import PREFIX
+    from stickslip.extensions.sweeps.results.layout import REASON, STATUS
 
     return [str(name) for name in dataset.data_vars if name not in (STATUS, REASON) and not str(name).startswith(PREFIX)]
 
 
 def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.ndarray[tuple[int], np.dtype[np.object_]]) -> None:
-    from stickslip.sweeps.execution.chunk import FIRST_FAILURE, MEANINGS
+    from stickslip.extensions.sweeps.execution.chunk import FIRST_FAILURE, MEANINGS
 
     screen = console()
     for code, count in sorted(Counter(status.tolist()).items()):

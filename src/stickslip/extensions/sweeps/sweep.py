@@ -14,17 +14,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from stickslip.extensions.sweeps.design.quantities import DEFAULT, Wanted
+from stickslip.extensions.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Runner, run_chunk
+from stickslip.extensions.sweeps.execution.plan import SAMPLES, Plan, make_plan
+from stickslip.extensions.sweeps.results.store import ResultStore
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import about_time, number
 from stickslip.problem.problem import Problem
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.progress import reporting
-from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.quantities import DEFAULT, Wanted
-from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Runner, run_chunk
-from stickslip.sweeps.execution.plan import SAMPLES, Plan, make_plan
-from stickslip.sweeps.results.store import ResultStore
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -104,7 +104,7 @@ def sweep(
     seed : int
         Seed of the random designs.
     quantities : iterable
-        Names of built-in quantities (`stickslip.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a `Solution`).
+        Names of built-in quantities (`stickslip.extensions.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a `Solution`).
     series : sequence of str
         Curves of a solution to keep over time, as variables `series_...`.
     samples : int
@@ -138,7 +138,7 @@ def sweep(
     See Also
     --------
     stickslip.simulate : one run.
-    stickslip.studies.find : the value of one parameter where the answer changes.
+    stickslip.run.find : the value of one parameter where the answer changes.
 
     Examples
     --------
@@ -175,7 +175,7 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
     if workers is None and scheduler is None:
         yield on_threads(threads)
         return
-    from stickslip.sweeps.execution.cluster import cluster, on_cluster
+    from stickslip.extensions.sweeps.execution.cluster import cluster, on_cluster
 
     if threads is not None or (workers is not None and scheduler is not None):
         raise InputError(

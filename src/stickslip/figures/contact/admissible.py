@@ -23,7 +23,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
-from stickslip.resistance import Resistance
+from stickslip.problem.resistance import Resistance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

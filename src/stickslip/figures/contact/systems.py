@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon, Rectangle
 
-from stickslip.bodies import as_slab
 from stickslip.figures.panels import letter_panels, panels
 from stickslip.figures.style import (
     BLUE,
@@ -28,6 +27,7 @@ from stickslip.figures.style import (
 from stickslip.foundation.place import Place
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
+from stickslip.problem.bodies import as_slab
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:

@@ -9,6 +9,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
+from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+from stickslip.engine.history.tables import shock_columns
 from stickslip.figures.panels import add_legend, finish, set_log_ticks, zero_line
 from stickslip.figures.runs.packed import draw_line
 from stickslip.figures.sheet import one_panel
@@ -33,10 +35,8 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import TURNS, name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.observables.event_table import event_columns
 from stickslip.solution.evaluation import Curve, Readings, times_of
-from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
-from stickslip.trajectory.tables import shock_columns
+from stickslip.solution.observables.event_table import event_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -25,8 +25,8 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.names import for_readers, name_of, readable_unit
 from stickslip.foundation.place import Place
-from stickslip.observables.energy.balance import energies
 from stickslip.solution.interval import choose_interval
+from stickslip.solution.observables.energy.balance import energies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import LoadingHistory
 from stickslip.problem.fields import MAY_VARY
+from stickslip.problem.loading import LoadingHistory
 
 if TYPE_CHECKING:
     from stickslip.problem.problem import Problem

@@ -17,7 +17,6 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from stickslip.bodies import OfLayers, as_waves
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import (
@@ -41,8 +40,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
-from stickslip.observables.field import extent_of
+from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.interval import choose_interval, fronts_of
+from stickslip.solution.observables.field import extent_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

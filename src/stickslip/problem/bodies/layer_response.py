@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies.layered import OfLayers
-from stickslip.bodies.layers import Layers
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.bodies.layered import OfLayers
+from stickslip.problem.bodies.layers import Layers
 
 Complex = NDArray[np.complex128]
 SAMPLES = 32

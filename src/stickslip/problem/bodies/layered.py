@@ -9,9 +9,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, cast
 
-from stickslip.bodies.cells import CellCut
-from stickslip.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_driver, check_equivalent
-from stickslip.bodies.layers import (
+from stickslip.foundation.conversion import Number, Numbers, OptionalNumbers
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Choice, Quantity, declare, quantity
+from stickslip.foundation.show import Declared
+from stickslip.problem.bodies.cells import CellCut
+from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.layers import (
     Layers,
     cells_for,
     check_lengths,
@@ -23,11 +27,7 @@ from stickslip.bodies.layers import (
     of_layers,
     travel_times,
 )
-from stickslip.bodies.sliding import DRIVER_INERTIA, DRIVER_INTEGRAL_GAIN, SpringBlock
-from stickslip.foundation.conversion import Number, Numbers, OptionalNumbers
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Choice, Quantity, declare, quantity
-from stickslip.foundation.show import Declared
+from stickslip.problem.bodies.sliding import DRIVER_INERTIA, DRIVER_INTEGRAL_GAIN, SpringBlock
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""

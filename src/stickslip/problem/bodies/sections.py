@@ -7,10 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from stickslip.bodies.contract import check_body, check_driver
-from stickslip.bodies.layered import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
-from stickslip.bodies.soft_torque import with_soft_torque
-from stickslip.bodies.turning import (
+from stickslip.foundation.conversion import Number, Numbers, OptionalNumber, OptionalNumbers
+from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
+from stickslip.foundation.show import Declared
+from stickslip.problem.bodies.contract import check_body, check_driver
+from stickslip.problem.bodies.layered import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
+from stickslip.problem.bodies.soft_torque import with_soft_torque
+from stickslip.problem.bodies.turning import (
     BIT_RADIUS,
     DRIVE,
     DRIVE_INERTIA,
@@ -24,9 +27,6 @@ from stickslip.bodies.turning import (
     check_pipe,
     polar_moment_of,
 )
-from stickslip.foundation.conversion import Number, Numbers, OptionalNumber, OptionalNumbers
-from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
-from stickslip.foundation.show import Declared
 
 LISTS = ("length", "outer_diameter", "inner_diameter", "density", "shear_modulus", "drag")
 """The lists that have a number for each section."""
@@ -114,7 +114,7 @@ class SectionedString(Declared, OnBit, OfOneSide):
     def with_soft_torque(self, setting: Any, gain: Any = None, inertia: Any = None) -> SectionedString:
         """Return the string with a drive tuned to a period of stick-slip (s, or a text such as "5 s"), or "impedance matched".
 
-        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.bodies.soft_torque`.
+        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.problem.bodies.soft_torque`.
         `gain` (N m s) takes the place of the impedance of the pipe, and `inertia` (kg m^2) that of the drive. Raises InputError.
         """
         return with_soft_torque(self, setting, gain, inertia)

@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from stickslip.bodies.contract import BodyOnCharacteristics, OnSpring, WithWaves, check_body, check_driver, check_equivalent
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
+from stickslip.problem.bodies.contract import BodyOnCharacteristics, OnSpring, WithWaves, check_body, check_driver, check_equivalent
 
 DRIVER_INERTIA = Quantity(
     "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid"

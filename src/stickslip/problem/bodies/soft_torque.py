@@ -15,10 +15,10 @@ import math
 from dataclasses import replace
 from typing import Any, Protocol, TypeVar
 
-from stickslip.bodies.contract import BodyOnCharacteristics
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+from stickslip.problem.bodies.contract import BodyOnCharacteristics
 
 MATCHED = "impedance matched"
 """The word for a drive whose impedance is that of the pipe at all periods of stick-slip."""

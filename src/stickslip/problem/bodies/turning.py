@@ -8,13 +8,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.bodies.contract import OnSpring, WithWaves, check_body, check_driver, check_equivalent
-from stickslip.bodies.soft_torque import with_soft_torque
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
+from stickslip.problem.bodies.contract import OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.soft_torque import with_soft_torque
 
 OUTER = "outer diameter of the section"
 INNER = "inner diameter of the section"
@@ -182,7 +182,7 @@ class TorsionalString(Declared, OnBit, WithWaves):
     def with_soft_torque(self, setting: Any, gain: Any = None, inertia: Any = None) -> TorsionalString:
         """Return the string with a drive tuned to a period of stick-slip (s, or a text such as "5 s"), or "impedance matched".
 
-        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.bodies.soft_torque`.
+        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.problem.bodies.soft_torque`.
         `gain` (N m s) takes the place of the impedance of the pipe, and `inertia` (kg m^2) that of the drive. Raises InputError.
         """
         return with_soft_torque(self, setting, gain, inertia)

@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-    from stickslip.scenarios.templates import template, template_names
+    from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
 
-__all__ = ["Scenario", "load_scenario", "read_scenario", "template", "template_names"]
+__all__ = ["Scenario", "load_scenario", "read_scenario"]
 
 
 def __getattr__(name: str) -> Any:
     """Import a name when it is first used, because completion in the shell must not wait for all that reads them."""
     if name in __all__:
-        from stickslip.scenarios import scenario, templates
+        from stickslip.problem.scenarios import scenario
 
-        return getattr(templates if name.startswith("template") else scenario, name)
-    raise AttributeError(f"module 'stickslip.scenarios' has no attribute '{name}'")
+        return getattr(scenario, name)
+    raise AttributeError(f"module 'stickslip.problem.scenarios' has no attribute '{name}'")

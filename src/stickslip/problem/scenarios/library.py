@@ -42,7 +42,7 @@ LISTED = "`stickslip new --list` lists them"
 
 
 def _folder() -> Traversable:
-    return resources.files("stickslip.scenarios") / "bundled"
+    return resources.files("stickslip.problem.scenarios") / "bundled"
 
 
 @cache

@@ -12,21 +12,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from stickslip.extensions.planar.contact import LOCKED, Contact
+from stickslip.extensions.planar.contact_table import PLACES, TAPER
+from stickslip.extensions.planar.nodes import varying
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.names import short_units
 from stickslip.foundation.quantities import Choice, Quantity, quantities_of
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.planar.nodes import varying
 from stickslip.problem.fields import STEADY
 from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
+from stickslip.problem.scenarios.entries import Source
+from stickslip.problem.scenarios.scenario import Scenario, scenario_of
+from stickslip.problem.scenarios.schema import SOFT_TORQUE, WITH_SOFT_TORQUE, quantities_in, without_owner
 from stickslip.problem.selection_rule import names as rules
-from stickslip.scenarios.contact import LOCKED, Contact
-from stickslip.scenarios.contact_table import PLACES, TAPER
-from stickslip.scenarios.entries import Source
-from stickslip.scenarios.scenario import Scenario, scenario_of
-from stickslip.scenarios.schema import SOFT_TORQUE, WITH_SOFT_TORQUE, quantities_in, without_owner
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"

@@ -13,22 +13,22 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
+from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
+from stickslip.extensions.planar.contact import Contact
+from stickslip.extensions.planar.contact_table import contact_table, read_contact
+from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import check_fields, declare
 from stickslip.foundation.show import html_table, shown_fields
-from stickslip.loading import LoadingHistory
-from stickslip.planar.slab import PlanarSlab
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
-from stickslip.scenarios import library
-from stickslip.scenarios.contact import Contact
-from stickslip.scenarios.contact_table import contact_table, read_contact
-from stickslip.scenarios.entries import Source, as_written, to_table
-from stickslip.scenarios.schema import CONTACT, read_document, read_part, read_table, without_owner
-from stickslip.scenarios.text_of_files import about_suffix, read_text, why_not_toml
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.entries import Source, as_written, to_table
+from stickslip.problem.scenarios.schema import CONTACT, read_document, read_part, read_table, without_owner
+from stickslip.problem.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
 UNNAMED = "scenario"
 """Name of a scenario that has none of its own."""
@@ -103,7 +103,7 @@ class Scenario(CheckedArguments):
         the description, which may no longer be true, is left out. An initial load replaces an initial excess, and an excess a load.
         Raises InputError if there is no such parameter, or if it cannot have the value.
         """
-        from stickslip.scenarios.parameter_paths import with_values
+        from stickslip.problem.scenarios.parameter_paths import with_values
 
         return with_values(self, values, self.name)
 
@@ -267,4 +267,4 @@ class BundledScenarios(Mapping[str, Scenario]):
 
 
 scenarios = BundledScenarios()
-"""The bundled scenarios, as `stickslip.scenarios`."""
+"""The bundled scenarios, as `stickslip.problem.scenarios`."""

@@ -11,9 +11,7 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from stickslip.bodies import BODIES
-from stickslip.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
-from stickslip.bodies.turning import WEIGHT_ON_BIT
+from stickslip.extensions.planar.contact import Contact
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
@@ -25,13 +23,15 @@ from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_un
 from stickslip.foundation.synonyms import same
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.loading import HISTORIES, VARYING, LoadingHistory
+from stickslip.problem.bodies import BODIES
+from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
+from stickslip.problem.bodies.turning import WEIGHT_ON_BIT
 from stickslip.problem.fields import MAY_VARY, STEADY
+from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
+from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_points, read_typed
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
-from stickslip.scenarios.contact import Contact
-from stickslip.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_points, read_typed
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""

@@ -15,7 +15,7 @@ from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import SelectionRule
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
 
 def all_slips_alike(who: str, scenario: Scenario) -> Scenario:
@@ -36,7 +36,7 @@ def read_source(who: str, source: Problem | Scenario | str | Path, *, contact: b
     """
     if isinstance(source, Problem):
         return source
-    from stickslip.scenarios.scenario import Scenario, load_scenario  # which a problem can do without
+    from stickslip.problem.scenarios.scenario import Scenario, load_scenario  # which a problem can do without
 
     found = load_scenario(source) if isinstance(source, str | Path) else source
     if not isinstance(found, Scenario):

@@ -10,13 +10,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
-from stickslip.engine_input.forcing import far_at_first, machine_at_first
+from stickslip.engine.input.forcing import far_at_first, machine_at_first
 from stickslip.foundation.names import KINDS
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import OfLayers
 from stickslip.problem.fields import MAY_VARY
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 SAME = 1e-12

@@ -10,7 +10,7 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, did_you_mean, meant
 from stickslip.foundation.netcdf_file import MAGIC
-from stickslip.scenarios import library
+from stickslip.problem.scenarios import library
 
 LARGEST_SCENARIO_FILE = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""

@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import BodyOnCharacteristics, BodyWithWaves, as_waves
-from stickslip.bodies.soft_torque import sent_back, tuned_period
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, folds_not_followed, regime_when_pressed, uniqueness_of
-from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
+from stickslip.engine.input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
@@ -25,13 +23,17 @@ from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
-from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.bodies import BodyOnCharacteristics, BodyWithWaves, as_waves
+from stickslip.problem.bodies.soft_torque import sent_back, tuned_period
 from stickslip.problem.fields import STEADY
+from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
-from stickslip.reference.slab import PulseTrain
-from stickslip.scenarios.entries import key_of
-from stickslip.scenarios.examine_layers import (
+from stickslip.problem.scenarios.entries import key_of
+from stickslip.problem.scenarios.scenario import Scenario, doubts
+from stickslip.problem.scenarios.schema import quantities_in
+from stickslip.problem.scenarios.starts import chosen_starts
+from stickslip.run.check.examine_layers import (
     first_echo,
     given_layers,
     layer_facts,
@@ -40,11 +42,9 @@ from stickslip.scenarios.examine_layers import (
     smallest_modulus,
     to_driver,
 )
-from stickslip.scenarios.facts import Fact
-from stickslip.scenarios.scenario import Scenario, doubts
-from stickslip.scenarios.schema import quantities_in
-from stickslip.scenarios.stability import stability_of, start_of, wait_of
-from stickslip.scenarios.starts import chosen_starts
+from stickslip.run.check.facts import Fact
+from stickslip.run.check.stability import stability_of, start_of, wait_of
+from stickslip.run.reference.slab import PulseTrain
 
 OF_SLIP = ("counts", "memory")
 """Options of a law that say which slip it sees; they mean nothing to a law without slip."""

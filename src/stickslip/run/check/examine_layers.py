@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from stickslip.bodies import BodyOnCharacteristics, OfLayers
-from stickslip.bodies.layers import Layers
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.names import TURNS, si_unit
 from stickslip.foundation.quantities import Choice, NumberSeries, fields_of
-from stickslip.scenarios.facts import Fact
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.problem.bodies.layers import Layers
+from stickslip.run.check.facts import Fact
 
 MANY_PIECES = 100_000
 """From this many pieces of rest on (some seconds), a warning says how many there are."""

@@ -5,15 +5,15 @@ from __future__ import annotations
 import cmath
 import math
 
-from stickslip.bodies import BodyOnCharacteristics, OfLayers, as_waves
-from stickslip.bodies.layer_response import growth_on_layers
 from stickslip.contact.rules.loop import first_rate, resolved
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import exactly
 from stickslip.friction import RateAndState
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers, as_waves
+from stickslip.problem.bodies.layer_response import growth_on_layers
 from stickslip.problem.problem import Problem
-from stickslip.reference.rate_and_state import SteadySliding
-from stickslip.reference.slab import growth_rate
+from stickslip.run.reference.rate_and_state import SteadySliding
+from stickslip.run.reference.slab import growth_rate
 
 
 def loading_rate(problem: Problem) -> float:

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from stickslip.bodies import SpringBlock
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem.bodies import SpringBlock
 
 
 @dataclass(frozen=True)

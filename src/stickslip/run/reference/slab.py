@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import MACHINE, BodyWithWaves, ElasticSlab
 from stickslip.foundation.errors import InputError
+from stickslip.problem.bodies import MACHINE, BodyWithWaves, ElasticSlab
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from stickslip.foundation.arguments import check_ordinary
 from stickslip.foundation.atomic_write import sync, write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import cannot_be_written, digest_of, write_with
-from stickslip.observables.event_table import EVENT_COLUMNS, column_unit
+from stickslip.solution.observables.event_table import EVENT_COLUMNS, column_unit
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Unpack
 import stickslip
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.io.sampling import Span, sampled_curves
 from stickslip.solution.evaluation import Curve, Readings
+from stickslip.solution.files.sampling import Span, sampled_curves
 
 if TYPE_CHECKING:
+    from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.foundation.arrays import Floats
-    from stickslip.solution.planar import PlanarSolution
 
 FIRST: tuple[Curve, ...] = ("slip", "event_slip", "slip_rate", "load", "traction")
 """The order of the columns after time; states of the law follow."""
@@ -34,7 +34,7 @@ def write_curves(run: Readings, path: str | Path, **evenly: Unpack[Evenly]) -> P
 
     A name that ends in .csv makes a table whose first line names the columns with their units (SI); one that ends in .nc a netCDF
     file, with the attributes of `to_dataset`. The values are those of the run, right limits at shocks; in a window the slip counts
-    from the start of the event. The arguments are those of `stickslip.io.sampling.sampled_curves`.
+    from the start of the event. The arguments are those of `stickslip.solution.files.sampling.sampled_curves`.
 
     Raises InputError as that does, and for another suffix.
     """
@@ -44,7 +44,7 @@ def write_curves(run: Readings, path: str | Path, **evenly: Unpack[Evenly]) -> P
     if file.suffix.lower() == ".csv":
         return write_columns(file, {heading("time", "s"): time} | _with_headings(run, names, values))
     from stickslip.foundation.netcdf_file import write
-    from stickslip.io.netcdf import to_dataset
+    from stickslip.solution.files.netcdf import to_dataset
 
     dataset = to_dataset(run, time)
     for name, filtered in zip(names, values, strict=True):

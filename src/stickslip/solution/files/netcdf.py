@@ -11,6 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import stickslip
+from stickslip.engine.history.history import NO_LEAPS, History
+from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+from stickslip.engine.history.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
+from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
@@ -20,26 +24,22 @@ from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
 from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.io.soundness import check_history, history_table, number
-from stickslip.loading import HISTORIES, LoadingHistory
-from stickslip.observables.event_table import EVENT_COLUMNS, event_columns
-from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.problem.fields import MAY_VARY
+from stickslip.problem.loading import HISTORIES, LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.problem.scenarios import read_scenario
 from stickslip.problem.selection_rule import names as rule_names
-from stickslip.scenarios import read_scenario
 from stickslip.solution.evaluation import Curve, Readings
+from stickslip.solution.files.soundness import check_history, history_table, number
+from stickslip.solution.observables.event_table import EVENT_COLUMNS, event_columns
+from stickslip.solution.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
-from stickslip.trajectory.history import NO_LEAPS, History
-from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
-from stickslip.trajectory.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
-from stickslip.trajectory.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.solution.planar import PlanarSolution
+    from stickslip.extensions.planar.solution import PlanarSolution
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -207,7 +207,7 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
     """
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
-            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
+            name, place = type(loading).__name__, f'stickslip.problem.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
     variables = _history(solution)
     if solution.checkpoint is not None:
@@ -277,7 +277,7 @@ def open_solution(path: str | Path) -> Solution | PlanarSolution:
     """
     file = as_path("open_solution: path", path)
     if file.is_dir():
-        from stickslip.io.planar_layout import open_planar  # with zarr, which takes half a second to load
+        from stickslip.extensions.planar.store_layout import open_planar  # with zarr, which takes half a second to load
 
         return open_planar(file)
     return read_solution(file)

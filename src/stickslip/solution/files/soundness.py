@@ -16,18 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.contact_step.certificate import RATIOS
+from stickslip.engine.history.history import History
+from stickslip.engine.history.status import Checkpoint
+from stickslip.engine.input.branch_table import table_of_branches
+from stickslip.engine.input.prepare import prepare
 from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, counts_in
 from stickslip.engine.waves.merged_series import MEAN, MOST_TOGETHER
-from stickslip.engine_input.branch_table import table_of_branches
-from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.history import History
-from stickslip.trajectory.status import Checkpoint
 
 ROUND_TRIP_ROUNDING = 1e-9
 """Rounding may carry an offset beyond the end of a round trip by this share of it; also the tolerance of xi around 0 and 1."""

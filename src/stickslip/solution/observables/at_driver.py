@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import OfLayers, as_waves
+from stickslip.engine.history.history import History, Side
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.energy.ground import spring_force
-from stickslip.observables.inside_layers import beside
-from stickslip.observables.layer_records import VALUE
-from stickslip.observables.layers import MOST, LayerWaves
-from stickslip.observables.waves import Waves
-from stickslip.trajectory.history import History, Side
+from stickslip.problem.bodies import OfLayers, as_waves
+from stickslip.solution.observables.energy.ground import spring_force
+from stickslip.solution.observables.inside_layers import beside
+from stickslip.solution.observables.layer_records import VALUE
+from stickslip.solution.observables.layers import MOST, LayerWaves
+from stickslip.solution.observables.waves import Waves
 
 ROUNDING = 4.0
 """Times within so many units in the last place of a front lie on it."""

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.bodies import OfLayers, as_waves
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.history.slip_events import SlipEvents
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.energy.balance import energies_of_layers, epochs, event_energies, kinetic
-from stickslip.observables.energy.ground import speed
-from stickslip.observables.energy.pulses import Pulses
-from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
-from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.slip_events import SlipEvents
+from stickslip.problem.bodies import OfLayers, as_waves
+from stickslip.solution.observables.energy.balance import energies_of_layers, epochs, event_energies, kinetic
+from stickslip.solution.observables.energy.ground import speed
+from stickslip.solution.observables.energy.pulses import Pulses
+from stickslip.solution.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
+from stickslip.solution.observables.waves import Radiation, Waves
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from stickslip.engine.history.history import History
+from stickslip.engine.history.slip_events import NOT_YET, SlipEvents
 from stickslip.engine.state.layout import Integers
-from stickslip.observables.event_table import with_energies
-from stickslip.trajectory.history import History
-from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
+from stickslip.solution.observables.event_table import with_energies
 
 if TYPE_CHECKING:
     import pandas as pd

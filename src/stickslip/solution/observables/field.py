@@ -23,14 +23,14 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BodyWithWaves, OfLayers, as_waves
+from stickslip.engine.history.history import History, Positions, Side
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.observables.inside_layers import field_of_layers
-from stickslip.observables.waves import Waves
+from stickslip.problem.bodies import BodyWithWaves, OfLayers, as_waves
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Positions, Side
+from stickslip.solution.observables.inside_layers import field_of_layers
+from stickslip.solution.observables.waves import Waves
 
 ROUNDS = 8
 """Round trips that are evaluated together."""

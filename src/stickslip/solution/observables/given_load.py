@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
-from stickslip.engine_input.forcing import far_at_first
+from stickslip.engine.input.forcing import far_at_first
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import OfLayers
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 BESIDE = 1e-10

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
+from stickslip.engine.history.history import History, Side
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.foundation.errors import InputError
-from stickslip.observables.layer_records import MOVED, MOVED_IN_TRIP
-from stickslip.observables.layers import MOST, LayerWaves
-from stickslip.trajectory.history import History, Side
+from stickslip.problem.bodies import OfLayers
+from stickslip.solution.observables.layer_records import MOVED, MOVED_IN_TRIP
+from stickslip.solution.observables.layers import MOST, LayerWaves
 
 ROUNDING = 1e-12
 """Places may lie outside by this share (1) of the thickness."""

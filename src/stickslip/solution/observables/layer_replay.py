@@ -13,7 +13,7 @@ import numpy as np
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Floats
 from stickslip.foundation.constants import RIGID
-from stickslip.observables.layer_records import (
+from stickslip.solution.observables.layer_records import (
     DRAGGED,
     MOVED,
     MOVED_IN_TRIP,

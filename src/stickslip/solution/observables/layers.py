@@ -15,13 +15,14 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
+from stickslip.engine.input.ladder import ladder_of, sides_of
 from stickslip.engine.state.layout import Floats, Integers, LadderCell
-from stickslip.engine_input.forcing import inflow_of, ramp_per_rate, settled_rate
-from stickslip.engine_input.ladder import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
-from stickslip.observables.layer_machine import LayerMachine
-from stickslip.observables.layer_records import (
+from stickslip.problem.bodies import OfLayers
+from stickslip.solution.observables.layer_machine import LayerMachine
+from stickslip.solution.observables.layer_records import (
     PULL,
     SHARE,
     SUMS,
@@ -33,8 +34,7 @@ from stickslip.observables.layer_records import (
     SlipPieces,
     WaveQueries,
 )
-from stickslip.observables.layer_replay import answer, replay
-from stickslip.trajectory.history import History, Positions
+from stickslip.solution.observables.layer_replay import answer, replay
 
 MOST = 1 << 19
 """Numbers that are kept together, of cells or of what drivers send: it keeps the memory bounded."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import OfLayers
-from stickslip.engine_input.forcing import machine_at_first
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.input.forcing import machine_at_first
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at
-from stickslip.observables.layers import LayerWaves
-from stickslip.trajectory.history import History, Positions
+from stickslip.problem.bodies import OfLayers
+from stickslip.solution.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at
+from stickslip.solution.observables.layers import LayerWaves
 
 REPLAYED = 2e7
 """Number of cells times round trips times phases through which waves are replayed; that takes a tenth of a second."""

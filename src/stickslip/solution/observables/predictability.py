@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from stickslip.engine_input.branch_table import is_algebraic
-from stickslip.engine_input.prepare import SAFETY
+from stickslip.engine.history.history import History
+from stickslip.engine.input.branch_table import is_algebraic
+from stickslip.engine.input.prepare import SAFETY
 from stickslip.foundation.arguments import NamesAttributes, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.fft import dct
 from scipy.special import comb
 
+from stickslip.engine.history.history import History
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import KINDS
@@ -32,9 +33,8 @@ from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
 from stickslip.friction.formula.operations.sets import Disc
-from stickslip.observables.given_on_discs import NormalLoads, missed_growth
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History
+from stickslip.solution.observables.given_on_discs import NormalLoads, missed_growth
 
 Places = NDArray[np.intp]
 

@@ -14,15 +14,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import OfLayers, as_waves
-from stickslip.engine_input.forcing import wave_before
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.input.forcing import wave_before
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.given_load import beside, breaks_at_contact, of_ground, pulled, sent_at, share_at
-from stickslip.observables.given_on_discs import near_break
-from stickslip.observables.layers_found_again import loads_of_layers
-from stickslip.observables.proof import Places, chosen_steps
-from stickslip.observables.waves import FromMachine
-from stickslip.trajectory.history import History, Positions
+from stickslip.problem.bodies import OfLayers, as_waves
+from stickslip.solution.observables.given_load import beside, breaks_at_contact, of_ground, pulled, sent_at, share_at
+from stickslip.solution.observables.given_on_discs import near_break
+from stickslip.solution.observables.layers_found_again import loads_of_layers
+from stickslip.solution.observables.proof import Places, chosen_steps
+from stickslip.solution.observables.waves import FromMachine
 
 Expected = Callable[[History, Places, Floats], Floats]
 """Loads minus the reference strength at places in pieces of a history, as they are found again."""

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.history.series import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.contract import one_argument
-from stickslip.observables.given_on_discs import NormalLoads
-from stickslip.observables.proof import POINTS_OF_STEP, Places
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import PERFECT_DELAY
-from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.series import values_at
+from stickslip.solution.observables.given_on_discs import NormalLoads
+from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 
 RECORDED = 1024
 """Largest number of recorded rests whose load is looked at."""

@@ -10,13 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from typing import ClassVar
 
+from stickslip.engine.history.history import History
 from stickslip.foundation.show import brief, brief_repr
-from stickslip.observables.proof import Proof, proven
-from stickslip.observables.proof_of_load import load_compared
-from stickslip.observables.proof_of_rest import exceeded_at_rest
-from stickslip.observables.proof_of_slip import slip_joined
-from stickslip.observables.proof_of_states import states_proven
-from stickslip.trajectory.history import History
+from stickslip.solution.observables.proof import Proof, proven
+from stickslip.solution.observables.proof_of_load import load_compared
+from stickslip.solution.observables.proof_of_rest import exceeded_at_rest
+from stickslip.solution.observables.proof_of_slip import slip_joined
+from stickslip.solution.observables.proof_of_states import states_proven
 
 
 @dataclass(frozen=True)

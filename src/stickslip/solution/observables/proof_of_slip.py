@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.engine.history.history import History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.proof import POINTS_OF_STEP, Places
-from stickslip.trajectory.history import History, Positions
+from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 
 
 class SlipJoined(NamedTuple):

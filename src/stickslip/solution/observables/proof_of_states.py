@@ -17,12 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.engine.history.history import History
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
 from stickslip.friction.formula.operations.sets import Disc
-from stickslip.observables.given_on_discs import NormalLoads
-from stickslip.observables.proof import (
+from stickslip.solution.observables.given_on_discs import NormalLoads
+from stickslip.solution.observables.proof import (
     AT_ONCE,
     DEGREE,
     OF_DURATION,
@@ -36,7 +37,6 @@ from stickslip.observables.proof import (
     chosen_steps,
     from_points,
 )
-from stickslip.trajectory.history import History
 
 
 class StatesProven(NamedTuple):

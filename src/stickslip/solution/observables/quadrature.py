@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.history.history import History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.trajectory.history import History, Positions
 
 Integrand = Callable[[Positions], Floats]
 

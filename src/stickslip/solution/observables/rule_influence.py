@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.uniqueness import Uniqueness, regime_when_pressed, uniqueness_of
+from stickslip.engine.history.history import History, Side
+from stickslip.engine.history.tables import shock_columns
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.show import brief_repr
-from stickslip.resistance import Branch
-from stickslip.trajectory.history import History, Side
-from stickslip.trajectory.tables import shock_columns
+from stickslip.problem.resistance import Branch
 
 Regime = Literal["regular", "irregular", "continuum"]
 

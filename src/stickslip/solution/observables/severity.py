@@ -7,13 +7,13 @@ from typing import Protocol
 
 import numpy as np
 
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.history.slip_events import LAST_THIRD, walk
+from stickslip.engine.history.turning_points import Turn
 from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
-from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.slip_events import LAST_THIRD, walk
-from stickslip.trajectory.turning_points import Turn
 
 TIME = Quantity("s", "time since the start of the run")
 

@@ -16,13 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import BodyWithWaves
-from stickslip.engine_input.forcing import Inflow, inflow_of, wave_before
+from stickslip.engine.history.history import START, Epoch, History, Positions
+from stickslip.engine.input.forcing import Inflow, inflow_of, wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
-from stickslip.observables.quadrature import NODES, WEIGHTS, over, places_in
-from stickslip.trajectory.history import START, Epoch, History, Positions
+from stickslip.problem.bodies import BodyWithWaves
+from stickslip.solution.observables.quadrature import NODES, WEIGHTS, over, places_in
 
 OfWave = Callable[[Floats, Floats], Floats]
 """A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""

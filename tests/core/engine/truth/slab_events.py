@@ -1,6 +1,6 @@
 """Slip events of a slab under the hyperbolic rate law, to 50 digits: what the engine is tested against.
 
-    python tests/truth/slab_events.py        writes the tables beside this file (a minute or two)
+    python tests/core/engine/truth/slab_events.py        writes the tables beside this file (a minute or two)
 
 Nothing of the package is used, and another method: the engine follows polynomials of the load in time; here no function of
 time is ever formed. The slab has a rigid driver, no contact mass, perfect delay (Campillo et al. 1996, eqs (12)-(13), section 3).

@@ -9,7 +9,7 @@ from itertools import islice
 import pytest
 from mpmath import mp, mpf, quad
 
-from tests.truth.slab_events import ALPHA_ONE, JUST_ABOVE_CRITICAL, Contact, Event, Piece, Ring, Slab, Slips, Table
+from tests.core.engine.truth.slab_events import ALPHA_ONE, JUST_ABOVE_CRITICAL, Contact, Event, Piece, Ring, Slab, Slips, Table
 
 FAST = Slab(alpha=1.0, pull_rate=0.1234)
 """Pulled so fast that hundreds of events of all kinds (ended by the echo, by folds, fragments) come within 400 round trips."""

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import stickslip as ss
-from stickslip.bodies import BODIES, Body, as_block, as_slab
+from stickslip.problem.bodies import BODIES, Body, as_block, as_slab
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14, damping=3e12)

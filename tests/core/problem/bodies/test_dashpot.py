@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.batch.run import run_members
-from stickslip.bodies import BODIES, has_dashpot
-from stickslip.engine_input.limits import leaps_over
-from stickslip.scenarios.scenario import Scenario
-from stickslip.schemes.run import SCHEMES
+from stickslip.engine.input.limits import leaps_over
+from stickslip.extensions.schemes.run import SCHEMES
+from stickslip.extensions.sweeps.batch.run import run_members
+from stickslip.problem.bodies import BODIES, has_dashpot
+from stickslip.problem.scenarios.scenario import Scenario
 
 DROP = 0.3e8
 """Stress drop (Pa) of the Coulomb contact below."""

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.bodies.layer_response import response_of
-from tests.bodies.layers import RATE_LAW, SOFT
+from stickslip.problem.bodies.layer_response import response_of
+from tests.core.problem.bodies.layers import RATE_LAW, SOFT
 from tests.messages import refused
 
 NORMAL, DENSITY, SPEED, THICKNESS = 1e7, 2500.0, 2000.0, 1000.0

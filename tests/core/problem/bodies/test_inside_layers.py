@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.bodies.layers import CASES, COULOMB, DENSITY, NORMAL, ONE, RATE_LAW, SOFT, SPEED, THICKNESS, TWO, T, layered
+from tests.core.problem.bodies.layers import CASES, COULOMB, DENSITY, NORMAL, ONE, RATE_LAW, SOFT, SPEED, THICKNESS, TWO, T, layered
 from tests.messages import refused
 
 SHORT = ("rate law", "slip law", "contact mass", "fold and dead load", "states", "lossy driver", "far stress in steps")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.bodies.layer_chains import PHASES, Chain, march
+from tests.core.problem.bodies.layer_chains import PHASES, Chain, march
 
 WITH_DRAG = 18
 """From this seed on, layers have drag."""

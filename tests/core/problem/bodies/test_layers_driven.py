@@ -12,9 +12,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from tests.bodies.layer_chains import PHASES, Chain, march
-from tests.bodies.layers import DENSITY, NORMAL, ONE, SPEED, THICKNESS, layered
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from tests.core.problem.bodies.layer_chains import PHASES, Chain, march
+from tests.core.problem.bodies.layers import DENSITY, NORMAL, ONE, SPEED, THICKNESS, layered
 from tests.messages import refused
 
 ROUND = 2.0 * THICKNESS / SPEED

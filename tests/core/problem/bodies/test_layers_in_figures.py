@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.panels import field as field_panel
-from stickslip.explorer.page.panels import shape as shape_panel
-from stickslip.explorer.page.panels.units import units_of
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.page.panels import field as field_panel
+from stickslip.extensions.explorer.page.panels import shape as shape_panel
+from stickslip.extensions.explorer.page.panels.units import units_of
 from stickslip.figures.runs import inside
-from stickslip.observables.energetics import ENERGETICS_COLUMNS
-from tests.bodies.layers import CASES, DENSITY, NORMAL, SPEED, THICKNESS, layered
+from stickslip.solution.observables.energetics import ENERGETICS_COLUMNS
+from tests.core.problem.bodies.layers import CASES, DENSITY, NORMAL, SPEED, THICKNESS, layered
 
 
 @pytest.fixture(autouse=True)

@@ -13,9 +13,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import Sinusoidal, Steps
-from tests.bodies import layer_chains
-from tests.bodies.layer_chains import Chain, march
+from stickslip.problem.loading import Sinusoidal, Steps
+from tests.core.problem.bodies import layer_chains
+from tests.core.problem.bodies.layer_chains import Chain, march
 from tests.messages import refused
 
 STRESS, THICKNESS, DENSITY, SPEED = 1e6, 100.0, 2800.0, 3500.0

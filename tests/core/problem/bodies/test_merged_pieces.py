@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.state.layout import NEVER
-from stickslip.loading import Sinusoidal
+from stickslip.problem.loading import Sinusoidal
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import options_of
 from stickslip.run.run_loop import WholeHistory, run_to_end

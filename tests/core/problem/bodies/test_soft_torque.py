@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.bodies.soft_torque import sent_back, tuned_period
-from stickslip.scenarios.scenario import read_scenario
+from stickslip.problem.bodies.soft_torque import sent_back, tuned_period
+from stickslip.problem.scenarios.scenario import read_scenario
 
 STEEL: dict[str, Any] = {"density": 7850.0, "shear_modulus": 79.3e9, "outer_diameter": 0.127, "inner_diameter": 0.10861}
 STRING = ss.TorsionalString(1200.0, **STEEL, normal_torque=10e3)

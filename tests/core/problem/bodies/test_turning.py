@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.scenarios.scenario import read_scenario
-from tests.reference.method_of_steps import method_of_steps
+from stickslip.problem.scenarios.scenario import read_scenario
+from tests.core.run.reference.method_of_steps import method_of_steps
 
 RPM = math.pi / 30.0
 STRING = ss.TorsionalString(1770.0, 7850.0, 61e9, polar_moment=2.28e-5, normal_torque=15e3, inertia=305.0)

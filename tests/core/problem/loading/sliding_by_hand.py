@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.loading import PiecewiseLinear
+from stickslip.problem.loading import PiecewiseLinear
 
 
 def by_hand(

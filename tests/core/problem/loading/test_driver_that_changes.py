@@ -13,8 +13,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from tests.loading.changed_driver import by_recursion
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from tests.core.problem.loading.changed_driver import by_recursion
 
 STRESS, STATIC, DYNAMIC = 1e8, 6e7, 5e7
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1000.0, STRESS)

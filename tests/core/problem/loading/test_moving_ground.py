@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from tests.loading.sliding_by_hand import by_hand
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from tests.core.problem.loading.sliding_by_hand import by_hand
 
 MASS, FORCE, LOOSE = 1.0, 10.0, 1e-12
 """kg, N; a spring (N/m) so loose that its force does not change by a digit."""
@@ -266,7 +266,7 @@ SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
         ),
         (
             lambda: ss.Problem(BLOCK, LAW, initial_load=0.0, ground_acceleration=3.0),  # type: ignore[arg-type]
-            "Problem: ground_acceleration must be a loading history, got 3.0; what varies in time is one of stickslip.loading,"
+            "Problem: ground_acceleration must be a loading history, got 3.0; what varies in time is one of stickslip.problem.loading,"
             " such as Steps([0.0, 10.0], [1e-6, 1e-5])",
         ),
         (

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.engine.state.layout import SAVED as SET_ASIDE
 from stickslip.engine.state.workspace import Run
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 
 STATIC, DYNAMIC, FORCE, STIFFNESS, PULL, LOAD = 0.6, 0.4, 10.0, 100.0, 0.05, 5.0
 BODY = ss.SpringBlock(mass=1.0, stiffness=STIFFNESS, normal_force=FORCE)
@@ -133,7 +133,7 @@ def test_a_history_that_does_not_change_is_the_constant_normal_load() -> None:
 
 
 def test_scenario_file_and_resumed_run_are_the_same_to_the_bit(tmp_path: Path) -> None:
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
     scenario = Scenario(block(Sinusoidal("10 N", "3 N", "0.37 s")), 3.0)
     path = tmp_path / "pressed.toml"
@@ -314,9 +314,9 @@ def test_what_is_set_aside_beside_a_fold_has_room() -> None:
 
 
 def test_the_explorer_offers_its_numbers_and_no_number_in_its_place() -> None:
-    from stickslip.explorer.model.controls import controls_of
-    from stickslip.explorer.model.setting import Setting
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.extensions.explorer.model.controls import controls_of
+    from stickslip.extensions.explorer.model.setting import Setting
+    from stickslip.problem.scenarios.scenario import Scenario
 
     shown = {
         constant: {one.path for group in controls_of(Setting.of(Scenario(problem, 3.0))) for one in group.controls}
@@ -330,7 +330,7 @@ def test_check_tells_the_history_and_calls_a_constant_pull_rate_constant(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from stickslip.cli.main import main
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.scenario import Scenario
 
     path = tmp_path / "pressed.toml"
     path.write_text(Scenario(block(Sinusoidal(10.0, 3.0, 0.37)), 3.0).to_toml(), encoding="utf-8")

@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 
 NORMAL, PULL, STIFFNESS = 10.0, 0.5, 60.0
 DURATION = 2.7

@@ -20,9 +20,9 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from stickslip.scenarios.examine import warnings_of
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.run.check.examine import warnings_of
 
 FASTEST, FINE = 40.0, 801
 """Slip rates (m/s) are sought up to FASTEST, first among FINE places."""

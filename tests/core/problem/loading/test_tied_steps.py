@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.loading import Steps
+from stickslip.problem.loading import Steps
 
 STATIC, DROP, ALPHA = 0.6, 0.2, 2.0
 BEFORE, AFTER, RATE = 10.0, 20.0, 0.6

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from stickslip import InputError
-from stickslip.scenarios.scenario import load_scenario, read_scenario
-from tests.scenarios.texts import GOOD
+from stickslip.problem.scenarios.scenario import load_scenario, read_scenario
+from tests.core.problem.scenarios.texts import GOOD
 
 LENGTH = 'must be a number in m or a text with a unit such as "10 m"'
 DENSITY = 'must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3"'

@@ -5,8 +5,8 @@ import math
 import pytest
 from mpmath import acos, cos, mp, mpf, pi, sin
 
-from stickslip.scenarios import library
-from stickslip.scenarios.scenario import load_scenario, read_scenario
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import load_scenario, read_scenario
 
 mp.dps = 40
 ULP = 2.3e-16

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.scenarios.scenario import load_scenario
+from stickslip.problem.scenarios.scenario import load_scenario
 
 R = 2e4 / 3500
 YEAR = 31_557_600.0

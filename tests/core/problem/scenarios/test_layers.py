@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.controls import controls_of
-from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import companion_of, motion
-from stickslip.scenarios.examine import examine
-from stickslip.scenarios.scenario import Scenario
+from stickslip.extensions.explorer.model.controls import controls_of
+from stickslip.extensions.explorer.model.exchange import with_kind
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import companion_of, motion
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.run.check.examine import examine
 from tests.messages import refused
 
 NAMES = ("bowed-string-tenth", "low-velocity-zone", "steel-on-granite")

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from stickslip import InputError
-from stickslip.loading import HISTORIES, PiecewiseLinear, Steps
-from stickslip.scenarios.examine import examine
-from stickslip.scenarios.scenario import load_scenario, read_scenario
-from stickslip.scenarios.templates import template
-from tests.scenarios.texts import GOOD
+from stickslip.problem.loading import HISTORIES, PiecewiseLinear, Steps
+from stickslip.problem.scenarios.scenario import load_scenario, read_scenario
+from stickslip.run.check.examine import examine
+from stickslip.run.templates import template
+from tests.core.problem.scenarios.texts import GOOD
 
 RATE = 'a number in m/s or a text with a unit such as "10 m/s"'
 TABLE = "what varies in time is a table [loading.pull_rate] of a kind: piecewise-linear, sinusoidal, steps, hold-and-slide"

@@ -7,9 +7,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.overrides import typed_values
-from stickslip.scenarios.library import text
-from stickslip.scenarios.parameter_paths import parameter_paths
-from stickslip.scenarios.scenario import Scenario, read_scenario
+from stickslip.problem.scenarios.library import text
+from stickslip.problem.scenarios.parameter_paths import parameter_paths
+from stickslip.problem.scenarios.scenario import Scenario, read_scenario
 from tests.messages import refused
 
 EDITS = [

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
-from stickslip.scenarios.library import entries, names, text
+from stickslip.problem.scenarios.library import entries, names, text
 from stickslip.solution.solution import Solution
 
 OPTIONS = """
@@ -89,7 +89,9 @@ def test_a_name_that_is_not_bundled_is_refused_in_one_line(name: str, message: s
 
 
 def test_the_list_is_not_hidden_by_the_package_of_its_name() -> None:
-    """Importing modules of `stickslip.scenarios` would set the attribute of that name to the package."""
-    code = "import stickslip.scenarios.scenario, stickslip as ss; print(len(ss.scenarios), ss.scenarios['fig6-slab'].duration)"
+    """Importing modules of `stickslip.problem.scenarios` would set the attribute of that name to the package."""
+    code = (
+        "import stickslip.problem.scenarios.scenario, stickslip as ss; print(len(ss.scenarios), ss.scenarios['fig6-slab'].duration)"
+    )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert said == f"{len(names())} 12.0\n"

@@ -10,14 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, InputError, Problem, SectionedString, SpringBlock, TorsionalString
-from stickslip.bodies import BODIES
 from stickslip.foundation.quantities import LawField, NumberSeries, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.scenarios import library, templates
-from stickslip.scenarios.entries import describe
-from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.schema import entries_in, quantities_in
+from stickslip.problem.bodies import BODIES
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.entries import describe
+from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.problem.scenarios.schema import entries_in, quantities_in
+from stickslip.run import templates
 from tests.limits import examples
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.scenarios.examine import examine
-from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.starts import chosen_starts
+from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.starts import chosen_starts
+from stickslip.run.check.examine import examine
 
 COULOMB = ss.friction.Coulomb(0.6, 0.4)
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 100.0, 1e6)

@@ -10,9 +10,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.scenarios.scenario import load_scenario, read_scenario
+from stickslip.problem.scenarios.scenario import load_scenario, read_scenario
+from tests.core.problem.scenarios.texts import GOOD
 from tests.limits import processor_time
-from tests.scenarios.texts import GOOD
 
 TABLE = GOOD.replace(
     GOOD[GOOD.index("[friction]") : GOOD.index("[loading]")],

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios import library
-from stickslip.scenarios.scenario import load_scenario
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import load_scenario
 
 GOOD = library.text("fig6-slab")
 ALPHA = next(line for line in GOOD.splitlines() if line.startswith("alpha"))

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 import stickslip as ss
-from tests.adversarial.features import SHAPES, Feature, Recipe, Variable
+from tests.core.run.adversarial.features import SHAPES, Feature, Recipe, Variable
 
 Mu = Callable[[float, float], float]
 BODIES = ("block", "slab", "mass", "matched")

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
-from tests.adversarial.cases import Case
-from tests.adversarial.truth import Truth, is_decided, truth_of
-from tests.adversarial.walk import TooStiffError
+from tests.core.run.adversarial.cases import Case
+from tests.core.run.adversarial.truth import Truth, is_decided, truth_of
+from tests.core.run.adversarial.walk import TooStiffError
 
 CLAIM = 1e-7
 """Of the slip and of the end of the first event, at the default rtol."""

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.adversarial.cases import Case
-from tests.adversarial.checks import CLAIM, errors, off_the_law
-from tests.adversarial.features import Feature, Recipe
-from tests.adversarial.truth import truth_of
+from tests.core.run.adversarial.cases import Case
+from tests.core.run.adversarial.checks import CLAIM, errors, off_the_law
+from tests.core.run.adversarial.features import Feature, Recipe
+from tests.core.run.adversarial.truth import truth_of
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)

@@ -16,13 +16,13 @@ from scipy.optimize import brentq
 from typing_extensions import override
 
 import stickslip as ss
-from stickslip.batch import run_members
+from stickslip.extensions.sweeps.batch import run_members
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.text import parse
 from stickslip.friction.law import RemembersSlip
-from stickslip.scenarios.scenario import Scenario
-from tests.adversarial.walk import Place, walk
+from stickslip.problem.scenarios.scenario import Scenario
+from tests.core.run.adversarial.walk import Place, walk
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 NORMAL, EXCESS, DURATION = 1e8, 1.2e7, 3.0

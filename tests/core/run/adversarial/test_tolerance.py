@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 import stickslip as ss
-from tests.adversarial.cases import TEMPLATES, Case, draw
-from tests.adversarial.checks import CLAIM, decided_truth, errors
-from tests.adversarial.truth import truth_of
+from tests.core.run.adversarial.cases import TEMPLATES, Case, draw
+from tests.core.run.adversarial.checks import CLAIM, decided_truth, errors
+from tests.core.run.adversarial.truth import truth_of
 
 SAMPLE = (
     "bump(u)",

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
-from tests.adversarial.cases import Case
-from tests.adversarial.walk import Floats, Path, Place, walk
+from tests.core.run.adversarial.cases import Case
+from tests.core.run.adversarial.walk import Floats, Path, Place, walk
 
 SAMPLES = 9
 DISTURBANCE, DECIDED = 1e-12, 1e-8

@@ -13,11 +13,11 @@ import h5py
 import numpy as np
 
 import stickslip as ss
-from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.options import RunOptions
 from stickslip.run.resume import resume_run
-from tests.engine.moving_folds import KINKED, MATCHED, hardening
-from tests.engine.moving_folds import SLAB as THIN
+from stickslip.solution.files.netcdf import save_checkpoint
+from tests.core.engine.moving_folds import KINKED, MATCHED, hardening
+from tests.core.engine.moving_folds import SLAB as THIN
 from tests.problems import SLAB
 
 WITH_MANY_CHECKPOINTS = """

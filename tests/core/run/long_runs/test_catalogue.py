@@ -15,11 +15,8 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
+from stickslip.engine.input.limits import split_time
 from stickslip.engine.state.layout import Floats
-from stickslip.engine_input.limits import split_time
-from stickslip.io.catalogue_rows import RowsInMemory
-from stickslip.observables.energy.pulses import Pulses
-from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, Column, FoundEvents
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
 from stickslip.run.exact_run import ExactRun
@@ -27,7 +24,10 @@ from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import Interrupts, Monitor, run_loop
-from tests.long_runs.problems import RUNS, bundled, killed
+from stickslip.solution.files.catalogue_rows import RowsInMemory
+from stickslip.solution.observables.energy.pulses import Pulses
+from stickslip.solution.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, Column, FoundEvents
+from tests.core.run.long_runs.problems import RUNS, bundled, killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
 SUFFIXES = ["csv", "nc", pytest.param("parquet", marks=NEEDS_PYARROW)]
@@ -50,7 +50,7 @@ def last_fracture(found: FoundEvents) -> Floats:
 def test_a_column_on_pulses_is_that_of_the_whole_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The pulses are those of the events that are asked for, not those with which the history that is left begins."""
     monkeypatch.setattr(module, "CAPACITY", 64)
-    monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", 64)
+    monkeypatch.setattr("stickslip.engine.session.FIRST_CAPACITY", 64)
     monkeypatch.setitem(EVENT_COLUMNS, "last_fracture", Column("energy", "fracture energy of the last pulse", last_fracture))
     table = ss.catalogue(*RUNS[name])
     assert len(table) > 5
@@ -62,7 +62,7 @@ def test_a_column_on_pulses_is_that_of_the_whole_run(name: str, monkeypatch: pyt
 @pytest.mark.parametrize("capacity", [64, 512])
 def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", capacity)
-    monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", capacity)
+    monkeypatch.setattr("stickslip.engine.session.FIRST_CAPACITY", capacity)
     problem, duration = RUNS[name]
     for rate in (None, 0.0):
         table = ss.catalogue(problem, duration, event_rate=rate)

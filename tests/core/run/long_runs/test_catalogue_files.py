@@ -12,11 +12,11 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.netcdf_file import write
-from stickslip.io.catalogue_rows import Rows
-from stickslip.io.netcdf import CATALOGUE, read
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import checkpoint_of
-from tests.long_runs.problems import RUNS
+from stickslip.solution.files.catalogue_rows import Rows
+from stickslip.solution.files.netcdf import CATALOGUE, read
+from tests.core.run.long_runs.problems import RUNS
 
 PROBLEM, DURATION = RUNS["slab that heals"]
 

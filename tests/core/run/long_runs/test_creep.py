@@ -11,16 +11,16 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.engine.history.status import UNDER_WAY
 from stickslip.engine.state.layout import Stop
-from stickslip.io.netcdf import save_checkpoint
 from stickslip.run import catalogue as module
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
-from stickslip.trajectory.status import UNDER_WAY
-from tests.engine.creep_truth import ROUND, printed
-from tests.long_runs.problems import continued
-from tests.long_runs.problems import differences as differences_of_runs
+from stickslip.solution.files.netcdf import save_checkpoint
+from tests.core.engine.creep_truth import ROUND, printed
+from tests.core.run.long_runs.problems import continued
+from tests.core.run.long_runs.problems import differences as differences_of_runs
 from tests.problems import SLAB
 
 STABLE = ss.friction.ExponentialSlipWeakening(static=0.8, dynamic=0.3, distance=30.0)
@@ -118,7 +118,7 @@ def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) ->
 @pytest.mark.parametrize("name", RUNS)
 def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", 64)
-    monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", 64)
+    monkeypatch.setattr("stickslip.engine.session.FIRST_CAPACITY", 64)
     problem, duration, rtol = RUNS[name]
     for rate in (None, 0.0):
         table = ss.catalogue(problem, duration, creep_rtol=rtol, event_rate=rate)

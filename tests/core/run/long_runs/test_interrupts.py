@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 
 import stickslip as ss
+from stickslip.engine.session import Session
 from stickslip.engine.state.layout import Stop
 from stickslip.run import run_loop
 from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts
-from stickslip.run.session import Session
-from tests.long_runs.problems import bundled
+from tests.core.run.long_runs.problems import bundled
 
 PHASES = 12
 """Number of moments of a run at which a signal comes."""
@@ -131,14 +131,14 @@ def test_a_second_signal_is_raised_at_once() -> None:
 def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
     """In one frame a round trip, so that all but two of its calls of the solver end between frames."""
     pytest.importorskip("jax")
-    from tests.planar.patches import patch
+    from tests.extensions.planar.patches import patch
 
     slab = patch(nodes=32, length=2e4)
     monkeypatch = pytest.MonkeyPatch()
     with monkeypatch.context() as changed:
         changed.setattr("stickslip.run.run_loop.FIRST_BUDGET", 4)
         changed.setattr("stickslip.run.run_loop.next_budget", lambda *_: 4)
-        changed.setattr("stickslip.run.planar_run.NODES", 32)
+        changed.setattr("stickslip.extensions.planar.run.NODES", 32)
         assert not lost(lambda: ss.simulate(slab, 6.0, frames=1), heard)
 
 
@@ -146,10 +146,10 @@ def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
 def test_the_budget_of_slow_steps_falls_to_a_single_one() -> None:
     """Under a contact of so many nodes that a step of all of them takes a call."""
     pytest.importorskip("jax")
-    from stickslip.planar.solver import PlanarSolver
-    from stickslip.run.planar_run import PlanarRun
-    from stickslip.solution.planar import Frames
-    from tests.planar.patches import patch
+    from stickslip.extensions.planar.run import PlanarRun
+    from stickslip.extensions.planar.solution import Frames
+    from stickslip.extensions.planar.solver import PlanarSolver
+    from tests.extensions.planar.patches import patch
 
     assert run_loop.next_budget(8, 8.0) == run_loop.SMALLEST_BUDGET
     slab = patch(nodes=30_000, length=2e7)

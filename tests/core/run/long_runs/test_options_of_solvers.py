@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.run.simulate import SOLVERS, SolverKind
-from stickslip.solution.planar import PlanarSolution
 from tests.problems import SLAB
 
 WEAKENING = ss.friction.LinearSlipWeakening(0.6, 0.3, 2.0)

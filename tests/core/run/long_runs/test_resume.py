@@ -13,13 +13,13 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.engine.history.status import UNDER_WAY, Checkpoint
 from stickslip.engine.state.layout import Stop
-from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
-from stickslip.trajectory.status import UNDER_WAY, Checkpoint
-from tests.long_runs.problems import RUNS, continued, differences, differences_of_files, killed
+from stickslip.solution.files.netcdf import save_checkpoint
+from tests.core.run.long_runs.problems import RUNS, continued, differences, differences_of_files, killed
 
 
 def steps_of(problem: ss.Problem, duration: float) -> int:

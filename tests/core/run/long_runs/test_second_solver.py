@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import stickslip as ss
+from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED
 from stickslip.engine.state.layout import Stop
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.run.solver import NewEvents, Solver
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED
 
 PROBLEM = ss.Problem(ss.SpringBlock(2.0, 8.0, 10.0), ss.friction.Coulomb(0.6, 0.4), 0.05, initial_excess=0.0)
 STEP = 1e-4

@@ -24,10 +24,10 @@ from math import ceil, inf
 import numpy as np
 from scipy.special import j1
 
+from stickslip.extensions.planar.energy import Waves
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.observables.energy.planar import Waves
-from tests.reference.planar_methods import PlanarCase, PlanarSeries
+from tests.extensions.planar.planar_methods import PlanarCase, PlanarSeries
 
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(32)
 """Points and weights on the interval from -1 to 1, for one step of time."""

@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from stickslip.foundation.errors import InputError
 from stickslip.friction import HyperbolicRate
 from stickslip.friction.formula.differences import difference
-from stickslip.loading import LoadingHistory
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 Load = Callable[[float, float], float]

@@ -8,9 +8,9 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import stickslip as ss
-from stickslip.reference.block import CoulombBlock, LinearBlock
-from stickslip.reference.folds import HyperbolicFolds
-from stickslip.reference.slab import CoulombSlab, PulseTrain, StuckSlab, growth_rate
+from stickslip.run.reference.block import CoulombBlock, LinearBlock
+from stickslip.run.reference.folds import HyperbolicFolds
+from stickslip.run.reference.slab import CoulombSlab, PulseTrain, StuckSlab, growth_rate
 
 mpmath = pytest.importorskip("mpmath")
 

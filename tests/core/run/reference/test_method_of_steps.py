@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.reference.block import CoulombBlock, LinearBlock
-from stickslip.reference.slab import CoulombSlab, PulseTrain, StuckSlab
-from tests.reference.method_of_steps import method_of_steps
+from stickslip.run.reference.block import CoulombBlock, LinearBlock
+from stickslip.run.reference.slab import CoulombSlab, PulseTrain, StuckSlab
+from tests.core.run.reference.method_of_steps import method_of_steps
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 SOFT_BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14)

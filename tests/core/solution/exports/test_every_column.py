@@ -15,12 +15,12 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.bodies import SpringBlock
+from stickslip.extensions.sweeps.results.layout import table_of
 from stickslip.foundation.text_columns import read_file
-from stickslip.io.scec import write_scec
-from stickslip.observables.event_table import with_units
+from stickslip.problem.bodies import SpringBlock
+from stickslip.solution.files.scec import write_scec
+from stickslip.solution.observables.event_table import with_units
 from stickslip.solution.solution import Solution
-from stickslip.sweeps.results.layout import table_of
 
 SIZES = {"MPa": ("Pa", 1e6), "m s-1": ("m/s", 1.0), "rad s-1": ("rad/s", 1.0)}
 """Units of files that are spelled or sized unlike SI: their SI unit, and the factor to it. Others are SI already."""

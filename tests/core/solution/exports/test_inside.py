@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.io.sampling import sample
+from stickslip.solution.files.sampling import sample
 
 RUN = ss.simulate("fig6-slab")
 HEIGHT = 1e4

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.io.sampling import sample
+from stickslip.solution.files.sampling import sample
 
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=7000, normal_stress=1e8)  # a round trip of exactly 4 s
 LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.energetics import ENERGETICS_COLUMNS
-from stickslip.observables.energy.pulses import PULSE_COLUMNS
-from stickslip.trajectory.history import History
-from tests.observables.runs import LOSSY, RUNS, run_of
+from stickslip.engine.history.history import History
+from stickslip.solution.observables.energetics import ENERGETICS_COLUMNS
+from stickslip.solution.observables.energy.pulses import PULSE_COLUMNS
+from tests.core.solution.observables.runs import LOSSY, RUNS, run_of
 from tests.problems import IMPEDANCE, MODULUS, SLAB, THICKNESS, scaled_rate, slip_law_slab
 
 F = ss.friction

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.observables.runs import worst_imbalance
+from tests.core.solution.observables.runs import worst_imbalance
 from tests.problems import (
     IMPEDANCE,
     MODULUS,

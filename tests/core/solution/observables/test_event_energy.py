@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.observables.runs import LOSSY, F, run_of
+from tests.core.solution.observables.runs import LOSSY, F, run_of
 from tests.problems import IMPEDANCE, ROUND, SLAB, rate_law_slab
 
 

@@ -15,12 +15,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from stickslip.observables.field import Field
-from tests.engine import problems
-from tests.engine.drawn import few, ran
-from tests.engine.drawn import problems as random_problems
-from tests.observables.runs import slab_of
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.solution.observables.field import Field
+from tests.core.engine import problems
+from tests.core.engine.drawn import few, ran
+from tests.core.engine.drawn import problems as random_problems
+from tests.core.solution.observables.runs import slab_of
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-13

@@ -10,8 +10,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.field import Field
-from tests.observables.runs import slab_of
+from stickslip.solution.observables.field import Field
+from tests.core.solution.observables.runs import slab_of
 from tests.problems import (
     IMPEDANCE,
     MODULUS,

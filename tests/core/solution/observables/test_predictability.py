@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.observables.predictability import predictability, predictability_of_events
+from stickslip.solution.observables.predictability import predictability, predictability_of_events
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 TRIP = SLAB.two_way_time

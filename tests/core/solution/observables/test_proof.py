@@ -10,9 +10,9 @@ import pytest
 from benchmarks.wrong_series import BLOCK, SLAB, bent, missed, names_of, worst_of, wrong_engine
 
 import stickslip as ss
-from stickslip.observables import proof
-from stickslip.observables.proof import bounds_of_pieces, proven
-from tests.engine.certified_runs import RUNS, coefficient, duration, shortfall
+from stickslip.solution.observables import proof
+from stickslip.solution.observables.proof import bounds_of_pieces, proven
+from tests.core.engine.certified_runs import RUNS, coefficient, duration, shortfall
 
 F = ss.friction
 LAW = F.FromExpression("0.55 + 0.03*sin(3*u)*exp(-u*u) + 0.01/(1 + u*u)")

@@ -9,11 +9,11 @@ import pytest
 from benchmarks.wrong_series import BLOCK, SLAB
 
 import stickslip as ss
-from stickslip.engine_input import forcing, prepare
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from stickslip.observables import proof
-from stickslip.observables.given_on_discs import NormalLoads
-from stickslip.observables.proof import proven
+from stickslip.engine.input import forcing, prepare
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.solution.observables import proof
+from stickslip.solution.observables.given_on_discs import NormalLoads
+from stickslip.solution.observables.proof import proven
 
 LAW = ss.friction.FromExpression("0.55 + 0.03*sin(3*u)*exp(-u*u) + 0.01/(1 + u*u)")
 LOADS = [Sinusoidal(1e8, 1e6, 3.0), PiecewiseLinear([0.0, 1.0, 2.0], [1e8, 1.02e8, 0.99e8]), Steps([0.0, 1.5], [1e8, 1.01e8])]

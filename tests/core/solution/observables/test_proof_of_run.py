@@ -15,13 +15,13 @@ from benchmarks.wrong_numbers import Place, measures, places_in, wrong_setup
 from benchmarks.wrong_series import bent
 
 import stickslip as ss
-from stickslip.engine_input import prepare
+from stickslip.engine.input import prepare
 from stickslip.foundation.errors import InputError
-from stickslip.observables.proof_of_load import load_compared
-from stickslip.observables.proof_of_rest import exceeded_at_rest
-from stickslip.observables.proof_of_run import ProofOfRun, proof_of_run
-from stickslip.observables.proof_of_slip import slip_joined
-from stickslip.observables.proof_of_states import states_proven
+from stickslip.solution.observables.proof_of_load import load_compared
+from stickslip.solution.observables.proof_of_rest import exceeded_at_rest
+from stickslip.solution.observables.proof_of_run import ProofOfRun, proof_of_run
+from stickslip.solution.observables.proof_of_slip import slip_joined
+from stickslip.solution.observables.proof_of_states import states_proven
 
 QUICK = ("block, normal load steps", "ageing, normal load swings", "driver changes", "shaken block", "rotating block", "machine")
 CASES = cases()

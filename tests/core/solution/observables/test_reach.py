@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.engine.history.reach import Reach, reach_of
 from stickslip.run.catalogue import catalogue_of
 from stickslip.run.options import RunOptions
 from stickslip.run.resume import PausedCatalogue
-from stickslip.trajectory.reach import Reach, reach_of
 
 F = ss.friction
 SWINGING = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.Coulomb(0.11, 0.1), initial_load=6.0)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.solution.observables.rule_influence import RuleInfluence
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 FIG6 = ss.load_scenario("fig6-slab").problem

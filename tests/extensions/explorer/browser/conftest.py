@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.explorer.browser.harness import NO_BROWSER, PATIENCE, Served, Watched, launch, serve
+from tests.extensions.explorer.browser.harness import NO_BROWSER, PATIENCE, Served, Watched, launch, serve
 
 
 @pytest.fixture(scope="package")

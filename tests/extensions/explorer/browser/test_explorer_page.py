@@ -12,9 +12,9 @@ import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
-from stickslip.explorer.model.tour import TOUR
-from stickslip.scenarios import read_scenario
-from tests.explorer.browser.harness import PATIENCE, Served, Watched
+from stickslip.extensions.explorer.model.tour import TOUR
+from stickslip.problem.scenarios import read_scenario
+from tests.extensions.explorer.browser.harness import PATIENCE, Served, Watched
 from tests.limits import examples
 
 PANELS = {"law", "contact", "shape", "slip", "rate", "traction", "field", "energy"}

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from tests.explorer.browser.harness import Watched, serve
+from tests.extensions.explorer.browser.harness import Watched, serve
 
 SMALL = ("planar-patch", "--set", "contact.nodes=32", "--set", "run.duration=2 s")
 

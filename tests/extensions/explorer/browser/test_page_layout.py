@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.explorer.browser.harness import PATIENCE, Served, Watched
+from tests.extensions.explorer.browser.harness import PATIENCE, Served, Watched
 
 SIZES = ((1024, 768), (1280, 800))
 TOOLS = """(names) => names.map((name) => {

@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import expect
 
 import stickslip as ss
-from tests.explorer.browser.harness import Watched, serve
+from tests.extensions.explorer.browser.harness import Watched, serve
 
 
 @pytest.mark.slow

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from stickslip.explorer.model.tour import TOUR
-from stickslip.explorer.static.export import write_tour
-from tests.explorer.browser.harness import Watched
+from stickslip.extensions.explorer.model.tour import TOUR
+from stickslip.extensions.explorer.static.export import write_tour
+from tests.extensions.explorer.browser.harness import Watched
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import stickslip as ss
-from stickslip.batch.vectorised_problem import Values, member
-from stickslip.scenarios.scenario import Scenario
+from stickslip.extensions.sweeps.batch.vectorised_problem import Values, member
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
 
 MEMBERS = 8

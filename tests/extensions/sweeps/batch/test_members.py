@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stickslip.batch import QUANTITIES, long_member, run, run_members
-from stickslip.batch.kernels.workspace import Workspace, new_workspace
+from stickslip.engine.history.status import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED, STATUSES
+from stickslip.engine.lanes.workspace import Workspace, new_workspace
 from stickslip.engine.state.layout import Stop
+from stickslip.extensions.sweeps.batch import QUANTITIES, long_member, run, run_members
 from stickslip.foundation.errors import InputError
+from stickslip.problem.scenarios.scenario import load_scenario
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.scenario import load_scenario
-from stickslip.trajectory.status import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED, STATUSES
 
 from .cases import CASES, SLAB, Case, by_solution, one
 

@@ -10,21 +10,21 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.batch import why_not
-from stickslip.batch.kernels.workspace import Setups
-from stickslip.batch.setups import set_up
-from stickslip.batch.vectorised_problem import groups
 from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.contact.uniqueness import regime_of
+from stickslip.engine.history.slip_events import default_event_rate
+from stickslip.engine.input.limits import split_time, wait_for_creep
+from stickslip.engine.input.prepare import prepare
+from stickslip.engine.lanes.workspace import Setups
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine.state.workspace import counts_in, state_in
-from stickslip.engine_input.limits import split_time, wait_for_creep
-from stickslip.engine_input.prepare import prepare
+from stickslip.extensions.sweeps.batch import why_not
+from stickslip.extensions.sweeps.batch.setups import set_up
+from stickslip.extensions.sweeps.batch.vectorised_problem import groups
 from stickslip.friction import LAWS
 from stickslip.friction.formula.bounds import bends_one_way
-from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.problem.scenarios.scenario import Scenario
 
 from .cases import CASES, PULL, SLAB, Case, one
 
@@ -32,8 +32,8 @@ CODE = """
 from dataclasses import replace
 import numpy as np
 from pathlib import Path
-from stickslip.batch import run_members
-from tests.batch.cases import CASES
+from stickslip.extensions.sweeps.batch import run_members
+from tests.extensions.sweeps.batch.cases import CASES
 
 def resident():
     return int(Path("/proc/self/statm").read_text().split()[1]) * 4096

@@ -9,15 +9,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.explorer.model.words import short
+from stickslip.extensions.explorer.model.words import short
+from stickslip.extensions.inference.fit.model import OF_NO_ZERO, measured
+from stickslip.extensions.inference.fit.setup import SENSORS
+from stickslip.extensions.inference.record.record import SHEAR, SHEAR_IN, Record, is_of
+from stickslip.extensions.inference.record.resample import resampled
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.inference.fit.model import OF_NO_ZERO, measured
-from stickslip.inference.fit.setup import SENSORS
-from stickslip.inference.record.record import SHEAR, SHEAR_IN, Record, is_of
-from stickslip.inference.record.resample import resampled
 from stickslip.problem.problem import Problem
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
 
 CurveName = Literal["law", "steady state", "law at the state of the start"]

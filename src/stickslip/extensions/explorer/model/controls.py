@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any, Literal
 
-from stickslip.bodies import BODIES
-from stickslip.explorer.model.ranges import SliderRange, range_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.ranges import SliderRange, range_of
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.planar.contact import Contact
+from stickslip.extensions.planar.run import FRAMES
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
@@ -17,15 +18,14 @@ from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.loading import HISTORIES
+from stickslip.problem.bodies import BODIES
 from stickslip.problem.fields import HISTORIES_ONLY, STEADY
+from stickslip.problem.loading import HISTORIES
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.entries import describe, typed_number
+from stickslip.problem.scenarios.parameter_paths import WHOLE, YES_OR_NO, ParameterPath, parameter_paths
+from stickslip.problem.scenarios.schema import CONTACT, ONE_WAY, check_events, entries_in, kind_of
 from stickslip.problem.selection_rule import SELECTION_RULES, names
-from stickslip.run.planar_run import FRAMES
-from stickslip.scenarios import library
-from stickslip.scenarios.contact import Contact
-from stickslip.scenarios.entries import describe, typed_number
-from stickslip.scenarios.parameter_paths import WHOLE, YES_OR_NO, ParameterPath, parameter_paths
-from stickslip.scenarios.schema import CONTACT, ONE_WAY, check_events, entries_in, kind_of
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
 

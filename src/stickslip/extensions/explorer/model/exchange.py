@@ -9,22 +9,22 @@ from copy import deepcopy
 from dataclasses import fields, replace
 from typing import Any, cast
 
-from stickslip.bodies import BODIES, BodyWithWaves
-from stickslip.explorer.model.controls import CONSTANT, bodies_beside
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import slab_of_figure
+from stickslip.extensions.explorer.model.controls import CONSTANT, bodies_beside
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import slab_of_figure
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.loading import HISTORIES
+from stickslip.problem.bodies import BODIES, BodyWithWaves
 from stickslip.problem.fields import STEADY
+from stickslip.problem.loading import HISTORIES
 from stickslip.problem.problem import written_out
-from stickslip.scenarios import library
-from stickslip.scenarios.entries import Source, to_table
-from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
-from stickslip.scenarios.templates import example_of
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.entries import Source, to_table
+from stickslip.problem.scenarios.schema import KINDS, entries_in, kind_of, read_part
+from stickslip.run.templates import example_of
 
 RIGID_DRIVER = {
     "driver_impedance": math.inf,

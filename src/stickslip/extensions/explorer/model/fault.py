@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
-from stickslip.explorer.model.words import short
+from stickslip.extensions.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
+from stickslip.extensions.explorer.model.words import short
+from stickslip.extensions.planar.run import FRAMES, memory_of, simulate_planar
+from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.foundation.errors import InputError
 from stickslip.problem.given_units import in_given_units
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.options import options_of
-from stickslip.run.planar_run import FRAMES, memory_of, simulate_planar
-from stickslip.scenarios.scenario import Scenario
-from stickslip.solution.planar import PlanarSolution
 
 MOST_MEMORY = 1e9
 """Memory (bytes) that the run of a page may take: several pages are open at once."""

@@ -7,23 +7,23 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import OfLayers
 from stickslip.contact.uniqueness import Uniqueness
-from stickslip.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
-from stickslip.explorer.model.layered import is_short
-from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
+from stickslip.engine.history.history import History, Positions
+from stickslip.extensions.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
+from stickslip.extensions.explorer.model.layered import is_short
+from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import si_unit
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
-from stickslip.observables.energy.balance import energies, heat
-from stickslip.observables.energy.ground import shaken, speed
-from stickslip.observables.quadrature import FULL
+from stickslip.problem.bodies import OfLayers
 from stickslip.problem.problem import Problem
 from stickslip.solution.interval import fronts_of
+from stickslip.solution.observables.energy.balance import energies, heat
+from stickslip.solution.observables.energy.ground import shaken, speed
+from stickslip.solution.observables.quadrature import FULL
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
-from stickslip.trajectory.history import History, Positions
 
 POINTS = 600
 """Number of points of the curve."""

@@ -1,6 +1,6 @@
 """The two waves in a slab, sampled finely in time: from them the pictures of slab and energy are read off by interpolation.
 
-The exact field and energies of `stickslip.observables` take a millisecond for each time. A picture needs hundreds of times within
+The exact field and energies of `stickslip.solution.observables` take a millisecond for each time. A picture needs hundreds of times within
 some milliseconds, and no more digits than a screen shows.
 
 Work and memory are bounded by what a screen shows, and not by the number of round trips. Over a time of so many that they cannot
@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.field import WaveInterval, check_known, many_places, slab_of
-from stickslip.observables.waves import OfWave, Radiation, Sampled, Waves
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.interval import choose_interval
+from stickslip.solution.observables.field import WaveInterval, check_known, many_places, slab_of
+from stickslip.solution.observables.waves import OfWave, Radiation, Sampled, Waves
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 

@@ -22,11 +22,11 @@ from typing import Any, Self
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, gathered, nearest
-from stickslip.scenarios import library
-from stickslip.scenarios.entries import Source, typed_number
-from stickslip.scenarios.parameter_paths import place_of
-from stickslip.scenarios.scenario import Scenario, scenario_of
-from stickslip.scenarios.schema import CONTACT, TABLES, kind_of
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.entries import Source, typed_number
+from stickslip.problem.scenarios.parameter_paths import place_of
+from stickslip.problem.scenarios.scenario import Scenario, scenario_of
+from stickslip.problem.scenarios.schema import CONTACT, TABLES, kind_of
 
 DEEPEST = 5
 """Largest number of parts in a path."""

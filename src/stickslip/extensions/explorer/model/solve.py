@@ -8,22 +8,22 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from stickslip.bodies import ElasticSlab, OfLayers
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.explorer.model.answer import Answer, Backdrop, BodyCurves, StateCurve
-from stickslip.explorer.model.findings import Findings, key_numbers, marks_of, sentence
-from stickslip.explorer.model.layered import picture_of_layers
-from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
-from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
+from stickslip.extensions.explorer.model.answer import Answer, Backdrop, BodyCurves, StateCurve
+from stickslip.extensions.explorer.model.findings import Findings, key_numbers, marks_of, sentence
+from stickslip.extensions.explorer.model.layered import picture_of_layers
+from stickslip.extensions.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
+from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
+from stickslip.extensions.studies.analogy import block_for
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem.bodies import ElasticSlab, OfLayers
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
+from stickslip.problem.scenarios.scenario import Scenario, load_scenario
+from stickslip.run.check.examine import warnings_of
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.examine import warnings_of
-from stickslip.scenarios.scenario import Scenario, load_scenario
 from stickslip.solution.solution import Solution
-from stickslip.studies.analogy import block_for
 
 Told = Callable[[str], None]
 """A function that is told in one line how far a run is, some ten times a second. It raises `Stopped` to end the run there."""

@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import Stopped
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import Stopped
+from stickslip.extensions.sweeps.design.quantities import QUANTITIES, quantities_named
+from stickslip.extensions.sweeps.execution.chunk import Work, run_chunk
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.parameters import PRESSING
-from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter, parameter_paths, put_into, values_in
-from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.sweeps.execution.chunk import Work, run_chunk
+from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter, parameter_paths, put_into, values_in
+from stickslip.problem.scenarios.scenario import Scenario
 
 Told = Callable[[str], None]
 

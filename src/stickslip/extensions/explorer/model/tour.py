@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.strip import strip_range
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.strip import strip_range
 from stickslip.foundation.axis import Axis
 
 Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", "energy", "profile_rate", "profile_slip"]

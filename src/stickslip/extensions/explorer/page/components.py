@@ -81,7 +81,7 @@ def style_sheet(root: str = ":root") -> str:
 @cache
 def asset(name: str) -> str:
     """Return the text of a file in the folder `assets`."""
-    return (files("stickslip.explorer.page") / "assets" / name).read_text(encoding="utf-8")
+    return (files("stickslip.extensions.explorer.page") / "assets" / name).read_text(encoding="utf-8")
 
 
 def player_script() -> str:

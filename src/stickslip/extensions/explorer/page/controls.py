@@ -8,17 +8,17 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any, NamedTuple
 
-from stickslip.explorer.model.controls import Control, ControlGroup, controls_of
-from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.page.components import ControlRows, finite
-from stickslip.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.model.controls import Control, ControlGroup, controls_of
+from stickslip.extensions.explorer.model.exchange import with_kind
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.page.components import ControlRows, finite
+from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.figures.names import symbol
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import GREEK, for_readers
 from stickslip.friction import FromExpression
 from stickslip.friction.formula.text import RESERVED
-from stickslip.scenarios import library
+from stickslip.problem.scenarios import library
 
 FIRST = "fig6-slab"
 """The first scenario of the explorer."""

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any, Literal, Protocol, TypeVar
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import Told
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.fault import FaultAnswer
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.solve import Told
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError, gathered
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.scenario import Scenario
 
 Shown = TypeVar("Shown", Answer, FaultAnswer)
 News = Literal["setting", "answer", "fault", "progress", "pin", "cursor", "tour", "strip"]

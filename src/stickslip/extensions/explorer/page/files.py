@@ -13,18 +13,18 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import stickslip
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.difference import toml_of
-from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.difference import toml_of
+from stickslip.extensions.explorer.model.exchange import with_kind
+from stickslip.extensions.explorer.model.fault import FaultAnswer
+from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.foundation.names import si_unit
 from stickslip.friction.custom.points import table_in_text
-from stickslip.scenarios import library
-from stickslip.scenarios.scenario import read_scenario
-from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
+from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios.scenario import read_scenario
+from stickslip.problem.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
 TABLES = (".csv", ".txt", ".tsv", ".dat")
 """Suffixes of files that hold points."""
@@ -207,7 +207,8 @@ def _written(suffix: str, write: Callable[[Path], object]) -> bytes:
 
 
 def _figure(answer: Any, kind: str) -> bytes:
-    from stickslip.figures.runs import planar, run
+    from stickslip.extensions.planar import figure as planar
+    from stickslip.figures.runs import run
     from stickslip.figures.style import image
 
     with _DRAWING:

@@ -7,15 +7,15 @@ from typing import Any, NamedTuple
 
 import panel as pn
 
-from stickslip.explorer.page.components import Markup, PlayerBar, asset, style_sheet
-from stickslip.explorer.page.controls import Controls
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.panels import fault, plots, view_of
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.strip import StripView
-from stickslip.explorer.page.tools import Tools
-from stickslip.explorer.page.view import View, headings_of, view_bytes
-from stickslip.explorer.page.words import PinnedRun, Tour, Words
+from stickslip.extensions.explorer.page.components import Markup, PlayerBar, asset, style_sheet
+from stickslip.extensions.explorer.page.controls import Controls
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.panels import fault, plots, view_of
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.strip import StripView
+from stickslip.extensions.explorer.page.tools import Tools
+from stickslip.extensions.explorer.page.view import View, headings_of, view_bytes
+from stickslip.extensions.explorer.page.words import PinnedRun, Tour, Words
 
 TITLES = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",

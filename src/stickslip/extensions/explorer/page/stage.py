@@ -7,8 +7,8 @@ from typing import Any
 from bokeh.models import ColumnDataSource, CustomJSTickFormatter, LinearAxis, LinearColorMapper, Range1d, Span
 from bokeh.plotting import figure
 
-from stickslip.explorer.page.components import FONT, paint, palettes
-from stickslip.explorer.page.view import View
+from stickslip.extensions.explorer.page.components import FONT, paint, palettes
+from stickslip.extensions.explorer.page.view import View
 
 LEFT, NARROW, RIGHT = 62, 46, 14
 """Room (px) beside the frame of a plot, with and without a text along the vertical axis: frames that share an axis are aligned."""

@@ -10,9 +10,9 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
-from stickslip.explorer.model.controls import controls_of
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.strip import (
+from stickslip.extensions.explorer.model.controls import controls_of
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.strip import (
     SHOWN,
     Strip,
     choices,
@@ -24,16 +24,16 @@ from stickslip.explorer.model.strip import (
     strip_text,
     usual_range,
 )
-from stickslip.explorer.page.components import Markup, asset, finite, paint
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import LegendKey, View, axis_label, heading, limits
+from stickslip.extensions.explorer.page.components import Markup, asset, finite, paint
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.view import LegendKey, View, axis_label, heading, limits
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import for_readers, readable_unit
 from stickslip.foundation.quantities import Quantity
-from stickslip.scenarios.entries import typed_number
-from stickslip.scenarios.parameter_paths import ParameterPath
+from stickslip.problem.scenarios.entries import typed_number
+from stickslip.problem.scenarios.parameter_paths import ParameterPath
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
 LARGEST_POWER = 300.0

@@ -11,12 +11,12 @@ from urllib.parse import parse_qsl, quote, urlencode
 import param
 from panel.custom import JSComponent
 
-from stickslip.explorer.model.setting import Setting, parameters_of, setting_of
-from stickslip.explorer.model.strip import strip_range
-from stickslip.explorer.model.tour import tour_of
-from stickslip.explorer.page.components import asset
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.files import content_of, export, formats_of, opened
+from stickslip.extensions.explorer.model.setting import Setting, parameters_of, setting_of
+from stickslip.extensions.explorer.model.strip import strip_range
+from stickslip.extensions.explorer.model.tour import tour_of
+from stickslip.extensions.explorer.page.components import asset
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.files import content_of, export, formats_of, opened
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 

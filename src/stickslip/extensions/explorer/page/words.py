@@ -10,12 +10,12 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.difference import difference
-from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.model.tour import TOUR, TourStep, tour_of
-from stickslip.explorer.page.components import Markup, asset
-from stickslip.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.difference import difference
+from stickslip.extensions.explorer.model.fault import FaultAnswer
+from stickslip.extensions.explorer.model.tour import TOUR, TourStep, tour_of
+from stickslip.extensions.explorer.page.components import Markup, asset
+from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.problem.given_units import in_given_units
 
 

@@ -11,7 +11,7 @@ from functools import partial
 from traceback import walk_tb
 from typing import Any, Literal
 
-from stickslip.explorer.model.solve import Stopped, Told
+from stickslip.extensions.explorer.model.solve import Stopped, Told
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 
@@ -217,9 +217,9 @@ class Warming:
     def _warm(self) -> None:
         try:
             from stickslip.engine.compile.cache import announce_by, tell
-            from stickslip.explorer.model.strip import strip_of
+            from stickslip.extensions.explorer.model.strip import strip_of
+            from stickslip.problem.scenarios.scenario import load_scenario
             from stickslip.run.simulate import simulate
-            from stickslip.scenarios.scenario import load_scenario
 
             announce_by(lambda text: self._say(f"{text[0].upper()}{text[1:]}."))
             try:

@@ -27,10 +27,10 @@ from panel.io.state import set_curdoc
 from tornado.ioloop import IOLoop, PeriodicCallback
 from typing_extensions import override
 
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.tools import begin
-from stickslip.explorer.server.access import LOOPBACK, Access
-from stickslip.explorer.server.desk import OWN, Call, ThreadDesk, Warming, is_ours, unforeseen
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.page.tools import begin
+from stickslip.extensions.explorer.server.access import LOOPBACK, Access
+from stickslip.extensions.explorer.server.desk import OWN, Call, ThreadDesk, Warming, is_ours, unforeseen
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import clean
 

@@ -18,13 +18,13 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.explorer.model.answer import Backdrop
-from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.server.desk import ThreadDesk
-from stickslip.explorer.server.serve import Endpoint, ExplorerServer
+from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.page.explorer import Explorer
+from stickslip.extensions.explorer.server.desk import ThreadDesk
+from stickslip.extensions.explorer.server.serve import Endpoint, ExplorerServer
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios.scenario import Scenario
+from stickslip.problem.scenarios.scenario import Scenario
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
@@ -52,7 +52,7 @@ def start(
 
     Raises InputError if the port is taken.
     """
-    from stickslip.explorer.page.page import build
+    from stickslip.extensions.explorer.page.page import build
 
     make = partial(explorer_of, setting, behind=behind)
     server = ExplorerServer(endpoint, make, build, warms=not setting.is_fault)
@@ -69,10 +69,10 @@ def start(
 def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk, behind: Backdrop | None = None) -> Explorer:
     """Return the explorer of a new page."""
     if setting.is_fault:
-        from stickslip.explorer.model.fault import solve_fault
+        from stickslip.extensions.explorer.model.fault import solve_fault
 
         return Explorer(setting, desk, solve_fault, files)
-    from stickslip.explorer.model.solve import solve  # imports the compiler, which takes a second
+    from stickslip.extensions.explorer.model.solve import solve  # imports the compiler, which takes a second
 
     return Explorer(setting, desk, partial(solve, behind=behind), files)
 
@@ -105,7 +105,7 @@ def shown_in_notebook(scenario: Scenario, behind: Backdrop | None = None) -> Any
 
     Raises InputError where there is no notebook.
     """
-    from stickslip.explorer.page.page import build_for_notebook
+    from stickslip.extensions.explorer.page.page import build_for_notebook
 
     try:
         deliver = DeliveryToCell(asyncio.get_running_loop().call_soon_threadsafe)

@@ -16,20 +16,20 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import setting_at, strip_of
-from stickslip.explorer.model.tour import TOUR, TourStep
-from stickslip.explorer.page.components import asset, look, player_script, style_sheet
-from stickslip.explorer.page.page import TITLES
-from stickslip.explorer.page.panels import plots, view_of
-from stickslip.explorer.page.panels.loading import TEXTS as GIVEN
-from stickslip.explorer.page.panels.motion import FURTHER
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.strip import place_of, view_of_strip
-from stickslip.explorer.page.strip import plots as strip_plots
-from stickslip.explorer.page.view import View, headings_of
-from stickslip.explorer.page.words import told_steps, words_of
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.solve import solve
+from stickslip.extensions.explorer.model.strip import setting_at, strip_of
+from stickslip.extensions.explorer.model.tour import TOUR, TourStep
+from stickslip.extensions.explorer.page.components import asset, look, player_script, style_sheet
+from stickslip.extensions.explorer.page.page import TITLES
+from stickslip.extensions.explorer.page.panels import plots, view_of
+from stickslip.extensions.explorer.page.panels.loading import TEXTS as GIVEN
+from stickslip.extensions.explorer.page.panels.motion import FURTHER
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.strip import place_of, view_of_strip
+from stickslip.extensions.explorer.page.strip import plots as strip_plots
+from stickslip.extensions.explorer.page.view import View, headings_of
+from stickslip.extensions.explorer.page.words import told_steps, words_of
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import readable_unit
@@ -223,7 +223,7 @@ def index_page() -> str:
 
 
 def _asset(name: str) -> str:
-    return (files("stickslip.explorer.static") / "assets" / name).read_text(encoding="utf-8")
+    return (files("stickslip.extensions.explorer.static") / "assets" / name).read_text(encoding="utf-8")
 
 
 def _module(text: str, *names: str) -> str:

@@ -9,19 +9,19 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.certainty.bends import rough_words
+from stickslip.extensions.inference.certainty.directions import IDLE, better_known, null_directions, told, without
+from stickslip.extensions.inference.fit.estimate import Estimate
+from stickslip.extensions.inference.fit.free import Free
+from stickslip.extensions.inference.fit.memory import WHITE, Unevenness, spread_by, spreads_of, unevenness
+from stickslip.extensions.inference.fit.model import FAILED, Model
+from stickslip.extensions.inference.fit.pieces import pieces_of
+from stickslip.extensions.inference.fit.progress import Tell
+from stickslip.extensions.inference.record.noise import cost_of, weights
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import UNSEEN as DETERMINED
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.show import brief
-from stickslip.inference.certainty.bends import rough_words
-from stickslip.inference.certainty.directions import IDLE, better_known, null_directions, told, without
-from stickslip.inference.fit.estimate import Estimate
-from stickslip.inference.fit.free import Free
-from stickslip.inference.fit.memory import WHITE, Unevenness, spread_by, spreads_of, unevenness
-from stickslip.inference.fit.model import FAILED, Model
-from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.progress import Tell
-from stickslip.inference.record.noise import cost_of, weights
 
 EXACT = 1e-10
 """Relative tolerance of the runs behind the derivatives at the best fit."""

@@ -9,8 +9,8 @@ from itertools import combinations, product
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.fit.model import Model
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.model import Model
 
 FAINT = 0.02
 """A direction with less than this share of the largest effect is tried in runs, to see whether it has any effect."""

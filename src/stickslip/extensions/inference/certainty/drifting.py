@@ -8,19 +8,19 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.extensions.inference.certainty.certainty import Certainty
+from stickslip.extensions.inference.fit.estimate import Estimate
+from stickslip.extensions.inference.fit.free import DRIFT, TREND, Free, read_free, with_scale
+from stickslip.extensions.inference.fit.looks import looks_of
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.fit.pieces import pieces_of
+from stickslip.extensions.inference.fit.plateaus import PlateauDrift
+from stickslip.extensions.inference.fit.setup import scales_of
+from stickslip.extensions.inference.fit.starting import shown_drift, slides
+from stickslip.extensions.inference.record.record import SHEAR
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.inference.certainty.certainty import Certainty
-from stickslip.inference.fit.estimate import Estimate
-from stickslip.inference.fit.free import DRIFT, TREND, Free, read_free, with_scale
-from stickslip.inference.fit.looks import looks_of
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part
-from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.plateaus import PlateauDrift
-from stickslip.inference.fit.setup import scales_of
-from stickslip.inference.fit.starting import shown_drift, slides
-from stickslip.inference.record.record import SHEAR
 from stickslip.problem.problem import Problem
 
 TRENDS = ("auto", "none")

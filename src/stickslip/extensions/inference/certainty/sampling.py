@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.engine.history.status import engine
+from stickslip.extensions.inference.certainty.certainty import Certainty
+from stickslip.extensions.inference.certainty.kept_walk import NOT_KEPT, KeptWalk
+from stickslip.extensions.inference.fit.estimate import Estimate
+from stickslip.extensions.inference.fit.model import FAILED
+from stickslip.extensions.inference.fit.progress import Tell
+from stickslip.extensions.inference.record.noise import cost_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.inference.certainty.certainty import Certainty
-from stickslip.inference.certainty.kept_walk import NOT_KEPT, KeptWalk
-from stickslip.inference.fit.estimate import Estimate
-from stickslip.inference.fit.model import FAILED
-from stickslip.inference.fit.progress import Tell
-from stickslip.inference.record.noise import cost_of
-from stickslip.trajectory.status import engine
 
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.asides import JUMP
+from stickslip.extensions.inference.fit.free import SERVO
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.part import Part
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.inference.fit.asides import JUMP
-from stickslip.inference.fit.free import SERVO
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part
 
 WITHIN = 1.5
 """A step happens between two samples if its servo takes less than this many times the time between them."""

@@ -75,7 +75,7 @@ def fit(
     from stickslip import friction
     from stickslip.cli.overrides import typed_columns, typed_values
     from stickslip.friction import Points
-    from stickslip.scenarios.text_of_files import is_scenario_name
+    from stickslip.problem.scenarios.text_of_files import is_scenario_name
 
     if is_scenario_name(data):
         cure = "`stickslip infer SCENARIO DATA --free NAMES` follows a record with runs of a scenario"
@@ -89,7 +89,7 @@ def fit(
     points = Points.read(data, columns=typed_columns(column, "fit: --column"))
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
-        from stickslip.scenarios.templates import with_law
+        from stickslip.run.templates import with_law
 
         before = friction.Coulomb(0.6, 0.5)
         points.of_contact(before)
@@ -104,7 +104,7 @@ def fit(
     _show_result(result)
     text = None if out is None else _scenario(result, body, data, values)
     if text is not None:
-        from stickslip.scenarios.scenario import read_scenario
+        from stickslip.problem.scenarios.scenario import read_scenario
 
         _show_uniqueness(result, read_scenario(text, str(out)).problem)
     announce(
@@ -143,7 +143,7 @@ def _strength(text: str) -> Any:
 
 def _scenario(result: Fit | Smooth, body: str, data: str, values: dict[str, Any]) -> str:
     """Return the text of a scenario with the law of a result, and with the result as comments at its head."""
-    from stickslip.scenarios.templates import with_law
+    from stickslip.run.templates import with_law
 
     rows = [f"  {name} = {value} {meaning}" for name, value, meaning in result.rows]
     return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes], values)
@@ -156,7 +156,7 @@ def _write_text(path: Path, text: str) -> Path:
 
 
 def _draw(result: Fit | Smooth, **place: Any) -> object:
-    from stickslip.figures.contact import measured
+    from stickslip.extensions.inference.figures import measured
 
     return measured.draw(measured.data(result), **place)
 

@@ -15,8 +15,8 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_folde
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.inference.inference import Inference
-    from stickslip.scenarios.scenario import Scenario
+    from stickslip.extensions.inference.inference import Inference
+    from stickslip.problem.scenarios.scenario import Scenario
 
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
@@ -116,8 +116,8 @@ def infer(
     Exit code: 0 done, 1 the record determines none of the numbers,
     2 unusable input, 124 the time is over, 130 interrupted.
     """
-    from stickslip.cli.output.studies import show_inference, show_ranking
     from stickslip.cli.overrides import load
+    from stickslip.extensions.studies.summary import show_inference, show_ranking
 
     targets = Target("--out", out, (".nc", ".csv")), Target("--scenario-out", scenario_out, (".toml",))
     check_targets(*targets, Target("--figure", figure))
@@ -168,15 +168,15 @@ def infer(
 def _records(data: list[str], column: list[str] | None) -> list[Any]:
     """Return the records as they were typed, or read, if the user says what their columns are. Raises InputError."""
     from stickslip.cli.overrides import typed_columns
-    from stickslip.inference.record.record import Record
+    from stickslip.extensions.inference.record.record import Record
 
     columns = typed_columns(column, "infer: --column")
     return [Record.read(one, columns=columns) for one in data] if columns else list(data)
 
 
 def _inferred(scenario: Any, data: list[Any], free: str, options: dict[str, Any]) -> Inference:
-    from stickslip.cli.output.studies import as_options
-    from stickslip.inference.infer import infer as study
+    from stickslip.extensions.inference.infer import infer as study
+    from stickslip.extensions.studies.summary import as_options
     from stickslip.run.progress import progress_line
 
     with progress_line(f"{scenario.name}:") as report:
@@ -203,8 +203,8 @@ def _seldom(name: str, report: Callable[[str], object]) -> Callable[[str], objec
 
 def _free_of(name: str, scenario: Scenario, free: str) -> str:
     """Return those of the free numbers that another scenario has. Raises InputError if it has none."""
+    from stickslip.extensions.inference.fit.free import known_numbers
     from stickslip.foundation.errors import full_name
-    from stickslip.inference.fit.free import known_numbers
 
     known, found = known_numbers(scenario.problem, {}), []
     for one in free.split(","):
@@ -219,7 +219,7 @@ def _free_of(name: str, scenario: Scenario, free: str) -> str:
 
 def _typed(text: str | None) -> Any:
     """Return what was typed as a number if it is one."""
-    from stickslip.scenarios.entries import typed_number
+    from stickslip.problem.scenarios.entries import typed_number
 
     return None if text is None else typed_number(text)
 
@@ -234,7 +234,7 @@ def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
     """Return limits by name. Raises InputError."""
     from stickslip.foundation.arguments import shown
     from stickslip.foundation.axis import TypedRange
-    from stickslip.scenarios.entries import typed_number
+    from stickslip.problem.scenarios.entries import typed_number
 
     if not texts:
         return None

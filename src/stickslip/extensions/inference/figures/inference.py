@@ -37,7 +37,7 @@ from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_un
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
-    from stickslip.inference.inference import Inference
+    from stickslip.extensions.inference.inference import Inference
 
 MANY, FEW = 200, 50
 """Number of points from which they are drawn small, and of events up to which they are drawn large."""

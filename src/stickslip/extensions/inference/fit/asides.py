@@ -9,13 +9,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.free import SERVO, Free, Prior
+from stickslip.extensions.inference.fit.part import Part, approached
+from stickslip.extensions.inference.record.corners import EVENLY, corners_of, jumps_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.inference.fit.free import SERVO, Free, Prior
-from stickslip.inference.fit.part import Part, approached
-from stickslip.inference.record.corners import EVENLY, corners_of, jumps_of
-from stickslip.loading import PiecewiseLinear, Steps
+from stickslip.problem.loading import PiecewiseLinear, Steps
 
 STEP, JUMP, RAMP = "record.step_", "record.jump_", "record.ramp"
 """Names: by how much a step of the drive, or a jump of the normal load, comes later than it seems, and how long jumps take (s)."""

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.show import brief
-from stickslip.inference.record.record import Record
 from stickslip.problem.problem import Problem
 
 LONG, LEVEL = 2.0, 0.1

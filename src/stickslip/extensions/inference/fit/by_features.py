@@ -12,13 +12,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.fit.memory import ResidualBlock
+from stickslip.extensions.inference.fit.model import FAILED, JUMPING, LARGEST, Model, breaks_of, is_at_driver, measured
+from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.record.features import FEATURES, LEVELS, Samples, features_in
+from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.inference.fit.memory import ResidualBlock
-from stickslip.inference.fit.model import FAILED, JUMPING, LARGEST, Model, breaks_of, is_at_driver, measured
-from stickslip.inference.fit.part import Part
-from stickslip.inference.record.features import FEATURES, LEVELS, Samples, features_in
-from stickslip.inference.record.record import Record
 from stickslip.solution.solution import Solution
 
 CYCLES = 6.0

@@ -8,14 +8,13 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.loosened import loosened, settled
-from stickslip.inference.fit.memory import Memory, memory_of
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.part import Part
-from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.progress import OutOfTime, Tell
-from stickslip.inference.fit.search import (
+from stickslip.extensions.inference.fit.loosened import loosened, settled
+from stickslip.extensions.inference.fit.memory import Memory, memory_of
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.fit.pieces import pieces_of
+from stickslip.extensions.inference.fit.progress import OutOfTime, Tell
+from stickslip.extensions.inference.fit.search import (
     COMPETES,
     Best,
     is_far,
@@ -27,7 +26,8 @@ from stickslip.inference.fit.search import (
     solved,
     told_by,
 )
-from stickslip.inference.record.noise import GAUSSIAN, cost_of
+from stickslip.extensions.inference.record.noise import GAUSSIAN, cost_of
+from stickslip.foundation.arrays import Floats
 
 FEW = 1500
 """Starts are compared and followed on this many samples of a part."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.fit.free import DELAY, DRIFT, SERVO, TREND
+from stickslip.extensions.inference.fit.memory import ResidualBlock
+from stickslip.extensions.inference.fit.model import Model
+from stickslip.extensions.inference.fit.what_is_left import ResidualLook, Residuals, near_changes, what_is_left
+from stickslip.extensions.inference.record.record import SHEAR
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.free import DELAY, DRIFT, SERVO, TREND
-from stickslip.inference.fit.memory import ResidualBlock
-from stickslip.inference.fit.model import Model
-from stickslip.inference.fit.what_is_left import ResidualLook, Residuals, near_changes, what_is_left
-from stickslip.inference.record.record import SHEAR
 
 
 def looks_of(model: Model, searched: Floats, name: str, slopes: Floats | None = None) -> list[ResidualLook]:

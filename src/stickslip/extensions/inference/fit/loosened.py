@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.free import Free
+from stickslip.extensions.inference.fit.model import Model
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.free import Free
-from stickslip.inference.fit.model import Model
 
 FELT = 0.3
 """A number counts if its standard deviation changes the residuals by this many standard deviations in all."""

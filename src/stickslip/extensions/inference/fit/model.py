@@ -9,21 +9,21 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from stickslip.engine.history.history import Side
+from stickslip.extensions.inference.fit.asides import moved
+from stickslip.extensions.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
+from stickslip.extensions.inference.fit.memory import Memory, ResidualBlock, independent
+from stickslip.extensions.inference.fit.part import Part, approached, changed, not_begun
+from stickslip.extensions.inference.fit.turns import felt, moving
+from stickslip.extensions.inference.record.record import SHEAR
+from stickslip.extensions.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.inference.fit.asides import moved
-from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
-from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
-from stickslip.inference.fit.part import Part, approached, changed, not_begun
-from stickslip.inference.fit.turns import felt, moving
-from stickslip.inference.record.record import SHEAR
-from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
-from stickslip.observables.at_driver import fronts_at_driver
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
+from stickslip.run.study import uninterrupted
+from stickslip.solution.observables.at_driver import fronts_at_driver
 from stickslip.solution.solution import Solution
-from stickslip.study import uninterrupted
-from stickslip.trajectory.history import Side
 
 OF_NO_ZERO = ("slip",)
 """Quantities with an arbitrary zero of the sensor: the mean of their residual is subtracted."""

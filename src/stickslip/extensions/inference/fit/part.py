@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.free import Free
+from stickslip.extensions.inference.fit.turns import changes_of
+from stickslip.extensions.inference.record.corners import Corners
+from stickslip.extensions.inference.record.loading import later, loading_of
+from stickslip.extensions.inference.record.noise import first_value, noise_of
+from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity
-from stickslip.inference.fit.free import Free
-from stickslip.inference.fit.turns import changes_of
-from stickslip.inference.record.corners import Corners
-from stickslip.inference.record.loading import later, loading_of
-from stickslip.inference.record.noise import first_value, noise_of
-from stickslip.inference.record.record import Record
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Steps
 from stickslip.problem.parameters import pressed_body, put_many
 from stickslip.problem.problem import Problem
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.memory import ResidualBlock
+from stickslip.extensions.inference.fit.model import Model
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.memory import ResidualBlock
-from stickslip.inference.fit.model import Model
 
 
 class QuantityPiece(NamedTuple):

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.part import Part
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.fit.part import Part
-from stickslip.loading import LoadingHistory
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 TAIL, LEAST = 0.3, 8

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.looks import looks_of
+from stickslip.extensions.inference.fit.model import FAILED, Model
+from stickslip.extensions.inference.fit.what_is_left import words
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import about_time
-from stickslip.inference.fit.looks import looks_of
-from stickslip.inference.fit.model import FAILED, Model
-from stickslip.inference.fit.what_is_left import words
 
 Tell = Callable[[str], Any]
 

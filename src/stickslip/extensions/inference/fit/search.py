@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.looks import looks_of
+from stickslip.extensions.inference.fit.model import FAILED, Model
+from stickslip.extensions.inference.fit.pieces import pieces_of
+from stickslip.extensions.inference.fit.progress import Tell
+from stickslip.extensions.inference.fit.starting import slides
+from stickslip.extensions.inference.fit.what_is_left import words
+from stickslip.extensions.inference.record.noise import OUTLYING, cost_of
+from stickslip.extensions.inference.record.resample import RAMP
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.inference.fit.looks import looks_of
-from stickslip.inference.fit.model import FAILED, Model
-from stickslip.inference.fit.pieces import pieces_of
-from stickslip.inference.fit.progress import Tell
-from stickslip.inference.fit.starting import slides
-from stickslip.inference.fit.what_is_left import words
-from stickslip.inference.record.noise import OUTLYING, cost_of
-from stickslip.inference.record.resample import RAMP
 
 COMPETES = 20.0
 """Another minimum competes with the best one if twice the log-likelihoods differ by less than this."""

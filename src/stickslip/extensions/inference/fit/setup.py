@@ -9,22 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.extensions.inference.fit.asides import rounded, with_asides
+from stickslip.extensions.inference.fit.at_drive import about_drive, is_level_at_first
+from stickslip.extensions.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
+from stickslip.extensions.inference.fit.model import Model, is_at_driver
+from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.record.features import arrests_in
+from stickslip.extensions.inference.record.loading import loading_of, normal_of
+from stickslip.extensions.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, SHEAR_IN, Record, is_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
-from stickslip.inference.fit.asides import rounded, with_asides
-from stickslip.inference.fit.at_drive import about_drive, is_level_at_first
-from stickslip.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
-from stickslip.inference.fit.model import Model, is_at_driver
-from stickslip.inference.fit.part import Part
-from stickslip.inference.record.features import arrests_in
-from stickslip.inference.record.loading import loading_of, normal_of
-from stickslip.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, SHEAR_IN, Record, is_of
-from stickslip.loading import LoadingHistory, PiecewiseLinear
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear
 from stickslip.problem.problem import Problem
 
 STARTS = ("steady", "record", "problem")

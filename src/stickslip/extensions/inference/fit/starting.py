@@ -9,17 +9,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
+from stickslip.extensions.inference.fit.by_features import events_of
+from stickslip.extensions.inference.fit.free import DRIFT, TREND, Free
+from stickslip.extensions.inference.fit.part import Part, changed
+from stickslip.extensions.inference.fit.plateaus import PlateauDrift, drift_of, plateaus_of, transients_of
+from stickslip.extensions.inference.record.features import arrests_in
+from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.show import brief
-from stickslip.inference.fit.by_features import events_of
-from stickslip.inference.fit.free import DRIFT, TREND, Free
-from stickslip.inference.fit.part import Part, changed
-from stickslip.inference.fit.plateaus import PlateauDrift, drift_of, plateaus_of, transients_of
-from stickslip.inference.record.features import arrests_in
-from stickslip.inference.record.noise import noise_of
-from stickslip.loading import LoadingHistory
+from stickslip.problem.bodies import ElasticSlab
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 COSINE = math.sqrt(math.pi**2 - 8.0)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.extensions.inference.record.resample import Jumps
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.record.resample import Jumps
-from stickslip.loading import LoadingHistory
+from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 CHANGES = 0.1

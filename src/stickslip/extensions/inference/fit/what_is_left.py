@@ -16,10 +16,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.fit.memory import (
+    LONGEST,
+    Memory,
+    ResidualBlock,
+    independent,
+    independent_columns,
+    memory_of,
+    spread_by,
+)
+from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.inference.fit.memory import LONGEST, Memory, ResidualBlock, independent, independent_columns, memory_of, spread_by
-from stickslip.inference.record.noise import noise_of
 
 CHANCE = 1e-5
 """Largest probability that noise alone looks like this, for each kind of look."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.extensions.inference.points.fit_search import WHOLE, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
@@ -18,7 +19,6 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import in_units
 from stickslip.foundation.show import html_table, text_table, with_uncertainty
-from stickslip.friction.custom.fit_search import WHOLE, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
 from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw
 

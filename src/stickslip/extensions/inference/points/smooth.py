@@ -8,11 +8,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.extensions.inference.points.penalised_spline import PenalisedSpline
 from stickslip.foundation.arguments import NamesAttributes, for_users, is_number, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.foundation.show import html_table, text_table
-from stickslip.friction.custom.penalised_spline import PenalisedSpline
 from stickslip.friction.custom.points import FromTable, Points
 from stickslip.friction.piecewise import SMALLEST, reversals
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.record.noise import noise_of, saturated, spikes
+from stickslip.extensions.inference.record.record import HIGHEST, LOADING, LOWEST, SHEAR, Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
-from stickslip.inference.record.noise import noise_of, saturated, spikes
-from stickslip.inference.record.record import HIGHEST, LOADING, LOWEST, SHEAR, Record
 
 BACKWARD = 0.9
 """The sign of shear is turned if more than this share of it is negative."""

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.record.noise import noise_of
 
 LEVELS = ("peak", "rest", "drop")
 """Features of shear, appended to its name as in "friction_peak": shear before the fall, after it, and the difference."""

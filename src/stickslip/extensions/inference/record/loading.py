@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.extensions.inference.record.noise import GAUSSIAN, noise_of, rounding_of
+from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.show import brief
-from stickslip.inference.record.noise import GAUSSIAN, noise_of, rounding_of
-from stickslip.inference.record.record import Record
-from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Steps
 
 MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""

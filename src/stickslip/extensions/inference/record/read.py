@@ -10,6 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.record.doubts import checked
+from stickslip.extensions.inference.record.record import LOADING, MEASURED, SHEAR, Record
+from stickslip.extensions.inference.record.repeats import without_repeats
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
@@ -18,10 +21,7 @@ from stickslip.foundation.headings import DRILL_FLOOR, TURNED, find, missing, na
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
-from stickslip.inference.record.doubts import checked
-from stickslip.inference.record.record import LOADING, MEASURED, SHEAR, Record
-from stickslip.inference.record.repeats import without_repeats
-from stickslip.scenarios.entries import typed_number
+from stickslip.problem.scenarios.entries import typed_number
 
 LARGEST_FILE = 500_000_000
 """Largest file to read (bytes)."""

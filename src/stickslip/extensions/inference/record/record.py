@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.extensions.inference.record.features import FEATURES, LEVELS
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import QUANTITIES, TURNS, si_unit
 from stickslip.foundation.show import brief
-from stickslip.inference.record.features import FEATURES, LEVELS
 from stickslip.problem.problem import Problem
 
 SHEAR = ("friction", "shear_stress", "shear_force", "torque", "surface_torque")
@@ -107,7 +107,7 @@ class Record(CheckedArguments):
             if columns:
                 raise InputError(f"{source.name}: columns name the headings of a source, and a record has been read already")
             return source.part(begin, end)
-        from stickslip.inference.record.read import read_record
+        from stickslip.extensions.inference.record.read import read_record
 
         return read_record(source, beside, later, columns).part(begin, end)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.record.record import LOADING, MEASURED
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.record.record import LOADING, MEASURED
 
 FEWEST, SHARE = 6, 0.01
 """At least so many runs of equal samples, and this share of all samples, are called repeats of a logger."""

@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.history.history import Side
+from stickslip.extensions.inference.record.loading import GAP
+from stickslip.extensions.inference.record.noise import noise_of, rounding_of
+from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
-from stickslip.inference.record.loading import GAP
-from stickslip.inference.record.noise import noise_of, rounding_of
-from stickslip.inference.record.record import Record
-from stickslip.trajectory.history import Side
 
 RAMP = 2
 """A jump is spread over at least this many samples, so that both samples beside it change as it moves."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from stickslip.paper.cases import Runs
-from stickslip.paper.claims import inertia, rate_law, rules, slip_law  # noqa: F401  # importing them fills MEASUREMENTS
-from stickslip.paper.claims.verdict import MEASUREMENTS, ClaimVerdict, MeasuredNumber, Outcome
+from stickslip.extensions.paper.cases import Runs
+from stickslip.extensions.paper.claims import inertia, rate_law, rules, slip_law  # noqa: F401  # importing them fills MEASUREMENTS
+from stickslip.extensions.paper.claims.verdict import MEASUREMENTS, ClaimVerdict, MeasuredNumber, Outcome
 
 STATEMENTS = {number: statement for number, (statement, _) in sorted(MEASUREMENTS.items())}
 """The claims in our words, by number."""

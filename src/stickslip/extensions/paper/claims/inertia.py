@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import as_block, as_slab
 from stickslip.contact.roots import sign_change
+from stickslip.extensions.paper.cases import Runs, problem, typed
+from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, claim, each, judge, verdict
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
-from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import ClaimVerdict, Number, claim, each, judge, verdict
+from stickslip.problem.bodies import as_block, as_slab
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 

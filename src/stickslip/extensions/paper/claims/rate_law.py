@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import as_slab
 from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.extensions.paper.cases import Runs, problem, typed
+from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.friction import Coulomb, HyperbolicRate
-from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
+from stickslip.problem.bodies import as_slab
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 

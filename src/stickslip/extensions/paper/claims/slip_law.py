@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from stickslip.extensions.paper.cases import Runs, problem, typed
+from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import SinusoidalSlip
-from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 

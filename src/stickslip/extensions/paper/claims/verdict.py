@@ -8,7 +8,7 @@ from enum import StrEnum
 from functools import wraps
 from typing import Any
 
-from stickslip.paper.cases import Runs
+from stickslip.extensions.paper.cases import Runs
 
 Number = tuple[str, Any, str]
 """A measured number: its label, its value and its unit."""

@@ -58,7 +58,7 @@ def benchmark(
     if what is None:
         raise InputError(f"benchmark: {action} needs {'the name of a problem: see `list`' if action == 'get' else 'a file'}")
     if action == "get":
-        from stickslip.studies.benchmarks import write_benchmark
+        from stickslip.extensions.schemes.benchmarks import write_benchmark
 
         announce(*write_benchmark(what, folder or Path()))
         return
@@ -70,7 +70,7 @@ def benchmark(
 
 def _list() -> None:
     from stickslip.cli.output.show import console, print_numbers
-    from stickslip.studies.benchmarks import BENCHMARKS
+    from stickslip.extensions.schemes.benchmarks import BENCHMARKS
 
     print_numbers(console(), ("name", "asks for"), [[name, one.asks] for name, one in BENCHMARKS.items()], text=2)
 
@@ -83,10 +83,10 @@ def _judge(
     results: tuple[Path | None, Path | None, FigureLook],
 ) -> bool:
     """Judge a series, show and write what comes out, and return True if it passes."""
-    from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.cli.overrides import typed_columns
+    from stickslip.extensions.schemes.benchmarks import benchmark_of, judge_benchmark
+    from stickslip.extensions.studies.summary import show_schemes, tables_of
     from stickslip.run.progress import progress_line
-    from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
 
     asked = benchmark_of(file.stem if name is None else name)
     columns = typed_columns(column, "benchmark: --column")

@@ -10,8 +10,8 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_targe
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.studies.schemes import Schemes
+    from stickslip.extensions.schemes.schemes import Schemes
+    from stickslip.problem.scenarios.scenario import Scenario
 
 CHOSEN = "Schemes, separated by commas: all for the numerical ones (if not given), contact-mass, lag, or other names."
 SEARCH = "How the contact looks for a slip rate: stick-first, continue, newton or fastest; stick-first if not given."
@@ -52,8 +52,8 @@ def schemes(
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.cli.overrides import load_with
+    from stickslip.extensions.studies.summary import show_schemes, tables_of
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
@@ -82,9 +82,9 @@ def _cells(text: str) -> list[int]:
 
 
 def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, courant: float | None) -> Schemes:
+    from stickslip.extensions.schemes.run import SCHEMES
+    from stickslip.extensions.schemes.schemes import schemes as study
     from stickslip.run.progress import progress_line
-    from stickslip.schemes.run import SCHEMES
-    from stickslip.studies.schemes import schemes as study
 
     typed = [name.strip() for name in scheme.split(",") if name.strip()]
     names = [one for name in typed for one in (SCHEMES if name == "all" else [name])]
@@ -95,8 +95,8 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
 
 def _judged(scenario: Scenario, files: list[Path], column: list[str] | None) -> Schemes:
     from stickslip.cli.overrides import typed_columns
+    from stickslip.extensions.schemes.benchmarks import judge_series
     from stickslip.run.progress import progress_line
-    from stickslip.studies.benchmarks import judge_series
 
     columns = typed_columns(column, "schemes: --column")
     with progress_line("schemes") as tell:

@@ -12,8 +12,8 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_targe
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.studies.analogy import Analogy
+    from stickslip.extensions.studies.analogy import Analogy
+    from stickslip.problem.scenarios.scenario import Scenario
 
 BUNDLED = "block-or-slab"
 """The bundled scenario for this command."""
@@ -47,8 +47,8 @@ def analogy(
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.studies import show_analogy
     from stickslip.cli.overrides import load_with
+    from stickslip.extensions.studies.summary import show_analogy
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
@@ -63,8 +63,8 @@ def analogy(
 
 def _study(scenario: Scenario, typed: list[str], within: float) -> Analogy:
     from stickslip.cli.overrides import read_axis
+    from stickslip.extensions.studies.analogy import analogy as study
     from stickslip.run.progress import progress_line
-    from stickslip.studies.analogy import analogy as study
 
     x, y = (read_axis(scenario.problem, text, "analogy: --map") for text in typed)
     with progress_line(f"{scenario.name}:") as report:

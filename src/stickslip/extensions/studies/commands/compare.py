@@ -12,7 +12,7 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_targe
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.studies.compare import Comparison
+    from stickslip.extensions.studies.compare import Comparison
 
 RUNS = "Two or more: TOML files, bundled names, files of `run --out` (.nc), - for standard input. With --rules one."
 RULES = "Run the one scenario under each selection rule: wait until the next event, slip and jumps."
@@ -48,7 +48,7 @@ def compare(
 
     Exit code: 0 done, 1 a run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.studies import show_comparison
+    from stickslip.extensions.studies.summary import show_comparison
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
@@ -62,10 +62,10 @@ def compare(
 def _compared(names: list[str], duration: str | None, rtol: float | None, event: int | None, *, rules: bool) -> Comparison:
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.overrides import STDIN, load, read
+    from stickslip.extensions.studies.compare import Comparison, distinct, read_source, title_of, under_each_rule
     from stickslip.problem.run_quantities import check_rtol
+    from stickslip.problem.scenarios.schema import read_duration
     from stickslip.run.progress import progress_line
-    from stickslip.scenarios.schema import read_duration
-    from stickslip.studies.compare import Comparison, distinct, read_source, title_of, under_each_rule
 
     if len(names) < 2 and not rules:
         cure = "--rules runs one under each selection rule; `stickslip new --list` lists the bundled ones"

@@ -11,8 +11,8 @@ from stickslip.cli.options import SIZE_HELP, Changes, Dpi, Duration, FigureFile,
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 
 if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
-    from stickslip.studies.ensemble import Ensemble
+    from stickslip.extensions.studies.ensemble import Ensemble
+    from stickslip.problem.scenarios.scenario import Scenario
 
 SIZE = "Largest disturbance of the initial load, as a share of the strength."
 SEED = "Seed of the random disturbances; the same seed gives the same members."
@@ -52,8 +52,8 @@ def ensemble(
 
     Exit code: 0 done, 1 a run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.studies import show_ensemble
     from stickslip.cli.overrides import load_with
+    from stickslip.extensions.studies.summary import show_ensemble
 
     look = FigureLook(dpi, figure_size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
@@ -68,8 +68,8 @@ def ensemble(
 
 
 def _study(scenario: Scenario, members: int, size: float, seed: int, checkpoint: Path | None) -> Ensemble:
+    from stickslip.extensions.studies.ensemble import ensemble as study
     from stickslip.run.progress import progress_line
-    from stickslip.studies.ensemble import ensemble as study
 
     with progress_line(f"{scenario.name}:") as report:
         run = scenario.problem, scenario.duration, members, size, scenario.rtol

@@ -14,11 +14,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
+from stickslip.extensions.studies.analogy import QUANTITIES, Analogy
 from stickslip.figures.panels import cell_edges, draw_map, draw_parameters, letter_panels, panels, parameter_numbers, set_title
 from stickslip.figures.style import INK, PALE, TWO, shown, styled
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
-from stickslip.studies.analogy import QUANTITIES, Analogy
 
 LARGEST_RATIO = 10.0
 """The scale of colours ends at this ratio and at its inverse."""

@@ -16,8 +16,8 @@ from stickslip.foundation.place import Place
 from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:
+    from stickslip.extensions.studies.compare import Comparison
     from stickslip.solution.solution import Solution
-    from stickslip.studies.compare import Comparison
 
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 """Line styles; the next one is taken when all colours are used up."""

@@ -17,7 +17,7 @@ from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, styled, ti
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
-    from stickslip.studies.ensemble import Ensemble
+    from stickslip.extensions.studies.ensemble import Ensemble
 
 
 @styled

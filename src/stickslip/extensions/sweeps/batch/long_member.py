@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.batch.kernels.reduction import Reduced, fold_end
+from stickslip.engine.history.slip_events import LAST_THIRD, rest_of, time_creeping, time_slipping_in
+from stickslip.engine.history.status import INTERRUPTED
+from stickslip.engine.lanes.reduction import Reduced, fold_end
 from stickslip.engine.state.layout import Floats, Integers, Stop
+from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts, run_loop
-from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.slip_events import LAST_THIRD, rest_of, time_creeping, time_slipping_in
-from stickslip.trajectory.status import INTERRUPTED
 
 if TYPE_CHECKING:
     import pandas as pd

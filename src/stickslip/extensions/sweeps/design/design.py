@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.sweeps.design.axis import LARGEST_AXIS, DesignAxis, Values, read_values, typed_value
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
-from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.axis import LARGEST_AXIS, DesignAxis, Values, read_values, typed_value
+from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter
+from stickslip.problem.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.history.slip_events import share_sticking
 from stickslip.foundation.errors import InputError, nearest, some_of
-from stickslip.observables.severity import severity
-from stickslip.trajectory.slip_events import share_sticking
+from stickslip.solution.observables.severity import severity
 
 if TYPE_CHECKING:
     from stickslip.contact.uniqueness import Uniqueness

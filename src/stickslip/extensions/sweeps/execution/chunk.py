@@ -12,19 +12,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.batch import run_members, why_not
+from stickslip.engine.history.status import BAD_PARAMETERS as REFUSED
+from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status
 from stickslip.engine.state.layout import Stop
+from stickslip.extensions.sweeps.batch import run_members, why_not
+from stickslip.extensions.sweeps.design.axis import Values
+from stickslip.extensions.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem.scenarios.entries import Source
+from stickslip.problem.scenarios.parameter_paths import ParameterPath, document_with
+from stickslip.problem.scenarios.scenario import Scenario, read_scenario, scenario_of
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.entries import Source
-from stickslip.scenarios.parameter_paths import ParameterPath, document_with
-from stickslip.scenarios.scenario import Scenario, read_scenario, scenario_of
 from stickslip.solution.solution import Solution
-from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.quantities import QUANTITIES, Summary
-from stickslip.trajectory.status import BAD_PARAMETERS as REFUSED
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status
 
 END = "end_time"
 """The quantity that the message on a failed member needs: the time (s) at the end of its run."""
@@ -182,7 +182,7 @@ def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = No
 
 
 def compiled_batch(work: Work, values: Mapping[str, Values], threads: int) -> ChunkResult:
-    """Run all members in the compiled batch (`stickslip.batch`)."""
+    """Run all members in the compiled batch (`stickslip.extensions.sweeps.batch`)."""
     names = [one.name for one in work.quantities]
     found = run_members(work.scenario, values, list(dict.fromkeys([*names, END])), threads, defer=work.defers)
     status = np.array([CODES.get(code, NOT_RUN) for code in found.status.tolist()], np.int8)

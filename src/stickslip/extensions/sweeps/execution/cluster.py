@@ -23,10 +23,10 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from stickslip.engine.history.status import engine
+from stickslip.extensions.sweeps.execution.chunk import Runner, run_chunk
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.execution.chunk import Runner, run_chunk
-from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
     from distributed import Client, Future

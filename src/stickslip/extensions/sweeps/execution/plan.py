@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.sweeps.design.axis import Values
+from stickslip.extensions.sweeps.design.design import GRID, Design, read_design
+from stickslip.extensions.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
+from stickslip.extensions.sweeps.execution.chunk import KeptCurves, Work
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
-from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.source import all_slips_alike
+from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.problem.scenarios.source import all_slips_alike
 from stickslip.solution.evaluation import CURVES
-from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.design import GRID, Design, read_design
-from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
-from stickslip.sweeps.execution.chunk import KeptCurves, Work
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
 """Number of chunks into which a sweep is divided if no chunk size is given, and limits of their size (members).

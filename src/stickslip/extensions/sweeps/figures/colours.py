@@ -15,9 +15,9 @@ from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColor
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from stickslip.extensions.sweeps.figures.varied import ShownQuantity
 from stickslip.figures.panels import add_legend, set_log_ticks
 from stickslip.figures.style import GREY, PALE, ROOM, TWO, folded
-from stickslip.figures.sweeps.varied import ShownQuantity
 from stickslip.foundation.arrays import Floats
 
 FEW = 10

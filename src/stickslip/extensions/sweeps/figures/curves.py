@@ -11,10 +11,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from stickslip.extensions.sweeps.figures.varied import ScaledNumbers, ShownQuantity, names_of, scaled, shown
 from stickslip.figures.panels import add_legend, count_ticks, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, folded
-from stickslip.figures.sweeps.varied import ScaledNumbers, ShownQuantity, names_of, scaled, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 

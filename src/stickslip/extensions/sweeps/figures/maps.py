@@ -15,14 +15,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 
+from stickslip.extensions.sweeps.figures.colours import Colours, colours_of, explain, failed_area, prepare
+from stickslip.extensions.sweeps.figures.curves import mark_missing, missing_marks, show_ordinate
+from stickslip.extensions.sweeps.figures.varied import LITTLE, Names, ScaledNumbers, ShownQuantity, names_of, scaled, shown
+from stickslip.extensions.sweeps.results.layout import read_design
 from stickslip.figures.panels import add_legend, finish, letter_panels, panels, set_title
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, INK, PALE, ROOM, VERMILLION
-from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
-from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
-from stickslip.figures.sweeps.varied import LITTLE, Names, ScaledNumbers, ShownQuantity, names_of, scaled, shown
 from stickslip.foundation.place import Place
-from stickslip.sweeps.results.layout import read_design
 
 PANELS = 9
 """Largest number of maps side by side; more would be too small to read."""

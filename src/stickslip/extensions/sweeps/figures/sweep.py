@@ -14,18 +14,18 @@ from typing import Any, Unpack
 import numpy as np
 import xarray as xr
 
+from stickslip.extensions.sweeps.design.design import MEMBER
+from stickslip.extensions.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
+from stickslip.extensions.sweeps.figures.curves import MOST_CURVES, draw_curves
+from stickslip.extensions.sweeps.figures.maps import draw_maps, draw_members
 from stickslip.figures.sheet import shown_or_saved
 from stickslip.figures.style import styled
-from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
-from stickslip.figures.sweeps.maps import draw_maps, draw_members
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import Units, shown_in
 from stickslip.foundation.place import Place
 from stickslip.problem.given_units import units_given
-from stickslip.scenarios.scenario import read_scenario
-from stickslip.sweeps.design.design import MEMBER
-from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
+from stickslip.problem.scenarios.scenario import read_scenario
 
 
 @for_users

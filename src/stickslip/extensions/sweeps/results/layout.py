@@ -18,18 +18,18 @@ import zarr
 from zarr.storage import MemoryStore
 
 import stickslip
+from stickslip.engine.history.status import engine
+from stickslip.extensions.sweeps.design.design import GRID, IN_WORDS
+from stickslip.extensions.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
+from stickslip.extensions.sweeps.execution.plan import Plan
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import for_readers, in_files
 from stickslip.foundation.show import clean
-from stickslip.io.netcdf import about_curves
-from stickslip.io.zarr_store import FolderFormat, check_layout
-from stickslip.sweeps.design.design import GRID, IN_WORDS
-from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
-from stickslip.sweeps.execution.plan import Plan
-from stickslip.trajectory.status import engine
+from stickslip.solution.files.netcdf import about_curves
+from stickslip.solution.files.zarr_store import FolderFormat, check_layout
 
 FORMAT = FolderFormat("stickslip_sweep", 2)
 STATUS, REASON = "status", "reason"

@@ -21,13 +21,9 @@ import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
 
-from stickslip.foundation import zarr_folder
-from stickslip.foundation.errors import InputError, never_show
-from stickslip.foundation.locks import held
-from stickslip.io.zarr_store import check_metadata, create, first_file_of, is_sound
-from stickslip.sweeps.execution.chunk import NOT_RUN, TIME, ChunkResult
-from stickslip.sweeps.execution.plan import Plan
-from stickslip.sweeps.results.layout import (
+from stickslip.extensions.sweeps.execution.chunk import NOT_RUN, TIME, ChunkResult
+from stickslip.extensions.sweeps.execution.plan import Plan
+from stickslip.extensions.sweeps.results.layout import (
     FORMAT,
     REASON,
     STATUS,
@@ -38,6 +34,10 @@ from stickslip.sweeps.results.layout import (
     lay_out,
     read_design,
 )
+from stickslip.foundation import zarr_folder
+from stickslip.foundation.errors import InputError, never_show
+from stickslip.foundation.locks import held
+from stickslip.solution.files.zarr_store import check_metadata, create, first_file_of, is_sound
 
 
 class ResultStore:

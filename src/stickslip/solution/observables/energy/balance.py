@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.bodies import OfLayers, as_waves
+from stickslip.engine.history.history import Epoch, History, Positions
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import in_files
-from stickslip.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
-from stickslip.observables.energy.layers import LayerEnergy
-from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
-from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Epoch, History, Positions
+from stickslip.problem.bodies import OfLayers, as_waves
+from stickslip.solution.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
+from stickslip.solution.observables.energy.layers import LayerEnergy
+from stickslip.solution.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
+from stickslip.solution.observables.waves import Radiation, Waves
 
 if TYPE_CHECKING:
     import xarray as xr

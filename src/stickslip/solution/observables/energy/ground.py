@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.engine.history.history import History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.quadrature import Integrand, up_to
-from stickslip.trajectory.history import History, Positions
+from stickslip.solution.observables.quadrature import Integrand, up_to
 
 
 def shaken(history: History, at: Positions) -> Floats:

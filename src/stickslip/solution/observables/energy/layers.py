@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import OfLayers
+from stickslip.engine.history.history import Epoch, History
+from stickslip.engine.input.forcing import inflow_of
 from stickslip.engine.state.layout import Floats
-from stickslip.engine_input.forcing import inflow_of
 from stickslip.foundation.constants import RIGID
-from stickslip.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
-from stickslip.observables.layers import MOST, LayerWaves
-from stickslip.observables.quadrature import NODES, WEIGHTS
-from stickslip.trajectory.history import Epoch, History
+from stickslip.problem.bodies import OfLayers
+from stickslip.solution.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
+from stickslip.solution.observables.layers import MOST, LayerWaves
+from stickslip.solution.observables.quadrature import NODES, WEIGHTS
 
 CURVED = NODES**2 * (3.0 - 2.0 * NODES), 6.0 * NODES * (1.0 - NODES) * WEIGHTS
 """Places and weights in an interval of length 1 at whose ends a wave may be a square root, next to folds: see `balance`."""

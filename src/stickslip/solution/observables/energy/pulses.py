@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine.history.history import History, Positions
+from stickslip.engine.history.slip_events import SlipEvents, walk
+from stickslip.engine.history.turning_points import Turn
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.quadrature import between
-from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.slip_events import SlipEvents, walk
-from stickslip.trajectory.turning_points import Turn
+from stickslip.solution.observables.quadrature import between
 
 if TYPE_CHECKING:
     import pandas as pd

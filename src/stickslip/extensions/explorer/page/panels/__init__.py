@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.page.panels import contact, energy, fault, field, law, loading, motion, shape
-from stickslip.explorer.page.panels.law import place, unit_along
-from stickslip.explorer.page.panels.motion import COLUMNS, CURVE_OF, DRAWN, columns_of
-from stickslip.explorer.page.panels.units import share_axis, units_of
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Columns, LegendKey, Units, View, limits
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.model.fault import FaultAnswer
+from stickslip.extensions.explorer.page.panels import contact, energy, fault, field, law, loading, motion, shape
+from stickslip.extensions.explorer.page.panels.law import place, unit_along
+from stickslip.extensions.explorer.page.panels.motion import COLUMNS, CURVE_OF, DRAWN, columns_of
+from stickslip.extensions.explorer.page.panels.units import share_axis, units_of
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, limits
 from stickslip.foundation.given import shown_in
 from stickslip.problem.given_units import units_given
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from bokeh.models import Arrow, NormalHead
 
-from stickslip.explorer.model.answer import Answer, ContactPicture
-from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
+from stickslip.extensions.explorer.model.answer import Answer, ContactPicture
+from stickslip.extensions.explorer.page.components import paint
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.foundation.names import name_of, plain_symbol
 
 TEXT = "Contact equation: load against slip rate, with stick, stable and unstable slip, folds, and the path of the run"

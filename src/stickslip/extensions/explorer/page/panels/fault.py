@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.panels import energy, field, motion
-from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, limits, single
+from stickslip.extensions.explorer.model.fault import FaultAnswer
+from stickslip.extensions.explorer.page.components import paint
+from stickslip.extensions.explorer.page.panels import energy, field, motion
+from stickslip.extensions.explorer.page.stage import NARROW, Stage
+from stickslip.extensions.explorer.page.view import LegendKey, Units, View, axis_label, limits, single
 from stickslip.figures.style import nearly_flat
 from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import name_of, readable_unit

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.stage import NARROW, Stage, signed_scale
-from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.page.components import paint
+from stickslip.extensions.explorer.page.stage import NARROW, Stage, signed_scale
+from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
 from stickslip.foundation.names import readable_unit, si_unit
 
 TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"

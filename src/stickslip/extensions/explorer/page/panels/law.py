@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Answer, LawPicture
-from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
+from stickslip.extensions.explorer.model.answer import Answer, LawPicture
+from stickslip.extensions.explorer.page.components import paint
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.foundation.names import name_of, plain_symbol, readable_unit
 
 TEXT = "Friction law: friction coefficient against slip or slip rate"

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, limits
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.page.components import paint
+from stickslip.extensions.explorer.page.stage import NARROW, Stage
+from stickslip.extensions.explorer.page.view import LegendKey, Units, View, axis_label, limits
 from stickslip.figures.runs.given import curve_of, varying
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import for_readers, readable_unit

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from bokeh.models import Span
 
-from stickslip.explorer.model.answer import Answer, BodyCurves
-from stickslip.explorer.model.words import short
-from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.panels.units import Curve, held, share_axis
-from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import Columns, LegendKey, LineStyle, Units, View, axis_label, limits
+from stickslip.extensions.explorer.model.answer import Answer, BodyCurves
+from stickslip.extensions.explorer.model.words import short
+from stickslip.extensions.explorer.page.components import paint
+from stickslip.extensions.explorer.page.panels.units import Curve, held, share_axis
+from stickslip.extensions.explorer.page.stage import NARROW, Stage
+from stickslip.extensions.explorer.page.view import Columns, LegendKey, LineStyle, Units, View, axis_label, limits
 from stickslip.figures.runs.curves import after_start
 from stickslip.foundation.names import QUANTITIES, name_of, plain_symbol, readable_unit, si_unit
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from bokeh.core.properties import value
 
-from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.components import FONT, paint
-from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, round_step
+from stickslip.extensions.explorer.model.answer import Answer
+from stickslip.extensions.explorer.page.components import FONT, paint
+from stickslip.extensions.explorer.page.stage import Stage
+from stickslip.extensions.explorer.page.view import LegendKey, Units, View, axis_label, round_step
 from stickslip.foundation.names import readable_unit
 
 TEXT = "Shape of the body at the time of the cursor: displacements, drawn many times larger"

@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Answer, BodyCurves
-from stickslip.explorer.page.view import Units
+from stickslip.extensions.explorer.model.answer import Answer, BodyCurves
+from stickslip.extensions.explorer.page.view import Units
 from stickslip.figures.style import nearly_flat
 from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import readable_unit, si_unit
