@@ -46,7 +46,7 @@ def lazy_names(package: str, file: str) -> tuple[Get, Callable[[], list[str]]]:
 def _homes(package: str, stub: Path) -> dict[str, tuple[str, str]]:
     """Return the names of a stub, each with the module that it is imported from and its name there."""
     tree = ast.parse(stub.read_text(encoding="utf-8"))
-    found = {}
+    found: dict[str, tuple[str, str]] = {}
     for node in tree.body:
         if isinstance(node, ast.ImportFrom):
             module = resolve_name("." * node.level + (node.module or ""), package)

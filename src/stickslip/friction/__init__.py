@@ -5,8 +5,6 @@ To add a law, add a class to `laws` (docs/adding-a-law.md), and here its import,
 `smooth` and `fit`, of an extension, make laws from noisy points. `__init__.pyi` is the page of all names.
 """
 
-from typing import TYPE_CHECKING
-
 from stickslip.foundation.lazy_names import other_names
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
@@ -71,5 +69,4 @@ __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWe
 __all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerSlipWeakening", "PowerStribeck", "SinusoidalSlip"]
 __all__ += ["SlipPlusRate", "SlipTimesRate"]
 
-if not TYPE_CHECKING:  # with it, type checkers would accept any name
-    __getattr__ = other_names(__name__)
+__getattr__ = other_names(__name__)

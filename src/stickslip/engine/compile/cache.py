@@ -47,7 +47,15 @@ OF_SEAL = len(SEAL) + hashlib.sha256().digest_size
 NOT_COMPILED = ("cache.py", "lock.py", "private_folder.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 COMPILED_FOLDERS = (
-    *("engine/compile", "engine/contact", "engine/contact_step", "engine/folds", "engine/formula_code", "engine/lanes", "engine/memory"),
+    *(
+        "engine/compile",
+        "engine/contact",
+        "engine/contact_step",
+        "engine/folds",
+        "engine/formula_code",
+        "engine/lanes",
+        "engine/memory",
+    ),
     *("engine/radau", "engine/series", "engine/state", "engine/waves", "friction/formula/operations"),
 )
 """Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""

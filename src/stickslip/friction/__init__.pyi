@@ -1,0 +1,63 @@
+# The friction laws of the contact, and what makes laws from measured points.
+from stickslip.extensions.inference.points.fit import Fit, fit, fit_each
+from stickslip.extensions.inference.points.smooth import Smooth, smooth
+from stickslip.friction.custom.from_expression import FromExpression
+from stickslip.friction.custom.from_function import FromFunction
+from stickslip.friction.custom.points import FromTable, Points
+from stickslip.friction.law import FrictionLaw
+from stickslip.friction.laws.bristles import Dahl, LuGre
+from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
+from stickslip.friction.laws.of_rate import (
+    Coulomb,
+    ExponentialStribeck,
+    HyperbolicRate,
+    PiecewiseLinearRate,
+    PowerStribeck,
+    VelocityStrengthening,
+)
+from stickslip.friction.laws.of_slip import (
+    ExponentialCohesiveZone,
+    ExponentialSlipWeakening,
+    LinearSlipWeakening,
+    ParabolicSlipWeakening,
+    PiecewiseLinearSlip,
+    PowerSlipWeakening,
+    SinusoidalSlip,
+)
+from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState
+
+LAWS: dict[str, type[FrictionLaw]]
+
+__all__ = [
+    "LAWS",
+    "Coulomb",
+    "Dahl",
+    "ExponentialCohesiveZone",
+    "ExponentialSlipWeakening",
+    "ExponentialStribeck",
+    "Fit",
+    "FlashHeating",
+    "FrictionLaw",
+    "FromExpression",
+    "FromFunction",
+    "FromTable",
+    "HyperbolicRate",
+    "LaggedFriction",
+    "LinearSlipWeakening",
+    "LuGre",
+    "ParabolicSlipWeakening",
+    "PiecewiseLinearRate",
+    "PiecewiseLinearSlip",
+    "Points",
+    "PowerSlipWeakening",
+    "PowerStribeck",
+    "RateAndState",
+    "SinusoidalSlip",
+    "SlipPlusRate",
+    "SlipTimesRate",
+    "Smooth",
+    "VelocityStrengthening",
+    "fit",
+    "fit_each",
+    "smooth",
+]
