@@ -25,8 +25,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios.table import Table
-    from stickslip.run.reader import Reader
-    from stickslip.run.solver_kind import SolverKind
+    from stickslip.run.kinds import Reader, SolverKind
 
 GROUP = "stickslip.extensions"
 """The folder of our own extensions as a package, and the group of the entry points of others."""

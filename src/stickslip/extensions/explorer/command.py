@@ -74,8 +74,8 @@ def explore(
     if static is not None:
         _write(static, scenario, changes, record)
         return
-    loaded = load(scenario or FIRST, "explore", changes, contact=True)
-    if loaded.contact is not None and (loaded.planar_slab.is_plane or record is not None):
+    loaded = load(scenario or FIRST, "explore", changes, any_kind=True)
+    if not loaded.is_of_core and (loaded.to_solve.is_plane or record is not None):
         raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
     from stickslip.extensions.explorer.model.setting import Setting
     from stickslip.extensions.explorer.server.serve import Endpoint

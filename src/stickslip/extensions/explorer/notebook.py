@@ -80,13 +80,13 @@ def explore(
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.problem.scenarios.source import read_source
 
-    found = read_source("explore", problem, contact=True)
+    found = read_source("explore", problem, any_kind=True)
     if isinstance(found, Problem):
         found = Scenario(found, found.round_trip_time * ROUND_TRIPS if duration is None else duration, name="problem")
     elif duration is not None:
         found = replace(found, duration=duration)
     behind = None
-    if record is not None and found.contact is not None:
+    if record is not None and not found.is_of_core:
         raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")
     if record is not None:
         from stickslip.extensions.explorer.model.answer import Backdrop

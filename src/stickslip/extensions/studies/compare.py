@@ -21,7 +21,7 @@ from stickslip.foundation.names import si_unit
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.problem.scenarios import Scenario, load_scenario
-from stickslip.problem.scenarios.source import all_slips_alike
+from stickslip.problem.scenarios.source import solved_by_core
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.run.study import Study, TextProgress, telling, uninterrupted
@@ -81,7 +81,7 @@ def read_source(
     if Path(str(source)).suffix == ".nc":
         solution = read_solution(Path(str(source)))
         return RunSource(Path(str(source)).stem, lambda _: solution)
-    scenario = all_slips_alike(who, source if isinstance(source, Scenario) else load_scenario(source))
+    scenario = solved_by_core(who, source if isinstance(source, Scenario) else load_scenario(source))
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
     return RunSource(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
 
@@ -258,7 +258,7 @@ def _scenario_of(source: str | Path | Scenario | Solution) -> Scenario:
         return source.scenario()
     if not isinstance(source, Scenario) and Path(str(source)).suffix == ".nc":
         return read_solution(Path(str(source))).scenario()
-    return all_slips_alike("compare", source if isinstance(source, Scenario) else load_scenario(source))
+    return solved_by_core("compare", source if isinstance(source, Scenario) else load_scenario(source))
 
 
 def distinct(names: Sequence[str]) -> list[str]:

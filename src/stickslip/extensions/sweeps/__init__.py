@@ -6,14 +6,24 @@ Results are kept in a store. A sweep that was killed continues from its store.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from stickslip.extension import Command, Extension
+
+if TYPE_CHECKING:
+    from stickslip.run.kinds import Reader
 
 
 class SweepsExtension(Extension):
     """The command `sweep`, `ss.sweep` and `ss.figures.plot_sweep`."""
 
     name = "sweeps"
+
+    def readers(self) -> Sequence[Reader]:
+        """Return the reader of its folders."""
+        from stickslip.extensions.sweeps.reader import SweepReader
+
+        return (SweepReader(),)
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `sweep`."""

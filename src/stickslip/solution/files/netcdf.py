@@ -18,7 +18,7 @@ from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
-from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
@@ -39,7 +39,6 @@ from stickslip.solution.window import Window
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.extensions.planar.solution import PlanarSolution
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -265,22 +264,6 @@ def _tables(solution: Solution) -> dict[str, Variable]:
             found = np.asarray(values, str) if name in ("cause", "rule") else np.asarray(values)
             variables[f"{prefix}_{name}"] = Variable((prefix,), found, about)
     return variables
-
-
-@for_users
-def open_solution(path: str | Path) -> Solution | PlanarSolution:
-    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
-
-    It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file
-    is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule
-    is not registered.
-    """
-    file = as_path("open_solution: path", path)
-    if file.is_dir():
-        from stickslip.extensions.planar.store_layout import open_planar  # with zarr, which takes half a second to load
-
-        return open_planar(file)
-    return read_solution(file)
 
 
 def read_solution(path: Path) -> Solution:
