@@ -6,12 +6,14 @@ makes of a scenario, or an object of an extension. It is asked once, here, by th
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from stickslip.extension import extensions
+from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario
@@ -49,16 +51,20 @@ class SolverKind:
     takes: frozenset[str]
     """Names of fields of `RunOptions`, of options of its own, and "selection", which replaces the problem's."""
     refusal: str
-    """The message for any other option; braces stand for its name."""
+    """The message for any other option; the first braces stand for its name, the second for what it is for."""
     work: Callable[[], Work] | None = None
     """How the command line runs and shows it; None for one that it cannot run."""
     examine: Callable[[Scenario], Examination] | None = None
     """What can be said of a scenario before it is run; None if nothing but what is given."""
 
+    what: str = ""
+    """What it solves, for messages: "a PlanarSlab"."""
+
     def check(self, who: str, given: Mapping[str, object]) -> None:
         """Refuse options that are given, not None, and not taken. Raises InputError, which begins with `who`."""
         if needless := [name for name, value in given.items() if value is not None and name not in self.takes]:
-            raise InputError(f"{who}: {self.refusal.format(needless[0])}")
+            owner = next((one.what for one in special_solvers() if needless[0] in one.takes), "")
+            raise InputError(f"{who}: {self.refusal.format(needless[0], owner)}")
 
 
 class Reader:
@@ -102,12 +108,16 @@ def special_solver_of(source: Any) -> SolverKind | None:
 
 
 def reader_of(path: Path) -> Reader | None:
-    """Return the reader of the extension whose results a path holds; None if it holds none."""
+    """Return the reader of the extension whose results a path holds; None if it holds none that an extension reads."""
     if path.suffix.lower() in FILES_OF_CORE and not path.is_dir():
         return None
     return next((one for extension in extensions() for one in extension.readers() if one.is_in(path)), None)
 
 
 def no_results(path: Path) -> InputError:
-    """Return the error for a folder that no reader reads."""
+    """Return the error for a folder that no reader reads; if its metadata cannot be read, with the reason."""
+    from stickslip.foundation.zarr_folder import LARGEST_METADATA, METADATA
+
+    if os.path.lexists(path / METADATA):
+        read_bounded(path / METADATA, LARGEST_METADATA)
     return InputError(f"{path}: is a folder that holds no results of stickslip")

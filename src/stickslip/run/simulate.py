@@ -201,6 +201,6 @@ EXACT = SolverKind(
     lambda _: True,
     simulate_exactly,
     ALL_TAKE | {"rtol", "creep_rtol", "shortest_event", "max_events", "max_pieces", "selection", "title", "description"},
-    "{} is an option of the solver of an extension, not of the exact one",
+    "{} is for {}: a single contact is known at all times",
 )
 """The exact solver of a contact that slips as a whole: of every problem of the core."""

@@ -50,6 +50,7 @@ PLANAR = SolverKind(
     "a PlanarSlab has no {}: its nodes and its courant set the accuracy, and its scenario has the title",
     _work,
     _examine,
+    what="a PlanarSlab",
 )
 """The solver of planar slabs, and of scenarios with a [contact]."""
 

@@ -32,6 +32,8 @@ class ContactTable(Table):
     """The table [contact]: a grid along the contact, and what varies along it."""
 
     name = CONTACT
+    what = "[{}] of many nodes"
+    instead = "leave out [{}] for the problem in 1D that each node has"
     run_keys = frozenset({"duration"})
     why_no_others = "has no effect with a [contact], whose nodes and courant set the accuracy"
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.extension import tables
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -21,11 +22,9 @@ if TYPE_CHECKING:
 def solved_by_core(who: str, scenario: Scenario) -> Scenario:
     """Return a scenario if its own problem is solved, as all but runs need it. Raises InputError, which begins with `who`."""
     if not scenario.is_of_core:
-        tables = "] and [".join(name for name, _ in scenario.tables)
-        raise InputError(
-            f"{who}: {scenario.name} has a [{tables}], for which there are `stickslip run`, `check`, `show` and ss.simulate:"
-            f" leave out [{tables}] for the problem of a single contact"
-        )
+        name, table = next((name, tables()[name]) for name, _ in scenario.tables)
+        uses = "for which there are `stickslip run`, `check`, `show` and ss.simulate"
+        raise InputError(f"{who}: {scenario.name} has a {table.what.format(name)}, {uses}: {table.instead.format(name)}")
     return scenario
 
 

@@ -26,6 +26,10 @@ class Table:
 
     name: str
     """The name of the table in files."""
+    what = "[{}]"
+    """What a scenario that has it, and is of a kind of its own, is said to have; braces stand for its name."""
+    instead = "leave out [{}] for the problem of a single contact"
+    """What to do where a problem of the core is needed."""
     run_keys: frozenset[str] | None = None
     """The keys that [run] may have beside the table; None for all."""
     why_no_others = "has no effect with this table"
