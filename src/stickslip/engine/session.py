@@ -17,7 +17,7 @@ from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.phase_index import standing_behind
 from stickslip.engine.history.status import Checkpoint, engine, merging_note, rounding_note, strips_note
 from stickslip.engine.input.branch_table import renewed
-from stickslip.engine.input.limits import creep_tolerance, lumping_note, split_time
+from stickslip.engine.input.limits import lumping_note, split_time
 from stickslip.engine.input.prepare import prepare
 from stickslip.engine.loop import ROOM, run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
@@ -26,6 +26,7 @@ from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSeg
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
 from stickslip.foundation.memory import granted
+from stickslip.problem.limits import creep_tolerance
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
-from stickslip.engine.input.limits import creep_tolerance
 from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.show import clean, how_long, number, with_unit
+from stickslip.problem.limits import creep_tolerance
 from stickslip.problem.scenarios.scenario import doubts
 
 if TYPE_CHECKING:

@@ -20,8 +20,9 @@ from stickslip.engine.creep.steady_landing import SteadyLanding
 from stickslip.engine.creep.swing_landing import SwingLanding
 from stickslip.engine.creep.swing_leaps import SwingLeaps
 from stickslip.engine.history.history import NO_LEAPS
-from stickslip.engine.input.limits import PATIENCE, leaps_over
+from stickslip.engine.input.limits import PATIENCE
 from stickslip.engine.state.layout import NEVER, Counts, Floats, Incoming, Stop
+from stickslip.problem.limits import leaps_over
 from stickslip.problem.problem import Problem
 
 Landing = SteadyLanding | SlowLanding | SwingLanding | CycleLeap

@@ -13,7 +13,6 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
 from stickslip.extensions.planar.contact import Contact
 from stickslip.extensions.planar.contact_table import contact_table, read_contact
 from stickslip.extensions.planar.slab import PlanarSlab
@@ -22,6 +21,7 @@ from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import check_fields, declare
 from stickslip.foundation.show import html_table, shown_fields
+from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol

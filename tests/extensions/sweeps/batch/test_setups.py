@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.contact.regime import regime_of
 from stickslip.contact.rules.selection import OF_LEVELS
-from stickslip.contact.uniqueness import regime_of
 from stickslip.engine.history.slip_events import default_event_rate
 from stickslip.engine.input.limits import split_time, wait_for_creep
 from stickslip.engine.input.prepare import prepare
