@@ -51,10 +51,11 @@ from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_moving_branch
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Stop, Task
+from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
+from stickslip.problem.run_codes import Stop
 
 ROOM = 8
 """Free rows that the history needs for another pass of the loop (1); a pass appends fewer."""

@@ -22,12 +22,13 @@ from stickslip.engine.input.prepare import prepare
 from stickslip.engine.loop import ROOM, run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Stop, Store
+from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Store
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
 from stickslip.foundation.memory import granted
 from stickslip.problem.limits import creep_tolerance
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_codes import Stop
 from stickslip.run.options import RunOptions
 
 FIRST_CAPACITY = 256

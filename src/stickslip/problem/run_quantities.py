@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+
+if TYPE_CHECKING:
+    from stickslip.problem.problem import Problem
 
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
@@ -35,3 +38,14 @@ def check_event_rate(value: Any, where: str) -> float | None:
     Raises InputError, beginning with `where`, if it is out of range.
     """
     return None if value is None else EVENT_RATE.check(where, "event_rate", value)
+
+
+def default_event_rate(problem: Problem) -> float:
+    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z.
+
+    If a contact that can stick is thrown at a smaller rate than S (range of mu) / Z, it is 1e-6 times its initial rate: a block on
+    a soft spring is never faster than that.
+    """
+    fast = problem.normal * problem.friction.variation / problem.body.impedance
+    thrown = problem.friction.sticks and problem.has_initial_rate and not problem.starts_steadily
+    return EVENT_SHARE * (min(fast, abs(problem.rate)) if thrown else fast)

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stickslip.engine.history.status import ENOUGH_EVENTS, STATUSES, TOO_MANY
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
@@ -18,7 +17,9 @@ from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import declare
 from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.problem.run_codes import ENOUGH_EVENTS
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
+from stickslip.problem.run_status import STATUSES, TOO_MANY
 from stickslip.problem.scenarios.source import read_source
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from stickslip.cli.output.files import announce, write_files
 from stickslip.cli.output.pictures import Pictures
 
 if TYPE_CHECKING:
-    from stickslip.engine.history.status import Status
+    from stickslip.problem.run_status import Status
 
 CREEP_RTOL = (
     "Leap over slow creep between pulses (under a law of slip) and over steady sliding from the start, with an error of slip of at "
@@ -129,7 +129,7 @@ def run(
 
 def _say_how_to_go_on(status: Status, file: Path | None, pieces: int) -> None:
     """Say in one line how a run whose history is full goes on from its file, if it has one."""
-    from stickslip.engine.history.status import SHORT_OF_MEMORY, TOO_MANY
+    from stickslip.problem.run_status import SHORT_OF_MEMORY, TOO_MANY
 
     if file is None or status.name != TOO_MANY:
         return

@@ -17,8 +17,8 @@ from stickslip.problem.scenarios.scenario import doubts
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from stickslip.engine.history.status import Status
     from stickslip.problem.problem import Problem
+    from stickslip.problem.run_status import Status
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.run.catalogue import Catalogue
     from stickslip.solution.solution import Solution
@@ -41,8 +41,9 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:
     """Print the summary of a run on standard output, with `everything` that is known of its proof, waves and predictability."""
-    from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+    from stickslip.engine.history.slip_events import SlipEvents
     from stickslip.engine.history.tables import SHOCK_COLUMNS, shock_columns
+    from stickslip.problem.run_quantities import default_event_rate
     from stickslip.solution.observables.event_table import event_columns
 
     screen, history = titled(scenario), solution.history

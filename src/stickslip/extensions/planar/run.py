@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.status import INTERRUPTED, UNSTABLE
-from stickslip.engine.state.layout import Stop
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.extensions.planar.solution import Frames, PlanarSolution
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
+from stickslip.problem.run_codes import INTERRUPTED, UNSTABLE, Stop
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace, how_far, how_fast
