@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
@@ -22,6 +22,20 @@ EVENT_SHARE = 1e-6
 """Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z."""
 LARGEST_RTOL = 1e-2
 """Largest relative tolerance of a run."""
+
+
+class RunNumbers(NamedTuple):
+    """The numbers of a run, which its solver takes: how long and how accurately, and how much it may keep."""
+
+    duration: float
+    """Latest end of the run, s."""
+    rtol: float
+    creep_rtol: float | None
+    """Tolerance of leaps over creep; None is automatic."""
+    shortest_event: float | None
+    """Slip events shorter than this (s) are lumped; None is automatic."""
+    most_pieces: int
+    """Largest number of pieces that the history may have."""
 
 
 def check_rtol(value: Any, where: str, name: str = "rtol") -> float:
