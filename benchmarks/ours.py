@@ -8,14 +8,14 @@ from collections.abc import Callable
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.engine.history.history import History
-from stickslip.engine.history.status import STATUSES
 from stickslip.engine.input.limits import split_time
 from stickslip.engine.input.prepare import prepare
 from stickslip.engine.loop import run_until
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend_history
+from stickslip.problem.run_codes import Stop
+from stickslip.problem.run_status import STATUSES
 from stickslip.solution.solution import Solution
 
 CAPACITY = 2048

@@ -3,6 +3,7 @@
 # What slides, what resists it, what drives it
 # Many runs
 from . import figures, friction, studies
+from .contact.uniqueness import uniqueness
 
 # One run
 from .extensions.explorer.notebook import explore
@@ -15,7 +16,6 @@ from .foundation.errors import InputError
 from .problem import Problem, loading, selection
 from .problem.bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
 from .problem.scenarios.scenario import load_scenario, scenarios
-from .problem.scenarios.source import uniqueness
 from .run.catalogue import catalogue
 from .run.open_solution import open_solution
 from .run.resume import resume

@@ -11,12 +11,12 @@ from typing import Any
 
 import typer
 
-from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import show_in
 from stickslip.problem.given_units import units_given
+from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
 from stickslip.problem.scenarios.entries import read_typed, typed_number

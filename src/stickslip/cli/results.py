@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.cli.output.pictures import Pictures
-    from stickslip.engine.history.status import Status
     from stickslip.problem.problem import Problem
+    from stickslip.problem.run_status import Status
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.run.catalogue import Catalogue
     from stickslip.solution.solution import Solution

@@ -16,8 +16,8 @@ from stickslip.run.progress import progress_line
 
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
-    from stickslip.engine.history.status import Status
     from stickslip.problem.problem import Problem
+    from stickslip.problem.run_status import Status
 
 
 class Work(ABC):
@@ -143,7 +143,7 @@ class EventsOnly(Work):
 
 def _with_more_room(status: Status, file: Path | None, pieces: int) -> str:
     """Return how a run whose history is full goes on from its file, if it has one."""
-    from stickslip.engine.history.status import SHORT_OF_MEMORY, TOO_MANY
+    from stickslip.problem.run_status import SHORT_OF_MEMORY, TOO_MANY
 
     if file is None or status.name != TOO_MANY:
         return ""

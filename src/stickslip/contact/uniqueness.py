@@ -8,44 +8,43 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal, Unpack
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.contact.branches import branches_of, rates_at, resistance
 from stickslip.contact.critical import critical_normal_stress, nearest_critical
-from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
+from stickslip.contact.folds import Certificate, Fold, Verdict, critical_stress_between, sentence
+from stickslip.contact.regime import Regime, named_regime, proof_of, window_of
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.contact.slopes import FASTEST
-from stickslip.foundation.arguments import NamesAttributes
+from stickslip.contact.uniqueness_in_words import INERTIA, MOST_SHOWN, STATE, STATE_FALLS, said_of_pressing, summary_of
+from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
-from stickslip.foundation.show import brief, exact_range, html_table
+from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
 from stickslip.problem.resistance import Branch, Plateau, Resistance
-from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES
+from stickslip.problem.scenarios.source import read_source
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from stickslip.foundation.place import Place
+    from stickslip.problem.scenarios.scenario import Scenario
 
-MOST_SHOWN = 6
-"""Largest number of folds, and of jumps, that `repr` and `summary` show."""
 MOST_LEFT = 16
 """If there is no end of folds, only the jumps of this many branches are worked out."""
-
-
-Regime = Literal["regular", "irregular", "continuum"]
-"""Possible values of `Uniqueness.regime`."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -215,6 +214,36 @@ class Uniqueness(NamesAttributes):
         return rates[order], kinds[order]
 
 
+@for_users
+def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
+    """Determine whether the load fixes the slip rate of a contact, and otherwise what the selection rule does.
+
+    The problem may also be given by its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with
+    mass and a law with a state, the answer is "regular". `law_slip` (m, or a text with a unit) is the slip as the law counts it;
+    the initial slip by default. The contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular (Campillo et al.
+    1996, section 3).
+
+    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the
+    selection rule cannot be followed; for a scenario also as `stickslip.load_scenario` does.
+
+    See Also
+    --------
+    stickslip.studies.critical_value : the value of a parameter where the answer ceases to be unique.
+    stickslip.selection : the rules that select one of several answers.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> body = ss.ElasticSlab(thickness="10 km", density=2700, wave_speed="3 km/s", normal_stress="100 MPa")
+    >>> law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha="1 s/m")
+    >>> answer = ss.uniqueness(ss.Problem(body, law, pull_rate="3 cm/year", initial_excess=0.0))
+    >>> print(answer.regime, f"above {answer.critical_parameter} = {answer.critical_value:.4f} {answer.critical_unit}")
+    irregular above alpha = 0.1620 s/m
+    """
+    found = read_source("uniqueness", problem)
+    return uniqueness_of(found if isinstance(found, Problem) else found.problem, law_slip)
+
+
 def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
     """Determine the uniqueness of the slip rate of a problem: see `stickslip.uniqueness`."""
     slip = None if law_slip is None else quantities_of(Problem)["initial_slip"].check("uniqueness", "law_slip", law_slip)
@@ -222,70 +251,26 @@ def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = No
     return (_kept if problem.selection in SELECTION_RULES else _determined)(problem, slip)
 
 
-def regime_of(problem: Problem) -> Regime:
-    """Return the `regime` of `uniqueness_of` without the jumps and loop of the rule: a sweep asks for it in each of its runs."""
-    if problem.body.has_inertia or problem.friction.states:
-        return "regular"
-    return regime_at(resistance(problem, None))
-
-
-def regime_at(g: Resistance) -> Regime:
-    """Return the regime of a contact without mass at one slip of its law, proven where the law has formulas."""
-    return _regime(g, _window(branches_of(g, _proof(g))))
-
-
-@lru_cache(maxsize=16)
-def regime_when_pressed(problem: Problem) -> Regime:
-    """Return the regime of a contact without mass, at the first slip of its law, under the largest normal load that it ever bears.
-
-    A contact that is regular then is regular under every smaller normal load, because Z + S dmu/dv grows as S falls.
-    """
-    most = None if problem.normal_load is None else problem.normal_load.highest
-    return regime_at(resistance(problem, normal=most))
-
-
-def folds_not_followed(problem: Problem) -> str:
-    """Return why a problem whose folds move with its normal load cannot be run under its selection rule; empty if it can."""
-    law, history = problem.friction, problem.normal_load
-    if history is None or history.is_stepped or problem.rule == PERFECT_DELAY:
-        return ""
-    if problem.body.has_inertia or law.states or not law.depends_on_rate or regime_when_pressed(problem) == "regular":
-        return ""
-    most = brief(history.highest, problem.load_unit)
-    return (
-        f"selection {problem.rule!a}: under {most} several slip rates solve the contact equation, and the folds between them move "
-        f"with the normal load: only {PERFECT_DELAY} is followed there; where the normal load changes by steps alone every rule is"
-    )
-
-
-def _regime(g: Resistance, window: tuple[float, float] | None) -> Regime:
-    return "continuum" if g.plateaus else "irregular" if window else "regular"
-
-
-def _proof(g: Resistance) -> Certificate:
-    return certificate(g) if g.law.depends_on_rate else Certificate("proven")
-
-
 def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     """Determine the uniqueness at a slip (m) of the law; None stands for the initial one."""
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
-        return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule), problem=problem, law_slip=slip)
+        return Uniqueness("regular", problem.rule, INERTIA.format(body=mass, rule=problem.rule), problem=problem, law_slip=slip)
     if problem.friction.states:
-        text = _STATE if rises_with_rate(problem.friction) else _STATE_FALLS
+        text = STATE if rises_with_rate(problem.friction) else STATE_FALLS
         said = text.format(law=type(problem.friction).__name__, rule=problem.rule)
         return Uniqueness("regular", problem.rule, said, problem=problem, law_slip=slip)
     g = resistance(problem, slip)
-    proof = _proof(g)
+    proof = proof_of(g)
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
-    window, critical, endless = _window(stable), _critical(problem, g, slip), proof.reach < FASTEST
+    window, critical, endless = window_of(stable), _critical(problem, g, slip), proof.reach < FASTEST
     jumps = jumps_of(g, stable, table, min(len(stable), MOST_LEFT) if endless else len(stable)) if window else ()
     return Uniqueness(
-        regime=_regime(g, window),
+        regime=named_regime(g, window),
         rule=problem.rule,
-        summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds) + _pressed(problem, g),
+        summary=summary_of(problem, g, critical, window, jumps) + sentence(g, proof, folds) + said_of_pressing(problem, g),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
         critical_unit=problem.parameters[critical[0]].unit if critical else "",
@@ -321,88 +306,3 @@ def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tup
     ends = {end: None for b in stable for end in ((b.rate_from, b.excess_from), (b.rate_to, b.excess_to))}
     moving = sorted((rate, excess) for rate, excess in ends if 0.0 < rate < np.inf)
     return tuple(Fold(rate, g.strength + excess, proof.enclosure(rate), g.load_unit) for rate, excess in moving)
-
-
-def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:
-    """Return the range of loads with several solutions, as excess (Pa), from the lowest fold to the highest.
-
-    The end of stick (excess 0) counts as a fold. The result is None if there is one solution at every load, and has no width if
-    only a plateau has several.
-    """
-    lower = [b.excess_from for b in stable if b.rate_from > 0.0 or b.excess_from < 0.0]
-    upper = [b.excess_to for b in stable if b.rate_to < np.inf]
-    if stable[0].rate_from > 0.0 or stable[0].excess_from < 0.0:
-        upper.append(0.0)
-    return (min(lower), max(upper)) if lower else None
-
-
-_INERTIA = (
-    "{body} has inertia: its slip rate is a state that changes continuously, and the motion is unique (regular) whatever the "
-    "friction law. The selection rule ({rule}) has no effect."
-)
-_STATE = (
-    "{law}: regular. The slip rate follows from load and state, and is unique: at a given state friction does not fall with the "
-    "slip rate. The selection rule ({rule}) has no effect."
-)
-_STATE_FALLS = (
-    "{law}: regular as long as friction, at a given state, falls with the slip rate by less than waves carry away. The slip rate "
-    "then follows from load and state, and is unique. A run that is seen to get beyond that ends as off the law; a contact with "
-    "mass goes on. The selection rule ({rule}) has no effect."
-)
-
-
-def _summary(
-    problem: Problem, g: Resistance, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]
-) -> str:
-    """Return a paragraph that summarises the result for the user."""
-    law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
-    bound = ""
-    if critical:
-        found = problem.parameters[critical[0]]
-        there, here = (brief(value, found.unit, 9) for value in (critical[1], found.value))
-        bound = f" The critical value is {critical[0]} = {there}; here {critical[0]} = {here}."
-    if not problem.friction.depends_on_rate:
-        reason = "friction does not depend on the slip rate and the impedance Z is positive"
-        return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
-    if window is None:
-        reason = "the resistance Z v + S mu(v) rises with the slip rate everywhere"
-        return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
-    unit, rate = problem.load_unit, problem.unit_of("slip_rate")
-    flat = "; ".join(
-        f"{exact_range((p.rate_from, p.rate_to), rate, 6)} at a load of {brief(g.strength + p.excess, unit, 9)}" for p in g.plateaus
-    )
-    sizes = [f"a continuum of slip rates, {flat}, where no rule picks one"] if flat else []
-    if window[0] < window[1]:
-        end = window[1]
-        side = "at" if end == 0.0 else f"{brief(abs(end), unit)} {'above' if end > 0.0 else 'below'}"
-        sizes.append(f"a window of {brief(end - window[0], unit)} that ends {side} the static strength")
-    steps = "; ".join(
-        f"{j.direction} from {exact_range((j.rate_before, j.rate_after), rate, 6)} at a load of {brief(j.load, unit, 9)}"
-        for j in jumps[:MOST_SHOWN]
-    )
-    steps += f"; and {len(jumps) - MOST_SHOWN} more" if len(jumps) > MOST_SHOWN else ""
-    moves = f"jumps {steps}" if steps else "makes no jump"
-    several = f"Several slip rates solve the contact equation in {' and in '.join(sizes)}."
-    return f"{law}: {'continuum' if flat else 'irregular'}. {several}{bound} The rule '{problem.rule}' {moves}."
-
-
-def _named(problem: Problem, g: Resistance) -> str:
-    law = problem.friction
-    moving = law.depends_on_slip and law.depends_on_rate
-    slip = f" at a slip of {g.law_slip:.6g} {problem.unit_of('slip')}" if moving else ""
-    return f"{type(law).__name__}{slip}{' under the first normal load' if problem.normal_varies else ''}"
-
-
-def _pressed(problem: Problem, g: Resistance) -> str:
-    """Return a sentence on the regimes under a normal load that varies; empty if it is constant, or friction is not of the rate."""
-    history, unit = problem.normal_load, problem.load_unit
-    if history is None or not problem.friction.depends_on_rate:
-        return ""
-    stress = critical_normal_stress(g)
-    low, high = brief(history.lowest, unit), brief(history.highest, unit)
-    ranges = f" The normal load varies from {low} to {high}: "
-    if stress is None or history.highest <= stress:
-        return f"{ranges}the contact is regular under all of it."
-    if history.lowest >= stress:
-        return f"{ranges}the contact is irregular under all of it, and the folds move with it."
-    return f"{ranges}the contact is regular up to {brief(stress, unit, 9)} and irregular above, where the folds move with it."

@@ -51,13 +51,12 @@ from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_moving_branch
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Stop, Task
-from stickslip.engine.state.workspace import Run, borrow
+from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Task
+from stickslip.engine.state.workspace import ROOM, Run, borrow, lacks_rows
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
+from stickslip.problem.run_codes import Stop
 
-ROOM = 8
-"""Free rows that the history needs for another pass of the loop (1); a pass appends fewer."""
 LARGEST_STALL = 1000
 """A run ends after more than this many consecutive steps that take no time (1), because they would never stop. A contact that never
 sticks may take hundreds as it comes to rest: its slip rate falls by tens of orders of magnitude in less time than is resolved."""
@@ -124,12 +123,6 @@ def obstacle(run: Run) -> int:
     if run.counts.stalled > LARGEST_STALL or run.counts.unresolved_slips > LARGEST_STORM:
         return Stop.STORM
     return Stop.NEED_BRANCHES if needs_branches(run) else Stop.NONE
-
-
-@kernel
-def lacks_rows(run: Run) -> bool:
-    """Return True if a body of layers needs more rows of waves than there are, for this round trip and the one before."""
-    return run.counts.cells > 0 and run.counts.length - run.counts.previous_from + ROOM > run.wave_rows
 
 
 @kernel

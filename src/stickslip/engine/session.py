@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Self
+from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -17,17 +17,30 @@ from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.phase_index import standing_behind
 from stickslip.engine.history.status import Checkpoint, engine, merging_note, rounding_note, strips_note
 from stickslip.engine.input.branch_table import renewed
-from stickslip.engine.input.limits import creep_tolerance, lumping_note, split_time
+from stickslip.engine.input.limits import lumping_note, split_time
 from stickslip.engine.input.prepare import prepare
-from stickslip.engine.loop import ROOM, run_until
+from stickslip.engine.loop import run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Stop, Store
-from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
+from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Store
+from stickslip.engine.state.workspace import (
+    FIRST_ROW,
+    NO_WAVES,
+    are_rows_short,
+    count_from,
+    counts_in,
+    lend,
+    lend_history,
+    scratch_in,
+    state_in,
+    with_more_rows,
+)
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
 from stickslip.foundation.memory import granted
+from stickslip.problem.limits import creep_tolerance
 from stickslip.problem.problem import Problem
-from stickslip.run.options import RunOptions
+from stickslip.problem.run_codes import Stop
+from stickslip.problem.run_quantities import RunNumbers
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""
@@ -42,12 +55,23 @@ WORTH = 1.25
 """Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
 
 
+class Asked(Protocol):
+    """Options of a run, of which a session needs only the numbers; `run.options.RunOptions` are such options."""
+
+    @property
+    def numbers(self) -> RunNumbers:
+        """How long and how accurately to run, and the largest number of pieces of history."""
+
+
+Options = TypeVar("Options", bound=Asked)
+
+
 @dataclass(eq=False)
-class Session:
+class Session(Generic[Options]):
     """The options, the setup, the state and the history of a run between two calls of the engine; `ExactRun` is the run."""
 
     problem: Problem
-    options: RunOptions
+    options: Options
     setup: Setup
     memory: Integers
     """State, scratch space and addresses of the tables, in one array: see `workspace.Run`."""
@@ -69,7 +93,7 @@ class Session:
     def __post_init__(self) -> None:
         self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
-        self.last = split_time(self.options.duration, self.problem.round_trip_time)
+        self.last = split_time(self.options.numbers.duration, self.problem.round_trip_time)
         if self.leaps is not None:
             self.leaps.begin(self.count)
         if self.count.cells > 0 and not len(self.waves):
@@ -78,23 +102,24 @@ class Session:
         lend_parts_at_hand(self.memory)
 
     @classmethod
-    def begin(cls, problem: Problem, options: RunOptions) -> Self:
+    def begin(cls, problem: Problem, options: Options) -> Self:
         """Return a run at t = 0."""
-        setup, memory = prepare(problem, options.rtol, options.shortest_event)
-        capacity = min(FIRST_CAPACITY, options.most_pieces + SPARE)
+        numbers = options.numbers
+        setup, memory = prepare(problem, numbers.rtol, numbers.shortest_event)
+        capacity = min(FIRST_CAPACITY, numbers.most_pieces + SPARE)
         store = at.new_store(capacity, problem.kept_series)
-        tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
-        leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
+        tolerance = creep_tolerance(problem, numbers.creep_rtol, numbers.rtol)
+        leaps = CreepLeaps(problem, tolerance, patient=numbers.creep_rtol is None) if tolerance > 0.0 else None
         return cls(problem, options, setup, memory, store, EchoNode.table(capacity), leaps)
 
     @classmethod
-    def at_checkpoint(cls, history: History, checkpoint: Checkpoint, options: RunOptions) -> Self:
+    def at_checkpoint(cls, history: History, checkpoint: Checkpoint, options: Options) -> Self:
         """Return a run that continues from a checkpoint, on a copy of the history."""
         run = cls.begin(history.problem, options)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        capacity = max(checkpoint.length, min(capacity, options.most_pieces + SPARE))
+        capacity = max(checkpoint.length, min(capacity, options.numbers.most_pieces + SPARE))
         run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
         run.restore(checkpoint)
         return run
@@ -116,7 +141,7 @@ class Session:
     @property
     def lumping_note(self) -> str:
         """One line on automatic lumping, or an empty string if it has not begun."""
-        return lumping_note(self.count, self.params, self.options.shortest_event)
+        return lumping_note(self.count, self.params, self.options.numbers.shortest_event)
 
     @property
     def rounding_note(self) -> str:
@@ -165,9 +190,8 @@ class Session:
 
     def grow(self) -> bool:
         """Make room for more pieces. Returns False if there are as many as the options allow, or if memory is short."""
-        max_pieces = self.options.most_pieces
-        # as `engine.loop.lacks_rows`, which only compiled code can call
-        if self.count.cells > 0 and self.length - self.count.previous_from + ROOM > len(self.waves) - FIRST_ROW:
+        max_pieces = self.options.numbers.most_pieces
+        if are_rows_short(self.count, self.waves):
             return self._more_rows()
         if self.length >= max_pieces:
             return False
@@ -198,17 +222,12 @@ class Session:
 
     def _more_rows(self) -> bool:
         """Make room for more rows of waves. Returns False if memory is short."""
-        before = len(self.waves) - FIRST_ROW
         wanted = self.taken + 3 * self.waves.nbytes
         if granted(wanted, self.taken) < wanted:
             self.is_short_of_memory = True
             return False
         with suppress(MemoryError):
-            waves = np.zeros((FIRST_ROW + 4 * before, *self.waves.shape[1:]))
-            waves[:FIRST_ROW] = self.waves[:FIRST_ROW]
-            kept = np.arange(int(self.count.previous_from), self.length) + int(self.count.wave_shift)
-            waves[FIRST_ROW + kept % (4 * before)] = self.waves[FIRST_ROW + kept % before]
-            self.waves = waves
+            self.waves = with_more_rows(self.waves, self.count, 4 * (len(self.waves) - FIRST_ROW))
             self._lend()
             return True
         self.is_short_of_memory = True
@@ -232,11 +251,7 @@ class Session:
         standing, _, _ = standing_behind(at.trimmed(self.store, piece), self.problem.round_trip_time)
         kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
         dropped = self.length - len(kept)
-        place = at.keep_only(self.store, self.length, kept)
-        self.count.echo_of = place[self.count.echo_of]
-        for name in ("length", "trip_from", "previous_from", "previous_to", "new_from", "smooth_to"):
-            setattr(self.count, name, getattr(self.count, name) - dropped)
-        self.count.wave_shift += dropped
+        count_from(self.count, at.keep_only(self.store, self.length, kept), dropped)
         self._rebuild_queue()
         self.forgotten += dropped
         return dropped

@@ -253,3 +253,19 @@ def short_units(unit: str) -> tuple[tuple[str, float], ...]:
     return (
         tuple((name, size) for size, name in reversed(sizes_of(unit)) if size > 1.0) if has_prefixes(unit) else _SHORT.get(unit, ())
     )
+
+
+ENERGY_NAMES = {
+    "work": "work of the driver, and of moving ground",
+    "stored": "elastic and kinetic energy",
+    "elastic": "elastic energy",
+    "kinetic": "kinetic energy, with those of a contact mass and of the driver's mass",
+    "heat": "friction heat, from the law",
+    "damped": "dissipated by the damping of a block, or the drag of layers",
+    "radiated": "energy radiated through a driver of finite impedance; work is net of it",
+    "balance": "work - stored - heat - damped: zero for an exact solution",
+    "trapped": "energy of the waves inside the body, beyond a state of uniform stress",
+    "elastic_in_layer": "elastic energy in each layer",
+    "kinetic_in_layer": "kinetic energy in each layer, without that of a contact mass",
+}
+"""Long names of the energies in a dataset."""

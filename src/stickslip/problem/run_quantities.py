@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+
+if TYPE_CHECKING:
+    from stickslip.problem.problem import Problem
 
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
@@ -19,6 +22,20 @@ EVENT_SHARE = 1e-6
 """Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z."""
 LARGEST_RTOL = 1e-2
 """Largest relative tolerance of a run."""
+
+
+class RunNumbers(NamedTuple):
+    """The numbers of a run, which its solver takes: how long and how accurately, and how much it may keep."""
+
+    duration: float
+    """Latest end of the run, s."""
+    rtol: float
+    creep_rtol: float | None
+    """Tolerance of leaps over creep; None is automatic."""
+    shortest_event: float | None
+    """Slip events shorter than this (s) are lumped; None is automatic."""
+    most_pieces: int
+    """Largest number of pieces that the history may have."""
 
 
 def check_rtol(value: Any, where: str, name: str = "rtol") -> float:
@@ -35,3 +52,14 @@ def check_event_rate(value: Any, where: str) -> float | None:
     Raises InputError, beginning with `where`, if it is out of range.
     """
     return None if value is None else EVENT_RATE.check(where, "event_rate", value)
+
+
+def default_event_rate(problem: Problem) -> float:
+    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z.
+
+    If a contact that can stick is thrown at a smaller rate than S (range of mu) / Z, it is 1e-6 times its initial rate: a block on
+    a soft spring is never faster than that.
+    """
+    fast = problem.normal * problem.friction.variation / problem.body.impedance
+    thrown = problem.friction.sticks and problem.has_initial_rate and not problem.starts_steadily
+    return EVENT_SHARE * (min(fast, abs(problem.rate)) if thrown else fast)

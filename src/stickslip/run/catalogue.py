@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.engine.history.reach import Reach, reach_of
-from stickslip.engine.history.status import ENOUGH_EVENTS, UNDER_WAY, Status
 from stickslip.engine.history.tables import creep_note
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.atomic_write import check_replaceable
@@ -17,7 +16,9 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_codes import ENOUGH_EVENTS, UNDER_WAY
 from stickslip.problem.run_quantities import check_event_rate
+from stickslip.problem.run_status import Status
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress, reporting

@@ -7,18 +7,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from typing_extensions import override
 
-from stickslip.engine.history.slip_events import default_event_rate
-from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, UNDER_WAY, Checkpoint, Crowd, Status
-from stickslip.engine.input.limits import MOST_PIECES, PATIENCE, leaps_over, lumps_by_itself
+from stickslip.engine.history.status import Checkpoint
+from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
 from stickslip.engine.session import SPARE, Session
-from stickslip.engine.state.layout import Stop
+from stickslip.problem.limits import leaps_over, lumps_by_itself
+from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, UNDER_WAY, Stop
+from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem.run_status import STATUSES, Crowd, Status
+from stickslip.run.options import RunOptions
 from stickslip.run.progress import Doing, Pace, Report
 from stickslip.solution.observables.event_stream import EventStream, Look
 from stickslip.solution.solution import Solution
 
 
 @dataclass(eq=False)
-class ExactRun(Session):
+class ExactRun(Session[RunOptions]):
     """A session with its slip events, an implementation of `run.solver.Solver`."""
 
     stream: EventStream = field(init=False)

@@ -9,15 +9,16 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stickslip.engine.history.status import ENOUGH_EVENTS, STATUSES, TOO_MANY
-from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import declare
+from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.problem import Problem, check_problem
-from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
+from stickslip.problem.run_codes import ENOUGH_EVENTS
+from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, RunNumbers, check_rtol
+from stickslip.problem.run_status import STATUSES, TOO_MANY
 from stickslip.problem.scenarios.source import read_source
 
 if TYPE_CHECKING:
@@ -116,6 +117,11 @@ class RunOptions:
     def most_pieces(self) -> int:
         """The largest number of pieces that the history may have."""
         return MAX_PIECES if self.max_pieces is None else self.max_pieces
+
+    @property
+    def numbers(self) -> RunNumbers:
+        """The numbers that the exact solver takes."""
+        return RunNumbers(self.duration, self.rtol, self.creep_rtol, self.shortest_event, self.most_pieces)
 
     def alone(self) -> AbstractContextManager[None]:
         """Reserve the run's file, if it has one, against other runs until the `with` block ends.

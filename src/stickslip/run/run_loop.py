@@ -16,9 +16,9 @@ from signal import SIGINT, default_int_handler
 from types import FrameType
 from typing import Any, Generic, Protocol, Self, TypeVar
 
-from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, STATUSES
-from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
+from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, Stop
+from stickslip.problem.run_status import STATUSES
 from stickslip.run.progress import Pace
 from stickslip.run.solver import NewEvents, Solver
 
@@ -175,7 +175,7 @@ def run_to_end(run: Solver[New, Any], sink: Sink[New, Result]) -> Result:
 
 
 def run_loop(run: Solver[Any, Any], watch: Watch, interrupts: Interrupts) -> int:
-    """Run to the end, or until Ctrl-C has been noted. Returns the code of the run's end (see `trajectory.status`)."""
+    """Run to the end, or until Ctrl-C has been noted. Returns the code of the run's end (see `problem.run_codes`)."""
     budget = FIRST_BUDGET
     try:
         while True:

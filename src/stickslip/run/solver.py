@@ -44,7 +44,7 @@ class Solver(Protocol[New_co, Result_co]):
         """Advance by at most `budget` steps, or by work that takes as long, towards the end of the run, `options.duration`.
 
         Return a code: Stop.NONE if the steps are used up, Stop.END_AHEAD if the next call takes the run to its end, Stop.FULL if
-        the history has no more room, or the code of the run's end, a key of `trajectory.status.STATUSES`.
+        the history has no more room, or the code of the run's end, a key of `problem.run_status.STATUSES`.
         """
 
     def grow(self) -> bool:

@@ -12,15 +12,15 @@ from numpy.typing import ArrayLike
 
 from stickslip.engine.history.history import History
 from stickslip.engine.history.reach import Reach, reach_of
-from stickslip.engine.history.slip_events import default_event_rate
-from stickslip.engine.history.status import Checkpoint, Status
+from stickslip.engine.history.status import Checkpoint
 from stickslip.engine.history.tables import creep_note, creep_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, exactly, how_long, html_table
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import check_event_rate
+from stickslip.problem.run_quantities import check_event_rate, default_event_rate
+from stickslip.problem.run_status import Status
 from stickslip.problem.scenarios.scenario import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
 from stickslip.solution.observables.event_table import events_table

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
-from stickslip.engine.history.status import STATUSES
+from stickslip.problem.run_status import STATUSES
 
 FOREIGN = b"# stick-slip tests, not made by stickslip\ntime,force\n0,1\n"
 """A file of somebody else that a command was told to write by mistake."""

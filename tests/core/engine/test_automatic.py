@@ -15,11 +15,12 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.engine.creep.stepper import CreepLeaps
-from stickslip.engine.history.status import STATUSES
-from stickslip.engine.input.limits import AUTOMATIC_SHARE, MOST_PIECES, PATIENCE, creep_tolerance
-from stickslip.engine.state.layout import Stop
+from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
 from stickslip.extensions.sweeps.batch import run_members
 from stickslip.foundation.units import to_si
+from stickslip.problem.limits import AUTOMATIC_SHARE, creep_tolerance
+from stickslip.problem.run_codes import Stop
+from stickslip.problem.run_status import STATUSES
 from tests.core.engine.creep_truth import GROWN, ROUND, printed
 from tests.core.run.long_runs.problems import differences, stopped_and_continued
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.state.layout import NEVER, Stop
+from stickslip.engine.state.layout import NEVER
+from stickslip.problem.run_codes import Stop
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from tests.core.run.long_runs.problems import continued, differences

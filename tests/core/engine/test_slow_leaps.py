@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import stickslip as ss
 from stickslip.engine.creep import slow
-from stickslip.engine.input.limits import leaps_over
+from stickslip.problem.limits import leaps_over
 from tests.core.run.long_runs.problems import differences, stopped_and_continued
 
 SLAB = ss.ElasticSlab(2700.0, 3000.0, 1e4, 50e6)

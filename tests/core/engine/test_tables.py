@@ -17,10 +17,11 @@ from numpy.polynomial import Polynomial
 import stickslip as ss
 from stickslip.engine.history.history import Epoch, History, Positions
 from stickslip.engine.history.phase_index import Phases, standing_behind
-from stickslip.engine.history.slip_events import EventTurns, SlipEvents, default_event_rate, group_turns
+from stickslip.engine.history.slip_events import EventTurns, SlipEvents, group_turns
 from stickslip.engine.history.turning_points import Turn, keeps_its_sign
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings
 from stickslip.engine.state.layout import TERMS
+from stickslip.problem.run_quantities import default_event_rate
 from tests.core.run.long_runs.problems import RUNS
 from tests.problems import SLAB
 

@@ -16,10 +16,10 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.history.status import UNDER_WAY
 from stickslip.extensions.studies import kept_runs
 from stickslip.extensions.studies.ensemble import Ensemble, ensemble
 from stickslip.extensions.studies.separation import disturbed, shared_events, slope
+from stickslip.problem.run_codes import UNDER_WAY
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.solution.files.netcdf import save_checkpoint

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
-from stickslip.engine.input.limits import creep_tolerance
 from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.show import clean, how_long, number, with_unit
+from stickslip.problem.limits import creep_tolerance
 from stickslip.problem.scenarios.scenario import doubts
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from stickslip.engine.history.status import Status
     from stickslip.problem.problem import Problem
+    from stickslip.problem.run_status import Status
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.run.catalogue import Catalogue
     from stickslip.solution.solution import Solution
@@ -41,8 +41,9 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:
     """Print the summary of a run on standard output, with `everything` that is known of its proof, waves and predictability."""
-    from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+    from stickslip.engine.history.slip_events import SlipEvents
     from stickslip.engine.history.tables import SHOCK_COLUMNS, shock_columns
+    from stickslip.problem.run_quantities import default_event_rate
     from stickslip.solution.observables.event_table import event_columns
 
     screen, history = titled(scenario), solution.history

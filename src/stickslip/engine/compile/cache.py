@@ -73,7 +73,7 @@ COMPILED_FILES = (
     "engine/history/machine_motion.py",
     "engine/history/phase_index.py",
     "engine/history/slip_events.py",
-    "engine/history/status.py",
+    "problem/run_codes.py",
     "engine/history/turning_points.py",
 )
 """Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""

@@ -11,8 +11,9 @@ from stickslip.engine.memory.addresses import ahead, call_state_value, call_valu
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import BranchRow, Cause, Floats, Incoming, Stop
+from stickslip.engine.state.layout import BranchRow, Cause, Floats, Incoming
 from stickslip.engine.state.workspace import Run
+from stickslip.problem.run_codes import Stop
 
 TIE = 1e-13
 """An event closer (in xi) to the end of a piece than this waits for the start of the next piece, because changes that arrive with

@@ -28,8 +28,9 @@ from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import bound_of_slope, bounds_on_disc, multiply, powers_of, variation_on_disc
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
-from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop
+from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput
 from stickslip.engine.state.workspace import Run
+from stickslip.problem.run_codes import Stop
 
 ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0
 """Largest share of a step (1), in units of the local tolerance, which is a tenth of rtol. The second number is for a contact with

@@ -23,8 +23,9 @@ from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, StepEvent, Stop
+from stickslip.engine.state.layout import Floats, StepEvent
 from stickslip.engine.state.workspace import Run
+from stickslip.problem.run_codes import Stop
 
 STILL = 1e-3
 """The slip rate of a contact hanging in bristles is only rounding if it is below this share (1) of the hanging slip rate."""

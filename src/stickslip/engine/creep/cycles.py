@@ -18,9 +18,9 @@ from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.slow_landing import ROUNDINGS
 from stickslip.engine.creep.steady import SHORTEST_LEAP, integrals
 from stickslip.engine.creep.steady_landing import continue_after, write_piece
-from stickslip.engine.history.slip_events import default_event_rate
 from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.problem.run_quantities import default_event_rate
 
 LOOKED_AT = 400
 """Number of pieces in which cycles are looked for."""

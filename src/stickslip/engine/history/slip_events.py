@@ -15,8 +15,7 @@ from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import EVENT_SHARE
+from stickslip.problem.run_quantities import default_event_rate
 
 LAST_THIRD = 2.0 / 3.0
 """After this share of a run (1), transients from its start count as over."""
@@ -147,17 +146,6 @@ def walk(history: History, threshold: float, begin: int = 0) -> Integers:
         if found != FULL:
             return turns[:found]
         room *= 2
-
-
-def default_event_rate(problem: Problem) -> float:
-    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z.
-
-    If a contact that can stick is thrown at a smaller rate than S (range of mu) / Z, it is 1e-6 times its initial rate: a block on
-    a soft spring is never faster than that.
-    """
-    fast = problem.normal * problem.friction.variation / problem.body.impedance
-    thrown = problem.friction.sticks and problem.has_initial_rate and not problem.starts_steadily
-    return EVENT_SHARE * (min(fast, abs(problem.rate)) if thrown else fast)
 
 
 class SlipEvents(NamedTuple):

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip.contact.regime import regime_when_pressed
 from stickslip.contact.sliding import driven_at, slides_on
 from stickslip.contact.steady import steady_slidings
-from stickslip.contact.uniqueness import regime_when_pressed
 from stickslip.engine.history.history import History, Positions
 from stickslip.engine.input.branch_table import is_algebraic
-from stickslip.engine.input.limits import leaps_over
+from stickslip.problem.limits import leaps_over
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from stickslip.contact.branches import resistance
+from stickslip.contact.regime import regime_when_pressed
 from stickslip.contact.rules.selection import Branches, selection_table, table_of
-from stickslip.contact.uniqueness import regime_when_pressed
 from stickslip.engine.state.layout import BranchRow, Counts, Floats, Params, Setup, State
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.contact.regime import folds_not_followed
 from stickslip.contact.rules.selection import rule_of
-from stickslip.contact.uniqueness import folds_not_followed
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.contact_step.certificate import RATIOS
 from stickslip.engine.input.branch_table import branch_of, is_algebraic, table_of_branches
@@ -27,13 +27,14 @@ from stickslip.engine.input.forcing import (
     wave_before,
 )
 from stickslip.engine.input.ladder import first_pieces, ladder_of, set_counts
-from stickslip.engine.input.limits import automatic_length, set_length, set_lumping
+from stickslip.engine.input.limits import set_length, set_lumping
 from stickslip.engine.input.shaking import force_steps, put_ground, shaking_of, tone_of
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
+from stickslip.problem.limits import automatic_length
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import EVENT_SHARE

@@ -52,7 +52,6 @@ from stickslip.engine.lanes.lane_block import (
     put_in,
     take_out,
 )
-from stickslip.engine.loop import ROOM
 from stickslip.engine.memory.addresses import ahead, call_jet, call_radii, call_values, integers
 from stickslip.engine.memory.pointers import numbers_of, rows_of
 from stickslip.engine.memory.simd import WIDTH, chosen, first_of, store_across
@@ -69,7 +68,7 @@ from stickslip.engine.series.polynomial import (
 )
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
-from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
+from stickslip.engine.state.workspace import ROOM, RUN_SIZE, Run, borrow
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""

@@ -18,8 +18,9 @@ from stickslip.engine.history.turning_points import Known, Turn, starts_from_res
 from stickslip.engine.memory.pointers import numbers_of, record_at
 from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import evaluate, integral
-from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
+from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, pieces_in
+from stickslip.problem.run_codes import Stop
 
 
 class Reduced(MemoryRecord):

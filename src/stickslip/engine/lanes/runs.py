@@ -17,7 +17,6 @@ from numba.extending import intrinsic
 from stickslip.engine.compile.kernels import address_of, inlined, kernel
 from stickslip.engine.compile.lock import made_once
 from stickslip.engine.history.slip_events import EventTurns, events_in, group_turns
-from stickslip.engine.history.status import BAD_PARAMETERS
 from stickslip.engine.history.turning_points import FULL, Known, Search, Spare, Turn, find_turns, known_in, spare_in, turns_in
 from stickslip.engine.lanes.lanes import Side, Waits, step_side_by_side
 from stickslip.engine.lanes.reduction import (
@@ -35,8 +34,9 @@ from stickslip.engine.loop import run_until
 from stickslip.engine.memory.addresses import ahead, call_prepare, floats, integers
 from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
 from stickslip.engine.memory.simd import WIDTH
-from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State, Stop
+from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
+from stickslip.problem.run_codes import BAD_PARAMETERS, Stop
 
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""

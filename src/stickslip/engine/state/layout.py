@@ -350,36 +350,6 @@ class Task(IntEnum):
     """Decide whether pieces of the waves in layers are merged in the round trip that begins."""
 
 
-class Stop(IntEnum):
-    """Say why the engine returned."""
-
-    NONE = -1
-    """Nothing: it has made as many passes of the loop as it was asked for."""
-    FULL = 0
-    """The history has no room for another step."""
-    FINISHED = 1
-    LOCKED = 2
-    """No load to come can move the contact."""
-    STORM = 3
-    """Events follow each other with no time between them."""
-    END_AHEAD = 4
-    """The next step or leap depends on where the run ends: the caller sets `to_the_end`."""
-    FAILED = 5
-    """Slip, slip rate, state, load or strength is not finite."""
-    NEED_BRANCHES = 6
-    """The caller must put the branches at the present slip into the table."""
-    PAUSED = 7
-    """The caller wants to look at the run now: the next round trip is `pause_at` or a later one."""
-    SLIPS = 8
-    """An explicit step of slip is left to the caller, who takes it beside those of other runs."""
-    OFF_THE_LAW = 9
-    """No step from here obeys the contact equation."""
-    NEED_PART = 11
-    """The caller must lend the part of the engine that `Run.missing` names (`on_demand.lend_part`)."""
-    NEGATIVE_FRICTION = 10
-    """Friction is below zero from here on."""
-
-
 # ---- records in tables ------------------------------------------------------------------------------------------------------
 
 

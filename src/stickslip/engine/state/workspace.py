@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.compile.uncompiled import UNCOMPILED, lend_memory
 from stickslip.engine.memory.pointers import record_at
 from stickslip.engine.memory.records import MemoryRecord, floats_at, floats_inside, inside, records_at
@@ -37,6 +38,8 @@ from stickslip.engine.state.layout import (
     Store,
 )
 
+ROOM = 8
+"""Free rows that the history needs for another pass of the loop (1); a pass appends fewer."""
 FIRST_ROW = 2
 """First row of waves (1) that belongs to the history: before it come those of the piece of load, and of one that is set aside."""
 MATRIX_ROWS = 110
@@ -195,3 +198,31 @@ def lend_history(memory: Integers, store: Store, echoes: Integers, waves: Floats
 
 _START = c_char * 0
 """Type of the start of a table. It gives the address in a quarter of the time, and only if the table can be written to."""
+
+
+@kernel
+def lacks_rows(run: Run) -> bool:
+    """Return True if a body of layers needs more rows of waves than there are, for this round trip and the one before."""
+    return run.counts.cells > 0 and run.counts.length - run.counts.previous_from + ROOM > run.wave_rows
+
+
+def are_rows_short(counts: Counts, waves: Floats) -> bool:
+    """Return what `lacks_rows` returns, for a caller in Python."""
+    return bool(counts.cells > 0 and counts.length - counts.previous_from + ROOM > len(waves) - FIRST_ROW)
+
+
+def with_more_rows(waves: Floats, counts: Counts, rows: int) -> Floats:
+    """Return room for so many rows of waves of the history, with those that this round trip and the one before have."""
+    before, more = len(waves) - FIRST_ROW, np.zeros((FIRST_ROW + rows, *waves.shape[1:]))
+    more[:FIRST_ROW] = waves[:FIRST_ROW]
+    kept = np.arange(int(counts.previous_from), int(counts.length)) + int(counts.wave_shift)
+    more[FIRST_ROW + kept % rows] = waves[FIRST_ROW + kept % before]
+    return more
+
+
+def count_from(counts: Counts, place: Integers, dropped: int) -> None:
+    """Have counts refer to a history without its first pieces, of which so many are dropped; `place` is the new place of each."""
+    counts.echo_of = place[counts.echo_of]
+    for name in ("length", "trip_from", "previous_from", "previous_to", "new_from", "smooth_to"):
+        setattr(counts, name, getattr(counts, name) - dropped)
+    counts.wave_shift += dropped

@@ -10,9 +10,10 @@ from stickslip.engine.contact.far_end import has_faded, is_dead_load, is_rigid
 from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
+from stickslip.engine.state.layout import NEVER, EnginePart, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING, is_slip_law, patience_spent, start_of_slide, worth_building
+from stickslip.problem.run_codes import Stop
 
 
 @kernel

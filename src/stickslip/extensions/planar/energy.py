@@ -21,7 +21,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 NAMES = ("work", "stored", "elastic", "kinetic", "heat", "radiated", "balance")
-"""The energies of a planar slab, with the meaning that they have in `balance.LONG_NAMES`."""
+"""The energies of a planar slab, with the meaning that they have in `foundation.names.ENERGY_NAMES`."""
 
 
 def cost(slab: PlanarSlab, duration: float, steps: int) -> float:

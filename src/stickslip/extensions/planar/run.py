@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.status import INTERRUPTED, UNSTABLE
-from stickslip.engine.state.layout import Stop
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.extensions.planar.solution import Frames, PlanarSolution
 from stickslip.extensions.planar.table import contact_of, planar_slab_of
@@ -22,6 +20,7 @@ from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
+from stickslip.problem.run_codes import INTERRUPTED, UNSTABLE, Stop
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace, how_far, how_fast

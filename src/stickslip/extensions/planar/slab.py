@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.contact.uniqueness import regime_of
+from stickslip.contact.regime import regime_of
 from stickslip.extensions.planar.nodes import NodeValues, full_names, node_values, varying
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit

@@ -12,18 +12,17 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.history.slip_events import default_event_rate
-from stickslip.engine.history.status import STATUSES, Status
 from stickslip.extensions.planar.pulses import pulses, rupture_speed, rupture_times
 from stickslip.extensions.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import in_files, si_unit
+from stickslip.foundation.names import ENERGY_NAMES, in_files, si_unit
 from stickslip.foundation.show import brief
 from stickslip.problem.given_units import in_given_units
+from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem.run_status import STATUSES, Status
 from stickslip.solution.accessors import known_to_pyplot
-from stickslip.solution.observables.energy.balance import LONG_NAMES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -232,7 +231,7 @@ class PlanarSolution(NamesAttributes):
         if times.min() < self.times[0] or times.max() > self.times[-1]:
             raise InputError(f"energy: times must be from {self.times[0]:g} to {self.times[-1]:g} s")
         unit, found = "J" if self.slab.is_plane else "J m-1", self._energies
-        about = {name: {"units": unit, "long_name": LONG_NAMES[name].replace(" - damped", "")} for name in NAMES}
+        about = {name: {"units": unit, "long_name": ENERGY_NAMES[name].replace(" - damped", "")} for name in NAMES}
         fields = {name: ("time", np.interp(times, found["time"], found[name]), about[name]) for name in NAMES}
         return xarray.Dataset(fields, coords={"time": ("time", times, {"units": "s"})})
 

@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from typing_extensions import override
 
-from stickslip.engine.history.status import INTERRUPTED, STATUSES, UNDER_WAY, engine
-from stickslip.engine.state.layout import Stop
+from stickslip.engine.history.status import engine
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.extensions.planar.solution import FIELDS, Frames, PlanarSolution
 from stickslip.extensions.planar.store_layout import (
@@ -40,6 +39,8 @@ from stickslip.foundation.atomic_write import sync
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.netcdf_file import Variable
+from stickslip.problem.run_codes import INTERRUPTED, UNDER_WAY, Stop
+from stickslip.problem.run_status import STATUSES
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.solution.files.soundness import number, whole_number
 from stickslip.solution.files.zarr_store import create

@@ -18,7 +18,6 @@ from typing_extensions import override
 from zarr.storage import MemoryStore
 
 import stickslip
-from stickslip.engine.history.status import STATUSES, UNDER_WAY, Status
 from stickslip.extensions.planar.contact import GRID, Contact
 from stickslip.extensions.planar.slab import COUNTS, MOST_NODES, PlanarSlab
 from stickslip.extensions.planar.solution import FIELDS, PlanarSolution
@@ -28,6 +27,8 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
+from stickslip.problem.run_codes import UNDER_WAY
+from stickslip.problem.run_status import STATUSES, Status
 from stickslip.problem.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
 from stickslip.solution.files.soundness import number, whole_number
 from stickslip.solution.files.zarr_store import FolderFormat, check_layout

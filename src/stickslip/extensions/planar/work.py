@@ -20,8 +20,8 @@ from stickslip.run.progress import progress_line
 
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
-    from stickslip.engine.history.status import Status
     from stickslip.extensions.planar.solution import PlanarSolution
+    from stickslip.problem.run_status import Status
     from stickslip.problem.scenarios.scenario import Scenario
 
 DRAWN: Sequence[str] = ("--figure", "--animation")

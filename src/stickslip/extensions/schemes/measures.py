@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.slip_events import default_event_rate
 from stickslip.extensions.schemes.contract import Energies, Series
 from stickslip.extensions.schemes.shocks import Shock, shadow, shocks_of
 from stickslip.extensions.schemes.verdict import mean_magnitude
 from stickslip.foundation.arrays import Floats
 from stickslip.friction import FrictionLaw
+from stickslip.problem.run_quantities import default_event_rate
 from stickslip.solution.solution import Solution
 
 COLUMNS = {

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 import stickslip
-from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+from stickslip.engine.history.slip_events import SlipEvents
 from stickslip.extensions.studies.reach_of_runs import reach_of_runs
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.constants import PAPER
@@ -19,7 +19,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION, check_rtol
+from stickslip.problem.run_quantities import DURATION, check_rtol, default_event_rate
 from stickslip.problem.scenarios import Scenario, load_scenario
 from stickslip.problem.scenarios.source import solved_by_core
 from stickslip.run.progress import Progress

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stickslip.engine.history.status import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, engine
+from stickslip.engine.history.status import engine
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_codes import FULL_HISTORY, INTERRUPTED, UNDER_WAY
+from stickslip.problem.run_status import STATUSES
 from stickslip.run.options import RunOptions
 from stickslip.run.resume import resume_run
 from stickslip.run.simulate import simulate

@@ -13,13 +13,13 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.engine.input.limits import check_creep_rtol, check_shortest_event
 from stickslip.extension import tables as tables_of_extensions
 from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import check_fields, declare
 from stickslip.foundation.show import html_table, shown_fields
+from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol

@@ -6,9 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.extension import tables
-from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
@@ -62,33 +60,3 @@ def read_duration_and_problem(
     if isinstance(found, Problem):
         return DURATION.check(who, "duration", duration), found
     return DURATION.check(who, "duration", found.duration if duration is None else duration), found.problem
-
-
-@for_users
-def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
-    """Determine whether the load fixes the slip rate of a contact, and otherwise what the selection rule does.
-
-    The problem may also be given by its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with
-    mass and a law with a state, the answer is "regular". `law_slip` (m, or a text with a unit) is the slip as the law counts it;
-    the initial slip by default. The contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular (Campillo et al.
-    1996, section 3).
-
-    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the
-    selection rule cannot be followed; for a scenario also as `stickslip.load_scenario` does.
-
-    See Also
-    --------
-    stickslip.studies.critical_value : the value of a parameter where the answer ceases to be unique.
-    stickslip.selection : the rules that select one of several answers.
-
-    Examples
-    --------
-    >>> import stickslip as ss
-    >>> body = ss.ElasticSlab(thickness="10 km", density=2700, wave_speed="3 km/s", normal_stress="100 MPa")
-    >>> law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha="1 s/m")
-    >>> answer = ss.uniqueness(ss.Problem(body, law, pull_rate="3 cm/year", initial_excess=0.0))
-    >>> print(answer.regime, f"above {answer.critical_parameter} = {answer.critical_value:.4f} {answer.critical_unit}")
-    irregular above alpha = 0.1620 s/m
-    """
-    found = read_source("uniqueness", problem)
-    return uniqueness_of(found if isinstance(found, Problem) else found.problem, law_slip)

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 import stickslip
 from stickslip.engine.history.history import NO_LEAPS, History
-from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
-from stickslip.engine.history.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
+from stickslip.engine.history.slip_events import SlipEvents
+from stickslip.engine.history.status import ARRAYS, Checkpoint
 from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
@@ -27,6 +27,9 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.fields import MAY_VARY
 from stickslip.problem.loading import HISTORIES, LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_codes import ENOUGH_EVENTS
+from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem.run_status import STATUSES, Status
 from stickslip.problem.scenarios import read_scenario
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.solution.evaluation import Curve, Readings

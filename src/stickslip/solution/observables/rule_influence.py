@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.branches import branches_of, resistance
-from stickslip.contact.uniqueness import Uniqueness, regime_when_pressed, uniqueness_of
+from stickslip.contact.regime import regime_when_pressed
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine.history.history import History, Side
 from stickslip.engine.history.tables import shock_columns
 from stickslip.foundation.arrays import Floats

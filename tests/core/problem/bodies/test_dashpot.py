@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.input.limits import leaps_over
 from stickslip.extensions.schemes.run import SCHEMES
 from stickslip.extensions.sweeps.batch.run import run_members
 from stickslip.problem.bodies import BODIES, has_dashpot
+from stickslip.problem.limits import leaps_over
 from stickslip.problem.scenarios.scenario import Scenario
 
 DROP = 0.3e8

@@ -11,8 +11,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.history.status import UNDER_WAY
-from stickslip.engine.state.layout import Stop
+from stickslip.problem.run_codes import UNDER_WAY, Stop
 from stickslip.run import catalogue as module
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions

@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.session import Session
-from stickslip.engine.state.layout import Stop
+from stickslip.problem.run_codes import Stop
 from stickslip.run import run_loop
 from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts

@@ -13,8 +13,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.history.status import UNDER_WAY, Checkpoint
-from stickslip.engine.state.layout import Stop
+from stickslip.engine.history.status import Checkpoint
+from stickslip.problem.run_codes import UNDER_WAY, Stop
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report

@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import stickslip as ss
-from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED
-from stickslip.engine.state.layout import Stop
+from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, Stop
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace
 from stickslip.run.run_loop import WholeHistory, run_to_end

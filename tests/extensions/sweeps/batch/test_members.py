@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stickslip.engine.history.status import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED, STATUSES
 from stickslip.engine.lanes.workspace import Workspace, new_workspace
-from stickslip.engine.state.layout import Stop
 from stickslip.extensions.sweeps.batch import QUANTITIES, long_member, run, run_members
 from stickslip.foundation.errors import InputError
+from stickslip.problem.run_codes import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED, Stop
+from stickslip.problem.run_status import STATUSES
 from stickslip.problem.scenarios.scenario import load_scenario
 from stickslip.run.simulate import simulate
 

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.contact.regime import regime_of
 from stickslip.contact.rules.selection import OF_LEVELS
-from stickslip.contact.uniqueness import regime_of
-from stickslip.engine.history.slip_events import default_event_rate
 from stickslip.engine.input.limits import split_time, wait_for_creep
 from stickslip.engine.input.prepare import prepare
 from stickslip.engine.lanes.workspace import Setups
@@ -24,6 +23,7 @@ from stickslip.extensions.sweeps.batch.setups import set_up
 from stickslip.extensions.sweeps.batch.vectorised_problem import groups
 from stickslip.friction import LAWS
 from stickslip.friction.formula.bounds import bends_one_way
+from stickslip.problem.run_quantities import default_event_rate
 from stickslip.problem.scenarios.scenario import Scenario
 
 from .cases import CASES, PULL, SLAB, Case, one

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.engine.history.slip_events import LAST_THIRD, rest_of, time_creeping, time_slipping_in
-from stickslip.engine.history.status import INTERRUPTED
 from stickslip.engine.lanes.reduction import Reduced, fold_end
-from stickslip.engine.state.layout import Floats, Integers, Stop
+from stickslip.engine.state.layout import Floats, Integers
+from stickslip.problem.run_codes import INTERRUPTED, Stop
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions

@@ -10,17 +10,17 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from stickslip.engine.history.status import BAD_PARAMETERS, INTERRUPTED
 from stickslip.engine.lanes.reduction import COLUMNS, OF_EVENTS, Reduced
 from stickslip.engine.lanes.runs import Group, engine_address, run_group
 from stickslip.engine.lanes.workspace import LARGEST_CAPACITY, LaneStage, new_workspace, table_of
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_part
-from stickslip.engine.state.layout import Floats, Integers, Stop
+from stickslip.engine.state.layout import Floats, Integers
 from stickslip.extensions.sweeps.batch.long_member import run_alone
 from stickslip.extensions.sweeps.batch.setups import Alike, alike, set_up
 from stickslip.extensions.sweeps.batch.vectorised_problem import Values, are_fine, groups, member, why_not
 from stickslip.foundation.errors import InputError
+from stickslip.problem.run_codes import BAD_PARAMETERS, INTERRUPTED, Stop
 from stickslip.problem.scenarios.scenario import Scenario
 
 Part = TypeVar("Part")
@@ -38,7 +38,7 @@ class BatchResult(NamedTuple):
 
     `results` has one number for each member, by the name of the quantity; NaN for a member whose parameters are invalid, and
     `reason` says in one line why, by its index. `status` says what ended each run, in codes of
-    `stickslip.engine.history.status.STATUSES`. `seconds` is the processor time of all members, and `alone` that of each member that ran
+    `stickslip.problem.run_status.STATUSES`. `seconds` is the processor time of all members, and `alone` that of each member that ran
     by itself, because its history is long or because it creeps for long (s). Members that must run by themselves and have been left
     for `later` (see `defer`) have the status INTERRUPTED.
     """

@@ -11,7 +11,6 @@ from stickslip.contact.slopes import FASTEST as FASTEST_SEARCHED
 from stickslip.contact.slopes import Pieces
 from stickslip.contact.turns import find_turns, folds_of
 from stickslip.engine.compiled_formula import compile_formula, keep_with
-from stickslip.engine.history.slip_events import default_event_rate
 from stickslip.engine.input.branch_table import is_algebraic, table_of_branches
 from stickslip.engine.input.limits import set_lumping, wait_for_creep
 from stickslip.engine.input.prepare import (
@@ -35,6 +34,7 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.bounds import bends_one_way
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import default_event_rate
 from stickslip.problem.scenarios.scenario import Scenario
 
 PARTS = 4

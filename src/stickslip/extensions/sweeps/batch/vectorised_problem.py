@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.input.branch_table import is_algebraic
-from stickslip.engine.input.limits import LARGEST_SHARE, MOST_ROUND_TRIPS, check_round_trips, check_shortest_event
 from stickslip.engine.lanes.reduction import COLUMNS
 from stickslip.engine.state.layout import Floats
 from stickslip.foundation.arrays import shared
@@ -26,6 +25,7 @@ from stickslip.foundation.errors import nearest
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics, BodyWithWaves, ElasticSlab, TorsionalString, as_waves
+from stickslip.problem.limits import LARGEST_SHARE, MOST_ROUND_TRIPS, check_round_trips, check_shortest_event
 from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol

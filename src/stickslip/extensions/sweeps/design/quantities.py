@@ -109,7 +109,7 @@ def _uniqueness(solution: Solution) -> Uniqueness:
 
 
 def _irregular(solution: Solution) -> bool:
-    from stickslip.contact.uniqueness import regime_of
+    from stickslip.contact.regime import regime_of
 
     return regime_of(solution.problem) != "regular"
 

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.status import BAD_PARAMETERS as REFUSED
-from stickslip.engine.history.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status
-from stickslip.engine.state.layout import Stop
 from stickslip.extensions.sweeps.batch import run_members, why_not
 from stickslip.extensions.sweeps.design.axis import Values
 from stickslip.extensions.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem.run_codes import BAD_PARAMETERS as REFUSED
+from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, Stop
+from stickslip.problem.run_status import STATUSES, Status
 from stickslip.problem.scenarios.entries import Source
 from stickslip.problem.scenarios.parameter_paths import ParameterPath, document_with
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario, scenario_of
@@ -55,7 +55,7 @@ _OUTCOMES = (
 MEANINGS = {code: name for code, name, _ in _OUTCOMES}
 """Names of the codes."""
 CODES = {stop: code for code, _, stop in _OUTCOMES if stop is not None}
-"""The code of a member by the code that ended its run (`engine.state.layout`, `trajectory.status`)."""
+"""The code of a member by the code that ended its run (`problem.run_codes`)."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
 PREFIX = "series_"

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.engine.history.history import Epoch, History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import in_files
+from stickslip.foundation.names import ENERGY_NAMES, in_files
 from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
 from stickslip.solution.observables.energy.layers import LayerEnergy
@@ -29,20 +29,6 @@ from stickslip.solution.observables.waves import Radiation, Waves
 if TYPE_CHECKING:
     import xarray as xr
 
-LONG_NAMES = {
-    "work": "work of the driver, and of moving ground",
-    "stored": "elastic and kinetic energy",
-    "elastic": "elastic energy",
-    "kinetic": "kinetic energy, with those of a contact mass and of the driver's mass",
-    "heat": "friction heat, from the law",
-    "damped": "dissipated by the damping of a block, or the drag of layers",
-    "radiated": "energy radiated through a driver of finite impedance; work is net of it",
-    "balance": "work - stored - heat - damped: zero for an exact solution",
-    "trapped": "energy of the waves inside the body, beyond a state of uniform stress",
-    "elastic_in_layer": "elastic energy in each layer",
-    "kinetic_in_layer": "kinetic energy in each layer, without that of a contact mass",
-}
-"""Long names of the energies in a dataset."""
 MOST_REPLAYED = 300_000
 """Largest number of pieces times cells through which waves are replayed for a note; that takes a tenth of a second."""
 CURVED_PLACES = NODES**2 * (3.0 - 2.0 * NODES)
@@ -78,7 +64,7 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
             _numbers_of(body),
             {"long_name": f"{body.part} from the contact outwards, < 0 on the other side"},
         )
-    texts = {name: text for name, text in LONG_NAMES.items() if name in since}
+    texts = {name: text for name, text in ENERGY_NAMES.items() if name in since}
     variables = {
         name: (tuple(places)[: since[name].ndim], since[name], {"units": unit, "long_name": texts[name]}) for name in texts
     }

@@ -11,8 +11,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.problem.scenarios.starts import chosen_starts
 from stickslip.run.check.examine import examine
+from stickslip.run.check.starts import chosen_starts
 
 COULOMB = ss.friction.Coulomb(0.6, 0.4)
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 100.0, 1e6)
