@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Outcome
 
 Complete = Callable[[str, str], list[str]]
 SHELLS = ("bash", "zsh", "fish")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Outcome
 
 Command = Callable[..., Outcome]
 

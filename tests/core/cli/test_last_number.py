@@ -13,7 +13,7 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.foundation.given import preferred
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Outcome
 
 Command = Callable[..., Outcome]
 

@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 
-from .conftest import Outcome
+from tests.command_line import Outcome
 
 LAYERS = """
 [body]

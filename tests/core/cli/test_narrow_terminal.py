@@ -11,7 +11,7 @@ from stickslip.cli.output.show import print_words
 from stickslip.extensions.schemes.schemes import schemes
 from stickslip.extensions.studies.summary import show_schemes
 from stickslip.problem.scenarios.scenario import load_scenario
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Outcome
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 COMMANDS = [

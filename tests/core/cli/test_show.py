@@ -14,7 +14,7 @@ from stickslip import __version__
 from stickslip.cli.options import complete_result, complete_scenario, complete_source
 from stickslip.cli.output.summary import statistics
 from stickslip.problem.scenarios.scenario import load_scenario
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Outcome
 
 Command = Callable[..., Outcome]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import Outcome
+from tests.command_line import Outcome
 
 DISC = """
 title = "A turning disc"

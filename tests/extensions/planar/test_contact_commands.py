@@ -14,7 +14,7 @@ from stickslip.cli.app import COMMANDS
 from stickslip.cli.options import complete_scenario, complete_vary
 from stickslip.problem.scenarios import library, read_scenario
 from stickslip.run.run_loop import Interrupts
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Outcome
 
 Command = Callable[..., Outcome]
 SMALL = ("planar-patch", "--set", "contact.nodes=64", "--duration", "1 s")
