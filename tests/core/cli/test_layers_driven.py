@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
-
 from tests.command_line import Outcome
 
 LAYERS = """
