@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tests.command_line import Command, check_refusal
@@ -19,3 +21,15 @@ CASES = [
 @pytest.mark.parametrize(("arguments", "message"), CASES)
 def test_bad_input_gives_one_line_and_writes_nothing(command: Command, arguments: list[str], message: str) -> None:
     check_refusal(command, arguments, message)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["compare", "fig6-slab", "fig6-slab", "--rules"], "compare: every rule is that of one scenario, got 2 of them"),
+        (["compare", "fig6-slab"], "--rules runs one under each selection rule"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(command: Command, tmp_path: Path, arguments: list[str], message: str) -> None:
+    assert message in command(*arguments).refusal
+    assert not [path.name for path in tmp_path.iterdir()]
