@@ -37,7 +37,7 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
     study.to_csv(folder / "numbers.csv")
     scenario = study.to_toml(folder / "best.toml").read_text(encoding="utf-8")
     page = rendered(
-        "stickslip.reports",
+        "stickslip.extensions.inference",
         "inference.html.j2",
         version=ss.__version__,
         study=study,
