@@ -9,7 +9,7 @@ from rich.console import Console
 
 from stickslip.cli.output.show import print_words
 from stickslip.extensions.schemes.schemes import schemes
-from stickslip.extensions.studies.summary import show_schemes
+from stickslip.extensions.schemes.summary import show_schemes
 from stickslip.problem.scenarios.scenario import load_scenario
 from tests.core.cli.conftest import Outcome
 

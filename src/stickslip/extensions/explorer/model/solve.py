@@ -14,10 +14,10 @@ from stickslip.extensions.explorer.model.findings import Findings, key_numbers, 
 from stickslip.extensions.explorer.model.layered import picture_of_layers
 from stickslip.extensions.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
-from stickslip.extensions.studies.analogy import block_for
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import ElasticSlab, OfLayers
+from stickslip.problem.equivalent_block import block_for
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario
