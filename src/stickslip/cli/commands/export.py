@@ -12,8 +12,8 @@ from stickslip.cli.output.files import announce, check_target
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.extensions.studies.compare import RunSource
     from stickslip.run.kinds import Reader
+    from stickslip.run.source import RunSource
     from stickslip.solution.solution import Solution
 
 RUN = "A TOML file, a bundled name, a file or folder of `run --out`, or - for a scenario from standard input."
@@ -109,8 +109,8 @@ def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any
 
 def _source(run: str, duration: str | None) -> RunSource:
     from stickslip.cli.overrides import STDIN, load, read
-    from stickslip.extensions.studies.compare import read_source
     from stickslip.problem.scenarios.schema import read_duration
+    from stickslip.run.source import read_source
 
     length = read(read_duration, duration, "export", "duration")
     return read_source(load(run, "export") if run == STDIN else run, length, who="export")

@@ -53,7 +53,7 @@ def schemes(
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.overrides import load_with
-    from stickslip.extensions.studies.summary import show_schemes, tables_of
+    from stickslip.extensions.schemes.summary import show_schemes, tables_of
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
