@@ -77,8 +77,8 @@ def simulate(
     Parameters
     ----------
     problem : Problem, Scenario, PlanarSlab, str or Path
-        The problem itself, a scenario, the name of a bundled scenario (`stickslip.problem.scenarios` lists them), or a scenario file.
-        Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
+        The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario
+        file. Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
         `duration`, `frames`, `progress`, `checkpoint` and `checkpoint_every` only.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.

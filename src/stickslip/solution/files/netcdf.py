@@ -207,7 +207,7 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
     """
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
-            name, place = type(loading).__name__, f'stickslip.problem.loading.HISTORIES["{loading.kind}"]'
+            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
     variables = _history(solution)
     if solution.checkpoint is not None:
