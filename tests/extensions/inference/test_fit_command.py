@@ -12,7 +12,7 @@ import stickslip as ss
 from stickslip.cli.options import complete_fitted, complete_table
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.scenario import load_scenario
-from stickslip.run.templates import with_law
+from stickslip.problem.scenarios.templates import with_law
 from tests.problems import RATE_LAW, measured
 
 

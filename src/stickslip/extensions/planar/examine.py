@@ -14,9 +14,9 @@ from stickslip.extensions.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
 from stickslip.problem.scenarios.scenario import Scenario, doubts
+from stickslip.problem.start import loading_rate
 from stickslip.run.check.examine import LARGE_STRAIN, Examination, examine
 from stickslip.run.check.facts import Fact
-from stickslip.run.check.stability import loading_rate
 
 
 def examine_contact(scenario: Scenario) -> Examination:
