@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 import stickslip
 from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.slip_events import SlipEvents, default_event_rate
+from stickslip.engine.history.soundness import check_history, history_table
 from stickslip.engine.history.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
 from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 from stickslip.engine.state import layout as at
@@ -30,7 +31,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios import read_scenario
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.solution.evaluation import Curve, Readings
-from stickslip.solution.files.soundness import check_history, history_table, number
+from stickslip.solution.files.soundness import number
 from stickslip.solution.observables.event_table import EVENT_COLUMNS, event_columns
 from stickslip.solution.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.solution.solution import Solution
