@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.messages import places_twice
 
 

@@ -33,8 +33,8 @@ settings.register_profile("stickslip", deadline=None)  # a slow machine is no fa
 settings.load_profile("stickslip")
 
 # JAX, which planar slabs need, compiles alike functions once for all tests, processes and sessions, and in half the time: functions
-# that run for milliseconds need not be optimised. `tests/extensions/planar/test_planar_solver.py` compares the numbers of optimised code.
-# Machine code is kept apart for each kind of processor. JAX reads these settings when it is imported, which is after this.
+# that run for milliseconds need not be optimised. `tests/extensions/planar/test_planar_solver.py` compares the numbers of optimised
+# code. Machine code is kept apart for each kind of processor. JAX reads these settings when it is imported, which is after this.
 PROCESSOR = hashlib.sha256(f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}".encode()).hexdigest()
 os.environ |= {
     "JAX_COMPILATION_CACHE_DIR": str(Path(__file__).parents[1] / ".pytest_cache" / f"jax-{PROCESSOR[:8]}"),

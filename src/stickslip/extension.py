@@ -1,9 +1,9 @@
 """What an extension adds to the core, and which extensions there are.
 
-An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the six questions that
-the core asks; each is asked when its answer is needed, and imports what it needs then, so that a run does not load what it does not
-use. The extensions of stickslip are the folders of `stickslip/extensions`; those of others are named by the entry points of the group
-`stickslip.extensions`:
+An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the six questions
+that the core asks; each is asked when its answer is needed, and imports what it needs then, so that a run does not load what it
+does not use. The extensions of stickslip are the folders of `stickslip/extensions`; those of others are named by the entry points
+of the group `stickslip.extensions`:
 
     [project.entry-points."stickslip.extensions"]
     spectra = "stickslip_spectra:EXTENSION"
@@ -164,7 +164,8 @@ def _checked(name: str, given: Any) -> Extension:
 def _is_declared() -> bool:
     """Return True if the metadata of an installed package names the group.
 
-    `importlib.metadata` takes 50 ms to load, a tenth of what `stickslip --help` takes: it is loaded where there is something to find.
+    `importlib.metadata` takes 50 ms to load, a tenth of what `stickslip --help` takes: it is loaded where there is something to
+    find.
     """
     for folder in map(Path, sys.path):
         with suppress(OSError):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from stickslip.engine.history.reach import Reach
+from stickslip.engine.history.soundness import check_checkpoint
 from stickslip.engine.history.status import engine
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
@@ -21,7 +22,7 @@ from stickslip.run.progress import reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.files.catalogue_rows import Rows, check_catalogue
 from stickslip.solution.files.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
-from stickslip.solution.files.soundness import check_checkpoint, check_place
+from stickslip.solution.files.soundness import check_place
 from stickslip.solution.observables.event_stream import EventStream, HistoryPlace
 from stickslip.solution.solution import Solution
 
@@ -161,7 +162,7 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
             f"{path}: cannot be resumed: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
             " which would go on in other digits; run it again from the start"
         )
-    check_checkpoint(stopped, path)
+    check_checkpoint(checkpoint, stopped.history, path, rtol=stopped.rtol, shortest_event=stopped.shortest_event)
     run = ExactRun.at_checkpoint(stopped.history, checkpoint, options)
     reached = float(stopped.history.end[run.length - 1])
     if options.duration != stopped.asked_duration and options.duration < reached:

@@ -22,9 +22,8 @@ from stickslip.cli.options import (
 from stickslip.cli.output.files import CATALOGUES
 from stickslip.cli.output.pictures import FILMS
 from stickslip.figures.runs import animation
-from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios import library, templates
 from stickslip.problem.scenarios.scenario import load_scenario
-from stickslip.run import templates
 from stickslip.solution.files import catalogue_rows
 from tests.limits import limit_of_process
 from tests.problems import of_each_kind

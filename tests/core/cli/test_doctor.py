@@ -14,7 +14,7 @@ import pytest
 
 from stickslip.cli import installation
 from stickslip.cli.main import main
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.command_line import Command, Outcome
 
 

@@ -18,7 +18,7 @@ from stickslip.foundation.synonyms import last, plain, rows
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.parameter_paths import find_parameter, parameter_paths
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 
 scenario = cache(ss.load_scenario)
 

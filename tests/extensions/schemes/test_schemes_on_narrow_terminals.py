@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from stickslip.extensions.schemes.schemes import schemes
-from stickslip.extensions.studies.summary import show_schemes
+from stickslip.extensions.schemes.summary import show_schemes
 from stickslip.problem.scenarios.scenario import load_scenario
 from tests.core.cli.narrow import check_fits
 

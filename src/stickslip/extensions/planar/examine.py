@@ -16,9 +16,9 @@ from stickslip.extensions.planar.table import CONTACT, contact_of, planar_slab_o
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
 from stickslip.problem.scenarios.scenario import Scenario, doubts
+from stickslip.problem.start import loading_rate
 from stickslip.run.check.examine import LARGE_STRAIN, Examination, examine
 from stickslip.run.check.facts import Fact
-from stickslip.run.check.stability import loading_rate
 
 
 def examine_contact(scenario: Scenario) -> Examination:

@@ -286,4 +286,4 @@ class BundledScenarios(Mapping[str, Scenario]):
 
 
 scenarios = BundledScenarios()
-"""The bundled scenarios, as `stickslip.problem.scenarios`."""
+"""The bundled scenarios, as `stickslip.scenarios`."""

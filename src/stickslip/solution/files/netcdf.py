@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 import stickslip
 from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.slip_events import SlipEvents
+from stickslip.engine.history.soundness import check_history, history_table
 from stickslip.engine.history.status import ARRAYS, Checkpoint
 from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 from stickslip.engine.state import layout as at
@@ -33,7 +34,7 @@ from stickslip.problem.run_status import STATUSES, Status
 from stickslip.problem.scenarios import read_scenario
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.solution.evaluation import Curve, Readings
-from stickslip.solution.files.soundness import check_history, history_table, number
+from stickslip.solution.files.soundness import number
 from stickslip.solution.observables.event_table import EVENT_COLUMNS, event_columns
 from stickslip.solution.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.solution.solution import Solution
@@ -209,7 +210,7 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
     """
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
-            name, place = type(loading).__name__, f'stickslip.problem.loading.HISTORIES["{loading.kind}"]'
+            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
     variables = _history(solution)
     if solution.checkpoint is not None:

@@ -104,7 +104,7 @@ def fit(
     points = Points.read(data, columns=typed_columns(column, "fit: --column"))
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
-        from stickslip.run.templates import with_law
+        from stickslip.problem.scenarios.templates import with_law
 
         before = friction.Coulomb(0.6, 0.5)
         points.of_contact(before)
@@ -158,7 +158,7 @@ def _strength(text: str) -> Any:
 
 def _scenario(result: Fit | Smooth, body: str, data: str, values: dict[str, Any]) -> str:
     """Return the text of a scenario with the law of a result, and with the result as comments at its head."""
-    from stickslip.run.templates import with_law
+    from stickslip.problem.scenarios.templates import with_law
 
     rows = [f"  {name} = {value} {meaning}" for name, value, meaning in result.rows]
     return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes], values)
