@@ -92,7 +92,7 @@ class WholeRun(RunResults):
 
 
 @dataclass(frozen=True)
-class FoundEvents(RunResults):
+class EventsOfRun(RunResults):
     """The slip events that a run has just written to a catalogue."""
 
     scenario: Scenario

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from stickslip.extension import Extension
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.table import Table
+    from stickslip.problem.scenarios.table import ScenarioTable
     from stickslip.run.kinds import Reader, SolverKind
 
 
@@ -28,7 +28,7 @@ class PlanarExtension(Extension):
 
         return (PLANAR,)
 
-    def tables(self) -> Mapping[str, Table]:
+    def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [contact]."""
         from stickslip.extensions.planar.table import ContactTable
 
