@@ -28,8 +28,9 @@ from tests.extensions.inference.files_of_programs import CLOCK, FORCE, RAM, labv
 
 import stickslip as ss
 from benchmarks.damages import RECORDS, copied, damage, edit, edit_metadata
-from stickslip.cli.commands.show import StoredSweep, stored
+from stickslip.cli.commands.show import stored
 from stickslip.extensions.sweeps.results.store import open_store
+from stickslip.extensions.sweeps.shown import SweepResults
 
 LIMIT = 60.0
 """Seconds after which a worker hangs."""
@@ -105,8 +106,8 @@ def read_metadata(folder: Path) -> str:
     path = folder / "map.zarr"
     sweep(path)
     found = stored(path)
-    assert isinstance(found, StoredSweep)
-    return digest({str(name): variable.values.tolist() for name, variable in found.dataset.variables.items()}, found.about)
+    assert isinstance(found.results, SweepResults)
+    return digest({str(name): variable.values.tolist() for name, variable in found.results.dataset.variables.items()}, found.about)
 
 
 def read_record(folder: Path) -> str:

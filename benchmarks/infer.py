@@ -3,7 +3,7 @@
     python benchmarks/infer.py [--samples 10000]
 
 Wanted on a machine of 2020: 1 s for the best fit and its covariance, 10 s for profiles, 2 min for 10 000 samples. The coverage
-of intervals is measured by tests/studies/test_infer_records.py.
+of intervals is measured by tests/extensions/inference/test_infer_records.py.
 """
 
 from __future__ import annotations

@@ -10,8 +10,11 @@ from pathlib import Path
 import numpy as np
 
 SOURCE = Path("src/stickslip")
-CORE = ("contact", "observables", "engine", "engine_input", "trajectory", "creep", "solution", "run")
-AROUND = ("io", "sweeps", "scenarios", "inference", "cli", "explorer/model", "planar", "schemes")
+CORE = ("contact", "engine", "engine/creep", "engine/history", "engine/input", "run", "solution", "solution/observables")
+AROUND = (
+    *("cli", "problem/scenarios", "solution/files", "extensions/explorer/model", "extensions/inference"),
+    *("extensions/planar", "extensions/schemes", "extensions/sweeps"),
+)
 PACKAGES = CORE + AROUND
 """Folders of the package from which mutants are drawn: the core, which decides what a run gives, and the rooms around it."""
 
@@ -33,8 +36,13 @@ class Mutant:
 
     @property
     def package(self) -> str:
-        """The folder of PACKAGES that the file lies in."""
-        return next((one for one in PACKAGES if self.path.startswith(one + "/")), self.path.split("/")[0])
+        """The folder of PACKAGES that the file lies in, the innermost one."""
+        return package_of(self.path)
+
+
+def package_of(path: str) -> str:
+    """The innermost folder of PACKAGES that a file lies in; outside of all, the first one of its path."""
+    return max((one for one in PACKAGES if path.startswith(one + "/")), key=len, default=path.split("/")[0])
 
 
 @dataclass(frozen=True)
@@ -143,9 +151,11 @@ def drawn(root: Path, count: int, seed: int, packages: tuple[str, ...] = PACKAGE
 
 
 def of_package(root: Path, package: str) -> Iterator[Mutant]:
-    """Every mutant of a package's files."""
+    """Every mutant of a package's files, but for those of other packages within it."""
     for path in sorted((root / SOURCE / package).rglob("*.py")):
-        yield from _of_file(path, str(path.relative_to(root / SOURCE)))
+        name = str(path.relative_to(root / SOURCE))
+        if package_of(name) == package:
+            yield from _of_file(path, name)
 
 
 def _of_file(path: Path, name: str) -> Iterator[Mutant]:

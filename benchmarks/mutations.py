@@ -1,7 +1,7 @@
 """Do the tests notice? Wrong versions of the source, one at a time, and what the tests say to each.
 
-    python -m benchmarks.mutations tests/contact tests/observables --named
-    python -m benchmarks.mutations tests/contact --count 40 --seed 1 --only contact --results mutations.jsonl
+    python -m benchmarks.mutations tests/core/contact tests/core/solution/observables --named
+    python -m benchmarks.mutations tests/core/contact --count 40 --seed 1 --only contact --results mutations.jsonl
     python -m benchmarks.mutations --reach reach.jsonl --count 30 --seed 1 --only sweeps
 
 Each mutant is a copy of the package in a temporary folder, on which the tests run up to the first failure: the given ones or, with

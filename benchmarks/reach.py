@@ -1,6 +1,6 @@
 """Which tests reach which line: a plugin of pytest, which needs the package `coverage`.
 
-    python -m pytest -p benchmarks.reach tests/sweeps tests/extensions/sweeps/test_sweep_command.py
+    python -m pytest -p benchmarks.reach tests/extensions/sweeps
 
 It appends one JSON line for each test to the file that REACH names (reach.jsonl): its name, its seconds and, by file of the
 package, the lines that it runs. What a fixture runs for a whole module or session counts for each test that uses it.

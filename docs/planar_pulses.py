@@ -1,7 +1,7 @@
 """Count the pulses in the middle of faults of finite length, in 2D and 3D: half an hour of processor time, and gigabytes.
 
-python docs/planar_pulses.py makes the rows that are missing in src/stickslip/extensions/paper/planar-pulses.csv, each with its commit, draws
-docs/figures/planar-pulses.png, and prints the table of the page.
+python docs/planar_pulses.py makes the rows that are missing in src/stickslip/extensions/paper/planar-pulses.csv, each with its
+commit, draws docs/figures/planar-pulses.png, and prints the table of the page.
 """
 
 from __future__ import annotations

@@ -35,7 +35,8 @@ RUNS = (
 )
 """Schemes, with their Courant numbers."""
 SMALLEST_DAMPING = 1.193
-"""Damping of the pendulum phi'' + damping phi' + sin phi = 1 above which it does not roll on: see tests/extensions/schemes/test_pulses.py."""
+"""Damping of the pendulum phi'' + damping phi' + sin phi = 1 above which it does not roll on: see
+tests/extensions/schemes/test_pulses.py."""
 SIDE = (5.0, 0.1, 0.95)
 """A side test: wavenumber (1/m), start beyond the maximum (m), and load beyond the mean friction as a share of S a."""
 MASS = "exact, mass rho dx/2"

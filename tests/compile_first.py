@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from pathlib import Path
+
 import stickslip as ss
 from stickslip.engine.on_demand import PARTS, function_of, part_at
 from stickslip.run.check.examine import examine
@@ -11,15 +14,15 @@ SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block",
 
 
 def main() -> None:
-    """Run, check and sweep; the machine code stays in the cache on disk."""
+    """Run and check, and do what the tests of extensions need; the machine code stays in the cache on disk."""
     for part in PARTS:
         part_at(function_of(part))
     for name in SCENARIOS:
         scenario = ss.load_scenario(name)
         repr(ss.simulate(scenario))  # with events and all else that a summary compiles
         examine(scenario)
-
-    ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]})
+    for path in sorted(Path(__file__).with_name("extensions").glob("*/compile_first.py")):
+        import_module(f"tests.extensions.{path.parent.name}.compile_first").main()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""Names and samples of the cases of parametrised tests, no deadline for drawn ones, and no terminal's width for printed tables."""
+"""Names and samples of the cases of parametrised tests, no deadline for drawn ones, and no terminal's width for printed tables.
+
+Fixtures that tests of several folders need are here, too: those of commands and of figures.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,17 @@ import hashlib
 import os
 import signal
 from collections import Counter
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from pathlib import Path
 
 import llvmlite.binding as llvm
+import matplotlib as mpl
 import numpy as np
 import pytest
 from hypothesis import settings
 
 import stickslip as ss
+from tests.command_line import Outcome
 from tests.pictures import blank
 
 LONGEST = 60
@@ -28,8 +33,8 @@ settings.register_profile("stickslip", deadline=None)  # a slow machine is no fa
 settings.load_profile("stickslip")
 
 # JAX, which planar slabs need, compiles alike functions once for all tests, processes and sessions, and in half the time: functions
-# that run for milliseconds need not be optimised. `tests/extensions/planar/test_planar_solver.py` compares the numbers of optimised code.
-# Machine code is kept apart for each kind of processor. JAX reads these settings when it is imported, which is after this.
+# that run for milliseconds need not be optimised. `tests/extensions/planar/test_planar_solver.py` compares the numbers of optimised
+# code. Machine code is kept apart for each kind of processor. JAX reads these settings when it is imported, which is after this.
 PROCESSOR = hashlib.sha256(f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}".encode()).hexdigest()
 os.environ |= {
     "JAX_COMPILATION_CACHE_DIR": str(Path(__file__).parents[1] / ".pytest_cache" / f"jax-{PROCESSOR[:8]}"),
@@ -81,6 +86,56 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.figures.runs.inside.TIMES", 300)
     monkeypatch.setattr("stickslip.figures.runs.inside.CELLS", 100)
     monkeypatch.setattr("stickslip.figures.runs.energy.TIMES", 200)
+
+
+@pytest.fixture(scope="session")
+def compiled_engine() -> None:
+    """Compile the engine and its parts before any test looks at what a command says on standard error; `make` has done so."""
+    if "COMPILED_FIRST" not in os.environ:
+        from tests import compile_first
+
+        compile_first.main()
+
+
+@pytest.fixture
+def pictures(request: pytest.FixtureRequest) -> None:
+    """Leave pictures blank, and what they would show coarse, but for tests that look at them or at what is said of them."""
+    if request.node.get_closest_marker("drawn") is None:
+        request.getfixturevalue("blank_pictures")
+        request.getfixturevalue("coarse")
+
+
+@pytest.fixture
+def command(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    compiled_engine: None,
+    pictures: None,
+) -> Callable[..., Outcome]:
+    """Run `stickslip` with arguments as the shell does, in an empty folder."""
+    from stickslip.cli.main import main
+
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> Outcome:
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        shown = capsys.readouterr()
+        return Outcome(int(ended.value.code or 0), shown.out, shown.err)
+
+    return run
+
+
+@pytest.fixture
+def closed_figures() -> Iterator[None]:
+    """Open no windows, and begin and end with all figures of pyplot closed."""
+    mpl.use("Agg")
+    from matplotlib import pyplot
+
+    pyplot.close("all")  # tests of other folders may have left some
+    yield
+    pyplot.close("all")
 
 
 def pytest_make_parametrize_id(val: object) -> str | None:

@@ -1,4 +1,4 @@
-"""Pictures that are written without being drawn, which takes most of the time of many tests: `tests/figures` draws all kinds."""
+"""Pictures that are written without being drawn, which takes most of the time of many tests: core/figures draws all kinds."""
 
 from __future__ import annotations
 

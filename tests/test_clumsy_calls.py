@@ -78,7 +78,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: problem(initial_load=8e7), "needs either initial_load or initial_excess ... got both"),
     (lambda: problem(pull_rate="5 cm"), "'cm' does not convert to m/s"),
     (lambda: problem(pull_rate="60 rpm"), "'rpm' does not convert to m/s"),
-    (lambda: problem(pull_rate=[1, 2, 3]), "what varies in time is one of stickslip.problem.loading"),
+    (lambda: problem(pull_rate=[1, 2, 3]), "what varies in time is one of stickslip.loading"),
     (lambda: problem(selection="maxwel"), "did you mean 'maxwell'?"),
     # runs
     (lambda: ss.simulate(PROBLEM), "duration must be a number in s ... got None"),

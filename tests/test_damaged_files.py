@@ -198,7 +198,7 @@ def test_texts_of_a_result_cannot_change_the_terminal(
 ) -> None:
     path = saved(run, tmp_path)
     resealed(path, lambda file: file.attrs.__setitem__(name, "a\n\x1b[31mred\x07"))
-    stored(path).summarise()
+    stored(path).results.summarise()
     shown = capsys.readouterr().out
     assert r"a\n\x1b[31mred\x07" in "".join(shown.split())
     assert "\x1b" not in shown

@@ -10,8 +10,8 @@ import pytest
 import stickslip as ss
 from stickslip.friction import LAWS
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
+from stickslip.problem.scenarios.templates import template
 from stickslip.run.check.examine import examine
-from stickslip.run.templates import template
 
 
 @pytest.fixture(autouse=True)

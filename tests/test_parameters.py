@@ -10,7 +10,7 @@ import stickslip as ss
 from stickslip.friction import LAWS
 from stickslip.problem.loading import HISTORIES, Steps
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.messages import refused
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

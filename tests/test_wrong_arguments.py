@@ -160,7 +160,7 @@ NO_LAW = 'Problem: friction must be a friction law, a function of u and v, or a 
 EXCESS = "Problem: initial_excess must be "
 A_STRESS = 'a number in Pa or a text with a unit such as "10 Pa", got '
 PULL = 'Problem: pull_rate must be a number in m/s or a text with a unit such as "10 m/s", got '
-HISTORY = "; what varies in time is one of stickslip.problem.loading, such as Steps("
+HISTORY = "; what varies in time is one of stickslip.loading, such as Steps("
 PROBLEMS: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
     ((LAW, SLAB), {}, "Problem: body comes first, then friction: got HyperbolicRate as body and ElasticSlab as friction"),
     ((ss.ElasticSlab, LAW), {}, NO_BODY + "the class ElasticSlab, not an instance of it: call it"),

@@ -17,9 +17,9 @@ from .problem import Problem, loading, selection
 from .problem.bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
 from .problem.scenarios.scenario import load_scenario, scenarios
 from .run.catalogue import catalogue
+from .run.open_solution import open_solution
 from .run.resume import resume
 from .run.simulate import simulate
-from .solution.files.netcdf import open_solution
 from .solution.solution import Solution
 
 __version__: str

@@ -41,7 +41,7 @@ def _forget_rules() -> Iterator[None]:
     registered.clear()
 
 
-QUICK = [page for page in PAGES if page != PAPER and page.stem not in LONG_PAGES]  # tests/paper runs that page
+QUICK = [page for page in PAGES if page != PAPER and page.stem not in LONG_PAGES]  # tests/extensions/paper runs that page
 
 
 @pytest.mark.usefixtures("blank_pictures")

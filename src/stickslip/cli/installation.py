@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stickslip import __version__
+from stickslip.extension import found
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -40,6 +41,7 @@ def installation() -> Iterator[Finding]:
     yield Finding("stickslip", f"{__version__} in {Path(__file__).parents[1]}")
     yield Finding("python", f"{platform.python_version()} on {platform.system()} {platform.machine()}")
     yield from extras()
+    yield from extensions_there()
     yield from libraries()
 
 
@@ -68,6 +70,20 @@ def extras() -> Iterator[Finding]:
         there = all(version and one.specifier.contains(version) for one, version in zip(wanted, versions, strict=True))
         shown = ", ".join(f"{one.name} {version}" for one, version in zip(wanted, versions, strict=True))
         yield Finding(f"[{extra}]", shown if there else f"not installed: pip install 'stickslip[{extra}]'")
+
+
+def extensions_there() -> Iterator[Finding]:
+    """Yield a row for our own extensions, one for each of another package, and one for each that is left out, with the reason."""
+    extensions = found()
+    yield Finding(
+        "extensions",
+        ", ".join(name for name, origin in extensions.origins.items() if not origin and name in extensions.there) or "none",
+    )
+    for name, origin in extensions.origins.items():
+        if origin and name in extensions.there:
+            yield Finding("extension", f"{name} of {origin}")
+    for one in extensions.left_out:
+        yield Finding("left out", f"{one.name}: {one.why}")
 
 
 def _requirements(extra: str = "") -> list[Requirement]:

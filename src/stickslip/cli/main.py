@@ -61,9 +61,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with ExitStack() as streams:
         streams.enter_context(redirect_stdout(_Heard(sys.stdout)))
         streams.enter_context(redirect_stderr(_Heard(sys.stderr)))
+        streams.enter_context(warnings.catch_warnings())  # extensions that are left out are told while commands are imported
+        warnings.showwarning = _show_warning
         with _quiet_start():
-            from stickslip.foundation.errors import InputError
+            from stickslip.foundation.errors import InputError, InputWarning
 
+            warnings.simplefilter("default", InputWarning)
             try:
                 import stickslip.cli.app  # noqa: F401  # takes long: all that follows needs it
             except InputError as error:  # typer does not suit
@@ -130,13 +133,10 @@ def _code(arguments: Sequence[str] | None) -> int:
 
     from stickslip.cli.app import TyperException, app
     from stickslip.cli.mistyped import explain
-    from stickslip.foundation.errors import InputError, InputWarning
+    from stickslip.foundation.errors import InputError
 
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("default", InputWarning)
-            warnings.showwarning = _show_warning
-            code = app(arguments, prog_name="stickslip", standalone_mode=False)
+        code = app(arguments, prog_name="stickslip", standalone_mode=False)
     except InputError as error:
         return _fail(str(error))
     except TyperException as error:

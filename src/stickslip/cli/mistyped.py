@@ -9,6 +9,7 @@ from typing import Any
 
 from stickslip.cli.extra_words import about_extra
 from stickslip.cli.options import is_data
+from stickslip.extension import command_left_out
 from stickslip.foundation.errors import did_you_mean, meant, nearest
 from stickslip.foundation.synonyms import same
 
@@ -38,6 +39,8 @@ def unknown_command(name: str, commands: Collection[str]) -> str:
     kind = READERS.get(".toml" if name in library.names() else Path(name).suffix.lower(), OF_DATA if is_data(name) else None)
     if kind is not None:
         return f"'{shown}' is {kind[0]}, not a command: did you mean {kind[1].format(shown)}?"
+    if left_out := command_left_out(name):
+        return left_out
     return f"there is no command '{shown}'; {nearest(name, commands, listed='`stickslip --help` shows all')}"
 
 

@@ -17,7 +17,7 @@ Names = Callable[[], list[str]]
 """A function that returns all names that an option accepts."""
 
 
-def _table(module: str, table: str) -> Names:
+def names_in(module: str, table: str) -> Names:
     """Return a function that imports a module and returns the names in one of its tables."""
 
     def names() -> list[str]:
@@ -27,47 +27,32 @@ def _table(module: str, table: str) -> Names:
     return names
 
 
-def _completion(names: Names) -> Callable[[str], list[str]]:
-    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
+CHOICES: dict[str, Names] = {}
+"""The names that each option with a fixed set of values accepts, by option: its help lists them."""
 
 
-CHOICES: dict[str, Names] = {
-    "friction": _table("friction", "LAWS"),
-    "pull": _table("loading", "HISTORIES"),
-    "selection": _table("problem.selection_rule", "SELECTION_RULES"),
-    "quantity": _table("sweeps.design.quantities", "QUANTITIES"),
-    "design": _table("sweeps.design.design", "KINDS"),
-    "series": _table("solution.evaluation", "CURVES"),
-}
-"""The names that each option with a fixed set of values accepts, by option."""
+def choices(option: str, names: Names) -> Callable[[str], list[str]]:
+    """Declare the names that an option accepts. Returns the function that completes them."""
+    CHOICES[option] = names
+    return completion(option)
 
-complete_law = _completion(CHOICES["friction"])
-complete_pull = _completion(CHOICES["pull"])
-complete_rule = _completion(CHOICES["selection"])
-complete_quantity = _completion(CHOICES["quantity"])
-complete_design = _completion(CHOICES["design"])
+
+def completion(option: str) -> Callable[[str], list[str]]:
+    """Return the function that completes the names that an option accepts, as far as they have been declared."""
+    return lambda incomplete: [name for name in CHOICES.get(option, list)() if name.startswith(incomplete)]
+
+
+complete_law = choices("friction", names_in("friction", "LAWS"))
+complete_pull = choices("pull", names_in("problem.loading", "HISTORIES"))
+complete_rule = choices("selection", names_in("problem.selection_rule", "SELECTION_RULES"))
+complete_curve = choices("series", names_in("solution.evaluation", "CURVES"))
+complete_quantity = completion("quantity")
 
 
 def complete_series(incomplete: str) -> list[str]:
     """Return the lists of curves that begin with what is typed: names of curves with commas between them."""
     before, comma, last = incomplete.rpartition(",")
-    return [f"{before}{comma}{name}" for name in CHOICES["series"]() if name.startswith(last) and name not in before.split(",")]
-
-
-def complete_fitted(incomplete: str) -> list[str]:
-    """Return the names of laws that can be fitted to points, as far as they begin with what is typed."""
-    from stickslip.extensions.inference.points.fit_search import template
-    from stickslip.foundation.errors import InputError
-    from stickslip.friction import LAWS
-
-    found = []
-    for name in complete_law(incomplete):
-        try:
-            template(LAWS[name])
-        except InputError:
-            continue
-        found.append(name)
-    return found
+    return [f"{before}{comma}{name}" for name in complete_curve(last) if name not in before.split(",")]
 
 
 TABLES = (".csv", ".txt", ".tsv", ".dat", ".lvm", ".las", ".uff", ".unv")

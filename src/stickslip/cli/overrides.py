@@ -23,7 +23,7 @@ from stickslip.problem.scenarios.entries import read_typed, typed_number
 from stickslip.problem.scenarios.parameter_paths import with_values
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.problem.scenarios.schema import check_events, check_rule, read_duration
-from stickslip.problem.scenarios.source import all_slips_alike
+from stickslip.problem.scenarios.source import solved_by_core
 from stickslip.problem.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
 Reader = Callable[[Any, str, str], Any]
@@ -32,12 +32,12 @@ STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
 
 
-def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, contact: bool = False) -> Scenario:
+def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, any_kind: bool = False) -> Scenario:
     """Load a scenario from a file, by its bundled name, or from standard input, with the values of --set.
 
-    Raises InputError, also for a scenario with a contact of many nodes unless `contact` is True.
+    Raises InputError, also for a scenario whose own problem is not what is solved unless it may be of `any_kind`.
     """
-    loaded = _load(scenario) if contact else all_slips_alike(command, _load(scenario))
+    loaded = _load(scenario) if any_kind else solved_by_core(command, _load(scenario))
     where = f"{command}: --set"
     if changes:
         values = typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"')
@@ -61,13 +61,13 @@ def _load(scenario: str) -> Scenario:
 
 
 def load_with(
-    command: str, scenario: str, changes: Sequence[str] | None = None, *, contact: bool = False, **typed: Any
+    command: str, scenario: str, changes: Sequence[str] | None = None, *, any_kind: bool = False, **typed: Any
 ) -> Scenario:
     """Load a scenario and replace what was typed, by option, such as duration="480 years"; None is not typed.
 
     `changes` are the values of --set, which come first. Raises InputError as `load` does.
     """
-    loaded = load(scenario, command, changes, contact=contact)
+    loaded = load(scenario, command, changes, any_kind=any_kind)
     readers = _readers(loaded.problem)
     replaced = {}
     for option, value in typed.items():

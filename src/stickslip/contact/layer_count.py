@@ -17,10 +17,10 @@ from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.contact.layer_discs import LinePieces
+from stickslip.contact.layer_response import Complex, response_of
 from stickslip.contact.wave_modes import Polynomial
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layer_response import Complex, response_of
 
 WIDEST = 1.2
 """Largest angle (rad) to each side of the middle of a piece, less than pi/2."""

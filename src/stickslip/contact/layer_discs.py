@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial as poly
 
+from stickslip.contact.layer_response import Complex, Quotient, at_driver, crossings_of, met_by
 from stickslip.contact.wave_modes import Polynomial
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layer_response import Complex, Quotient, at_driver, crossings_of, met_by
 from stickslip.problem.bodies.layers import Layers
 
 ROUNDING = 3e-15

@@ -25,11 +25,11 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 
 from stickslip.contact.layer_count import MOST_PIECES, Line, NotCountedError, Share
+from stickslip.contact.layer_response import Complex, response_of
 from stickslip.contact.rightmost import SeenBeyond
 from stickslip.contact.secant import polished
 from stickslip.contact.wave_modes import Polynomial, WaveModes, parts_on_axis, roots_of, shifted
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layer_response import Complex, response_of
 
 LEAN = 5e-14
 """The axis leans by this much on two sides (1), which may have modes that do not move the contact: these lie on the axis."""

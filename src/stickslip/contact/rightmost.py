@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.contact.layer_count import NotCountedError
-from stickslip.problem.bodies.layer_response import Complex
+from stickslip.contact.layer_response import Complex
 
 MOST_LINES = 100
 """Largest number of lines that are looked at."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from stickslip.problem.bodies.layer_response import Complex
+from stickslip.contact.layer_response import Complex
 
 STEPS = 60
 """Largest number of steps to a root."""

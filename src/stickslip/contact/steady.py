@@ -28,6 +28,7 @@ import numpy as np
 from stickslip.contact.crossing import crossing
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.folds import Certificate, certificate
+from stickslip.contact.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
 from stickslip.contact.steady_proof import proven_changes
@@ -36,7 +37,6 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.resistance import Resistance

@@ -10,7 +10,7 @@ from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any
 
-from stickslip.extension import GROUP, home_of, public_names
+from stickslip.extension import GROUP, home_of, public_names, why_missing
 
 Get = Callable[[str], Any]
 
@@ -62,7 +62,9 @@ def _inside(module: str, name: str) -> Any:
 
 def _missing(package: str, name: str, home: str) -> AttributeError:
     extension = home.removeprefix(f"{GROUP}.").partition(".")[0]
-    return AttributeError(f"{package} has no {name} here: it belongs to the extension '{extension}', which is not installed")
+    return AttributeError(
+        f"{package} has no {name} here: it belongs to the extension '{extension}', which {why_missing(extension)}"
+    )
 
 
 def other_names(package: str) -> Get:

@@ -1,8 +1,8 @@
 """Conversion of text such as "10 km" to a number in SI units.
 
 Only a number, unit names and small powers are accepted; nothing is evaluated. The units that scenarios use most have a table here,
-with the exact factors and dimensions of pint (`tests/core/foundation/test_quantities.py` compares every name), because pint takes half a second to
-start. All others are left to pint.
+with the exact factors and dimensions of pint (`tests/core/foundation/test_quantities.py` compares every name), because pint takes
+half a second to start. All others are left to pint.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driv
 """Fields of a problem that are a loading history or nothing."""
 MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
 """Fields of a problem that may be a loading history."""
-A_HISTORY = "; what varies in time is one of stickslip.problem.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
 LOAD = si_unit("load")
 """Unit of a load: Pa on a slab, N on a block, N m on what turns."""

@@ -94,9 +94,9 @@ class Problem(ProblemFields):
     `Problem.rate`. Any other starts at rest, and a contact without mass that never sticks then slips at once at the rate that load
     and friction determine.
 
-    At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.problem.loading`). The initial velocity in a slab is
-    linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver. With initial_rate="steady" it
-    is the same everywhere.
+    At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a
+    slab is linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver. With
+    initial_rate="steady" it is the same everywhere.
 
     `normal_load` may vary beside one of them: steps, straight lines or a sinusoid. Friction is S(t) mu(u, v, state), and the
     strength at rest S(t) mu_static; `body.normal_stress` or `body.normal_force` is S(0). Where several slip rates solve the contact

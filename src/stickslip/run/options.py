@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
@@ -53,17 +52,16 @@ class RunOptions:
     checkpoint: Path | None = None
     checkpoint_every: Number = declare(CHECKPOINT_INTERVAL, CHECKPOINT_EVERY)
     max_pieces: int | None = None
-    frames: int | None = None
     title: str = ""
     description: str = ""
+    of_solver: Mapping[str, Any] = field(default_factory=dict)
+    """Options of the solver of an extension, by name, which that solver checks."""
 
     @classmethod
     def of(cls, scenario: Scenario, **given: Any) -> Self:
         """Return the options of a scenario; options in `given` that are not None replace or complete them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
         own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading, "description": scenario.description}
-        if scenario.contact is not None:
-            own["frames"] = scenario.contact.frames
         return cls(**(own | _not_none(given)))
 
     @classmethod
@@ -109,7 +107,6 @@ class RunOptions:
             "checkpoint_every": partial(CHECKPOINT_INTERVAL.check, who, "checkpoint_every"),
             "max_events": partial(check_whole, f"{who}: max_events"),
             "max_pieces": partial(check_whole, f"{who}: max_pieces", most=LARGEST_HISTORY),
-            "frames": partial(check_whole, f"{who}: frames"),
         }
         given = {name: getattr(self, name) for name in checks}
         checked = {name: checks[name](value) for name, value in given.items() if value is not None or name == "duration"}
@@ -136,11 +133,14 @@ class RunOptions:
         return held(self.checkpoint, f"{self.checkpoint}: another run is writing into it: choose another name")
 
 
-def options_of(source: Problem | PlanarSlab | Scenario, **given: Any) -> RunOptions:
-    """Return the options of a run, not yet checked; those in `given` that are None come from the scenario, or are the defaults."""
-    if isinstance(source, Problem | PlanarSlab):
-        return RunOptions(**({"duration": None} | _not_none(given)))
-    return RunOptions.of(source, **given)
+def options_of(source: Any, **given: Any) -> RunOptions:
+    """Return the options of a run, not yet checked; those in `given` that are None come from the scenario, or are the defaults.
+
+    The source is a scenario, a problem, or what the solver of an extension solves.
+    """
+    if hasattr(source, "duration"):
+        return RunOptions.of(source, **given)
+    return RunOptions(**({"duration": None} | _not_none(given)))
 
 
 def problem_and_options(who: str, source: Problem | Scenario | str | Path, **given: Any) -> tuple[Problem, RunOptions]:

@@ -5,29 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from stickslip.engine.history.reach import Reach
+from stickslip.engine.history.soundness import check_checkpoint
 from stickslip.engine.history.status import engine
-from stickslip.extensions.planar.run import PlanarProgress, resume_planar
-from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.exact_run import ExactRun
+from stickslip.run.kinds import no_results, reader_of
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
-from stickslip.run.progress import Progress, reporting
+from stickslip.run.progress import reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.files.catalogue_rows import Rows, check_catalogue
 from stickslip.solution.files.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
-from stickslip.solution.files.soundness import check_checkpoint, check_place
+from stickslip.solution.files.soundness import check_place
 from stickslip.solution.observables.event_stream import EventStream, HistoryPlace
 from stickslip.solution.solution import Solution
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @for_users
@@ -36,11 +33,11 @@ def resume(
     duration: float | str | WithUnit | None = None,
     *,
     max_events: int | None = None,
-    progress: Progress | PlanarProgress | bool | None = None,
+    progress: Any = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
-) -> Solution | PlanarSolution | pd.DataFrame:
+) -> Any:
     """Continue a run or a catalogue where its file left it.
 
     The result is the same, bit for bit, as if the run had never stopped, and as if it had had this duration from the start.
@@ -80,12 +77,12 @@ def resume(
     Rows of a catalogue that were written after its checkpoint are cut off and computed again.
     """
     file = as_path("resume: path", path)
-    if file.is_dir():
+    if (reader := reader_of(file)) is not None:
         given = {"max_events": max_events, "checkpoint": checkpoint, "max_pieces": max_pieces}
-        if needless := [name for name, value in given.items() if value is not None]:
-            raise InputError(f"resume: {file}: the run of a PlanarSlab continues in its own folder, without {needless[0]}")
         with reporting(progress, "resume") as report:
-            return resume_planar(file, duration, progress=report, checkpoint_every=checkpoint_every)
+            return reader.resume(file, duration, progress=report, checkpoint_every=checkpoint_every, **given)
+    if file.is_dir():
+        raise no_results(file)
     paused = PausedCatalogue.read(file) if is_catalogue(file) else None
     if paused is not None and checkpoint is not None:
         raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave out checkpoint")
@@ -165,7 +162,7 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
             f"{path}: cannot be resumed: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
             " which would go on in other digits; run it again from the start"
         )
-    check_checkpoint(stopped, path)
+    check_checkpoint(checkpoint, stopped.history, path, rtol=stopped.rtol, shortest_event=stopped.shortest_event)
     run = ExactRun.at_checkpoint(stopped.history, checkpoint, options)
     reached = float(stopped.history.end[run.length - 1])
     if options.duration != stopped.asked_duration and options.duration < reached:

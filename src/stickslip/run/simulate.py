@@ -3,38 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
-from stickslip.extensions.planar.run import PlanarProgress, simulate_planar
-from stickslip.extensions.planar.slab import PlanarSlab
-from stickslip.extensions.planar.solution import PlanarSolution
-from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.arguments import as_path, check_names, for_users
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.problem.scenarios.source import read_source, under_rule
 from stickslip.problem.selection_rule import SelectionRule
 from stickslip.run.exact_run import ExactRun
+from stickslip.run.kinds import ALL_TAKE, SolverKind, Special, special_solver_of, special_solvers
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.solution import Solution
 
-
-@overload
-def simulate(
-    problem: PlanarSlab,
-    duration: float | str | WithUnit,
-    *,
-    frames: int | None = None,
-    progress: PlanarProgress | bool | None = None,
-    checkpoint: str | Path | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-) -> PlanarSolution: ...
+Run = TypeVar("Run")
 
 
 @overload
@@ -52,7 +39,20 @@ def simulate(
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
     title: str = "",
+    **of_solver: Any,
 ) -> Solution: ...
+
+
+@overload
+def simulate(
+    problem: Special[Run],
+    duration: float | str | WithUnit,
+    *,
+    progress: Callable[[Any], object] | bool | None = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
+    **of_solver: Any,
+) -> Run: ...
 
 
 @for_users
@@ -61,7 +61,6 @@ def simulate(
     duration: float | str | WithUnit | None = None,
     rtol: float | None = None,
     *,
-    frames: int | None = None,
     creep_rtol: float | None = None,
     shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
@@ -71,22 +70,21 @@ def simulate(
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
     title: str = "",
-) -> Solution | PlanarSolution:
+    **of_solver: Any,
+) -> Any:
     """Run a problem, or a scenario, from t = 0: `simulate(problem, 10.0)`, `simulate("fig6-slab")`, `simulate("mine.toml")`.
 
     Parameters
     ----------
-    problem : Problem, Scenario, PlanarSlab, str or Path
+    problem : Problem, Scenario, str or Path, or a problem of an extension such as PlanarSlab
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.problem.scenarios` lists them), or a scenario file.
         Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
-        `duration`, `frames`, `progress`, `checkpoint` and `checkpoint_every` only.
+        `duration`, `progress`, `checkpoint` and `checkpoint_every`, and `frames`.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
         Other times may be given as texts, too, and as quantities of the library pint.
     rtol : float, optional
         Relative tolerance of the run, between 1e-15 and 1e-2; 1e-10 by default.
-    frames : int, optional
-        For a `PlanarSlab`, the number of frames to keep in each two-way travel time; 100 by default.
     creep_rtol : float, optional
         Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
         Automatic by default (see Notes).
@@ -111,6 +109,9 @@ def simulate(
         two million, some 0.8 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
     title : str
         Title of the run, for figures; by default the scenario's title.
+    **of_solver
+        Options of the solver of an extension. For a `PlanarSlab`, `frames` is the number of frames to keep in each two-way travel
+        time; 100 by default.
 
     Returns
     -------
@@ -154,25 +155,36 @@ def simulate(
     23.440233 m of slip in 5.714286 s, at up to 4.102041 m/s
     """
     with reporting(progress, "simulate") as report:
-        if not PLANAR.solves(problem):
-            problem = read_source("simulate", problem, contact=True)
+        solver = special_solver_of(problem)
+        if solver is None:
+            problem = read_source("simulate", problem, any_kind=True)
+            solver = special_solver_of(problem) or EXACT
         given = {
             "duration": duration,
             "rtol": rtol,
-            "frames": frames,
             "creep_rtol": creep_rtol,
             "shortest_event": shortest_event,
             "max_events": max_events,
             "max_pieces": max_pieces,
             "title": title or None,
         }
-        solver = next(one for one in SOLVERS if one.solves(problem))
-        solver.check("simulate", given | {"selection": selection})
+        check_option_names(of_solver)
+        solver.check("simulate", given | of_solver | {"selection": selection})
         problem = problem if selection is None else under_rule(problem, selection)
         file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
-        others = {"progress": report, "checkpoint": file, "checkpoint_every": checkpoint_every}
-        solution: Solution | PlanarSolution = solver.run(problem, options_of(problem, **given, **others))
-        return solution
+        others = {"progress": report, "checkpoint": file, "checkpoint_every": checkpoint_every, "of_solver": of_solver}
+        return solver.run(problem, options_of(problem, **given, **others))
+
+
+def check_option_names(of_solver: Mapping[str, object]) -> None:
+    """Refuse options that no solver has. Raises ArgumentError with the nearest name."""
+    if of_solver:
+        known = {name: None for solver in special_solvers() for name in sorted(solver.takes)}
+        parameters = [one for one in signature(simulate).parameters.values() if one.kind is not one.VAR_KEYWORD]
+        more = [
+            Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in known if name not in signature(simulate).parameters
+        ]
+        check_names("simulate", [*parameters, *more], (None,), of_solver)
 
 
 def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solution:
@@ -185,38 +197,10 @@ def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solutio
         return run_to_end(run, WholeHistory(run))
 
 
-@dataclass(frozen=True)
-class SolverKind:
-    """One of the solvers of `simulate`, and the options that it takes."""
-
-    solves: Callable[[Any], bool]
-    """True for a problem, a slab or a scenario that it is for."""
-    run: Callable[[Any, RunOptions], Any]
-    """Run it from t = 0 with options that are not yet checked."""
-    takes: frozenset[str]
-    """Names of fields of `RunOptions`, and "selection", which replaces the problem's."""
-    refusal: str
-    """The message for any other option; braces stand for its name."""
-
-    def check(self, who: str, given: Mapping[str, object]) -> None:
-        """Refuse options that are given, not None, and not taken. Raises InputError, which begins with `who`."""
-        if needless := [name for name, value in given.items() if value is not None and name not in self.takes]:
-            raise InputError(f"{who}: {self.refusal.format(needless[0])}")
-
-
-ALL_TAKE = frozenset({"duration", "progress", "checkpoint", "checkpoint_every"})
-"""Options that each solver takes."""
-PLANAR = SolverKind(
-    lambda source: isinstance(source, PlanarSlab) or (isinstance(source, Scenario) and source.contact is not None),
-    simulate_planar,
-    ALL_TAKE | {"frames"},
-    "a PlanarSlab has no {}: its nodes and its courant set the accuracy, and its scenario has the title",
-)
 EXACT = SolverKind(
     lambda _: True,
     simulate_exactly,
     ALL_TAKE | {"rtol", "creep_rtol", "shortest_event", "max_events", "max_pieces", "selection", "title", "description"},
-    "{} is for a PlanarSlab: a slab in 1D is known at all times",
+    "{} is for {}: a single contact is known at all times",
 )
-SOLVERS = (PLANAR, EXACT)
-"""Each problem is run by the first that solves it."""
+"""The exact solver of a contact that slips as a whole: of every problem of the core."""

@@ -1,7 +1,7 @@
 """The protocol of a solver, as progress, Ctrl-C, checkpoints and counts of events need it.
 
-`ExactRun` (`run/exact_run.py`) is the exact solver of one contact, `PlanarRun` (`extensions/planar/run.py`) that of a contact of many
-nodes. `run_to_end` (`run/run_loop.py`) runs either, and whatever else implements the protocol.
+`ExactRun` (`run/exact_run.py`) is the exact solver of one contact, `PlanarRun` (`extensions/planar/run.py`) that of a contact of
+many nodes. `run_to_end` (`run/run_loop.py`) runs either, and whatever else implements the protocol.
 """
 
 from __future__ import annotations

@@ -7,8 +7,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,6 +49,22 @@ class Plots(NamesAttributes, Generic[Run]):
 
     def __init__(self, run: Run) -> None:
         self._run = run
+
+    if not TYPE_CHECKING:  # with it, type checkers would accept any figure
+
+        def __getattr__(self, name: str) -> Any:
+            """Return the figure of this name that an extension adds to results of this class."""
+            from stickslip.extension import figures_of
+
+            if name.startswith("_") or name not in (added := figures_of(type(self._run))):
+                return super().__getattr__(name)
+            return partial(in_given_units(_drawn), self, added[name])
+
+    def __dir__(self) -> list[str]:
+        """Return the figures with those that extensions add."""
+        from stickslip.extension import figures_of
+
+        return [*super().__dir__(), *figures_of(type(self._run))]
 
     @in_given_units
     def __call__(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
@@ -153,6 +170,11 @@ class Plots(NamesAttributes, Generic[Run]):
 
         animation.check_animation(Path(path), "animation:")
         return animation.write(animation.data(self._run, start, end, frames), path, progress=progress)
+
+
+def _drawn(plots: Plots[Any], draw: Callable[..., T], *given: Any, **place: Any) -> T:
+    """Draw a figure that an extension adds, as the methods of `Plots` draw theirs."""
+    return known_to_pyplot(draw(plots._run, *given, **place), cast("Place", place))
 
 
 class Exports(Readings):

@@ -110,7 +110,8 @@ class Solution(Exports):
 
         That is a slip rate in m/s, or a text with a unit; the default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of
         mu) / sqrt(K m); 0 takes every slip. With `energy` the table has the energies of each event (J/m^2; block: J), which take
-        longer to compute. Columns and units are those of EVENT_COLUMNS and ENERGY_COLUMNS in `stickslip.solution.observables.event_table`.
+        longer to compute. Columns and units are those of EVENT_COLUMNS and ENERGY_COLUMNS in
+        `stickslip.solution.observables.event_table`.
         """
         from stickslip.solution.observables.event_table import events_table
 

@@ -14,7 +14,7 @@ import pytest
 from stickslip.cli.main import main
 from stickslip.cli.overrides import load
 from stickslip.foundation.given import shown_in
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 
 TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_name("clumsy.toml").read_text(encoding="utf-8"))
 GROUPS = [group for name, group in TABLE.items() if name != "si"]

@@ -4,10 +4,8 @@ import io
 import re
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
-import pandas
 import pytest
 from PIL import Image
 from typer.main import get_command
@@ -23,45 +21,18 @@ from stickslip.cli.options import (
 )
 from stickslip.cli.output.files import CATALOGUES
 from stickslip.cli.output.pictures import FILMS
-from stickslip.extensions.schemes.run import SCHEMES
 from stickslip.figures.runs import animation
-from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios import library, templates
 from stickslip.problem.scenarios.scenario import load_scenario
-from stickslip.run import templates
 from stickslip.solution.files import catalogue_rows
 from tests.limits import limit_of_process
 from tests.problems import of_each_kind
 
-COMMANDS = [
-    "new",
-    "check",
-    "run",
-    "show",
-    "export",
-    "fit",
-    "infer",
-    "compare",
-    "sweep",
-    "analogy",
-    "ensemble",
-    "schemes",
-    "benchmark",
-    "paper",
-    "doctor",
-]
-
-
-@pytest.mark.slow
-def test_answers_of_a_block_and_a_slab_may_differ_by_a_tenth(command):
-    assert re.search(r"--within .*differ.*\[default: 0\.1\]", " ".join(command("analogy", "--help").out.split()))
+COMMANDS = [*get_command(app).commands]
+"""All commands: those of the core, and those of each extension that is there."""
 
 
 OPTIONS = [("run", "selection"), ("new", "friction"), ("new", "pull")]
-OPTIONS += [("sweep", name) for name in ("quantity", "design", "series")]
-
-
-def test_every_option_with_fixed_names_is_tested_below():
-    assert {name for _, name in OPTIONS} == set(CHOICES)
 
 
 @pytest.mark.parametrize(("name", "option"), OPTIONS)
@@ -121,9 +92,6 @@ def test_a_scenario_comes_from_standard_input(command, monkeypatch: pytest.Monke
     for name in ("run", "check"):
         piped(text)
         assert command(name, "-").out == command(name, "fig6-slab").out
-    piped(text)
-    compared = command("compare", "-", "fig6-slab").out
-    assert re.search(r"^stdin +1 +23\.4402", compared, re.MULTILINE)
     for wrong, message in (
         ("", "standard input: is empty; `stickslip new slab > mine.toml` writes"),
         (text.replace("alpha = 1.0", "alpha = 1,0"), "standard input: line 23: 'alpha = 1,0"),
@@ -247,72 +215,6 @@ def test_run_takes_other_durations_rules_and_tolerances(command):
     assert "duration 3 s" in command("run", "fig6-slab", "--duration", "3").out
 
 
-def test_schemes_says_which_rule_physics_tends_to_and_how_fast(command, tmp_path: Path):
-    shown = command("schemes", "fig4-loop", "--scheme", "lag,contact-mass", "--nx", "50,200,800", "--out", "a.csv")
-    assert (shown.code, shown.err) == (0, "")
-    for text in ("2.24266", "5.21284", "Rule perfect-delay: lag.", "Rule perfect-delay, from 200 cells on: contact-mass."):
-        assert text in shown.out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a-shocks.csv", "a.csv"]
-    table = pandas.read_csv(tmp_path / "a.csv", comment="#")
-    assert table.scheme.tolist() == ["lag"] * 3 + ["contact-mass"] * 3
-    assert float(table["step"].iloc[0]) == pytest.approx(20000 / 3500 / 200, rel=1e-9, abs=0.0)
-    assert f"{table.slip_error.iloc[-1]:.3g}" in shown.out
-    assert f"{table.slip_order.iloc[-1]:.2f}" in shown.out
-
-
-def test_all_names_the_numerical_schemes_and_others_may_follow(command):
-    shown = command("schemes", "fig4-loop", "--scheme", "all,lag", "--nx", "20", "--figure", "a.svg")
-    assert shown.code == 0
-    assert {*re.findall(r"^([a-z0-9-]+) +20 ", shown.out, re.MULTILINE)} == {*SCHEMES, "lag"}
-    assert shown.out.endswith("written: a.svg\n")
-
-
-def test_ensemble_says_what_members_share_and_how_they_part(command, tmp_path: Path):
-    options = ("--members", "2", "--duration", "1e13", "--events", "6", "--out", "a.csv", "--figure", "a.svg")
-    shown = command("ensemble", "fig6-slab", *options)
-    assert shown.code == 0
-    assert shown.err == ""
-    for text in (
-        "2 members, initial load disturbed by up to 1e-12 of the strength (",
-        "6 slip events",
-        "1.479435009e+10",
-        "All 2 members have the same 6 slip events.",
-        "Exponent 2.",
-        "predicted 2.",
-    ):
-        assert text in shown.out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.svg"]
-    table = pandas.read_csv(tmp_path / "a.csv", comment="#")
-    assert table.members.tolist() == [2] * 6
-    assert f"{table.start[0]:.10g}" in shown.out
-
-
-def test_ensemble_shows_events_around_the_first_that_is_lost(command):
-    shown = command("ensemble", "fig6-slab", "--duration", "1e13", "--events", "65", "--members", "2")
-    first, last = re.search(r"^\d+ slip events, of them (\d+) to (\d+)$", shown.out, re.MULTILINE).groups()
-    lost = re.search(r"^Sequences differ from event (\d+) of \d+ on", shown.out, re.MULTILINE)[1]
-    assert int(first) < int(lost) <= int(last) == int(first) + 11
-    assert re.search(rf"^ +{lost} .* [01] of 2 ", shown.out, re.MULTILINE)
-
-
-def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = import_module("stickslip.extensions.studies.kept_runs").simulate
-    done = []
-
-    def stops(*arguments, **options):
-        if len(done) == 3:
-            raise KeyboardInterrupt
-        done.append(original(*arguments, **options))
-        return done[-1]
-
-    monkeypatch.setattr(import_module("stickslip.extensions.studies.kept_runs"), "simulate", stops)
-    shown = command("ensemble", "cycles-block", "--out", "a.csv")
-    assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
-    assert "Interrupted: 2 of 8 members." in shown.out
-    assert "All 2 members have the same 7 slip events." in shown.out
-    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
-
-
 def test_the_shell_completes_laws_pulls_and_rules():
     assert complete_law("hyp") == ["hyperbolic-rate"]
     assert complete_pull("hold") == ["hold-and-slide"]
@@ -354,42 +256,6 @@ def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.Monke
 def test_the_suffixes_of_files_are_those_that_can_be_written():
     assert FILMS == animation.SUFFIXES
     assert CATALOGUES == catalogue_rows.SUFFIXES
-
-
-def test_paper_says_what_it_wrote(command, monkeypatch: pytest.MonkeyPatch):
-    def make(out: Path, progress) -> Path:
-        progress("figure 1")
-        return out / "report.html"
-
-    monkeypatch.setattr("stickslip.extensions.paper.make.make", make)
-    shown = command("paper", "--out", "new/folder")
-    assert (shown.code, shown.out, shown.err) == (0, f"written: {Path('new/folder/report.html')}\n", "")
-
-
-def test_compare_says_what_each_run_did(command, tmp_path: Path):
-    files = ("--figure", "both.png", "--out", "both.csv")
-    shown = command("compare", "fig6-block-reconstructed", "fig6-slab", *files)
-    assert shown.code == 0
-    for pattern in (
-        r"^fig6-block-reconstructed +perfect-delay +regular +finished",
-        r"^fig6-slab +perfect-delay +irregular +finished",
-        r"^fig6-block-reconstructed +1 +2\.06116 +1 +3\.51122 +70\.698 TN +38\.917 TN +2\.22645 +0$",
-        r"^fig6-slab +1 +23\.4402 +1 +4\.10204 +80\.4 MPa +40\.2 MPa +5\.71429 +2$",
-    ):
-        assert re.search(pattern, shown.out, re.MULTILINE), pattern
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["both.csv", "both.png"]
-    table = pandas.read_csv(tmp_path / "both.csv", comment="#")
-    assert list(table.name) == ["fig6-block-reconstructed", "fig6-slab"]
-    assert table.slip[1] == pytest.approx(23.4402332474, rel=1e-9, abs=0.0)
-
-
-def test_analogy_maps_a_scenario(command, tmp_path: Path):
-    axes = ("--map", "wavelength=5..41.6:2:log", "--map", "alpha=0.00392..1:2:log")
-    shown = command("analogy", "block-or-slab", *axes, "--out", "map.csv", "--figure", "map.png")
-    assert shown.code == 0
-    assert "The block stands for the slab at 1 of 4 points" in shown.out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.csv", "map.png"]
-    assert list(pandas.read_csv(tmp_path / "map.csv", comment="#").stands) == [False, True, False, False]
 
 
 def test_export_writes_time_series(command, tmp_path: Path):

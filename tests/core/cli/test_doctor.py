@@ -14,10 +14,8 @@ import pytest
 
 from stickslip.cli import installation
 from stickslip.cli.main import main
-from stickslip.run.templates import template
-from tests.core.cli.conftest import Outcome
-
-Command = Callable[..., Outcome]
+from stickslip.problem.scenarios.templates import template
+from tests.command_line import Command, Outcome
 
 
 def versions(monkeypatch: pytest.MonkeyPatch, **replaced: str | None) -> None:

@@ -20,12 +20,7 @@ FOREIGN = b"# stick-slip tests, not made by stickslip\ntime,force\n0,1\n"
         (["run", "fig6-slab", "--catalogue"], "data.csv"),
         (["run", "fig6-slab", "--catalogue"], "data.nc"),
         (["run", "fig6-slab", "--out"], "data.nc"),
-        (["compare", "fig6-slab", "fig6-slab", "--out"], "data.csv"),
-        (["ensemble", "fig6-slab", "--members", "2", "--out"], "data.csv"),
-        (["schemes", "fig4-loop", "--nx", "20", "--out"], "data.csv"),
-        (["analogy", "fig6-slab", "--map", "alpha=1..2:2", "--map", "thickness=1..2:2", "--out"], "data.csv"),
         (["export", "fig6-slab"], "data.txt"),
-        (["fit", "points.csv", "--out"], "data.toml"),
     ],
     ids=lambda one: one[0] if isinstance(one, list) else one,
 )
@@ -54,7 +49,6 @@ def test_python_replaces_no_file_of_somebody_else_either(tmp_path: Path):
 def test_results_of_an_earlier_run_are_replaced(command):
     for options in (["--out", "a.nc"], ["--catalogue", "b.nc"]):
         assert [command("run", "fig6-slab", *options).code for _ in range(2)] == [0, 0]
-    assert [command("compare", "fig6-slab", "fig6-slab", "--out", "c.csv").code for _ in range(2)] == [0, 0]
     assert [command("export", "fig6-slab", "d.txt").code for _ in range(2)] == [0, 0]
 
 

@@ -1,13 +1,10 @@
 """`stickslip find`, and what `check` says about steady sliding."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.core.cli.conftest import Outcome
-
-Command = Callable[..., Outcome]
+from tests.command_line import Command
 
 AXIS = """
 title = "A damped axis"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -13,24 +12,20 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.foundation.given import preferred
-from tests.core.cli.conftest import Outcome
-
-Command = Callable[..., Outcome]
+from tests.command_line import Command
 
 
 def second(text: str) -> str:
     return text.splitlines()[1]
 
 
-def test_run_show_and_compare_say_the_last_number_in_their_second_line(command: Command) -> None:
+def test_run_and_show_say_the_last_number_in_their_second_line(command: Command) -> None:
     run = command("run", "reversing-axis", "--duration", "0.3 s", "--out", "a.nc").out
     slip = ss.simulate("reversing-axis", 0.3).reach
     assert second(run) == f"slip at the end {1e6 * slip.end:.8g} um; largest displacement 631.4779 um, at 0.10063 s"
     assert second(command("show", "a.nc").out) == second(run)
     command("run", "reversing-axis", "--duration", "0.3 s", "--catalogue", "a.csv")
     assert second(command("show", "a.csv").out) == second(run)
-    both = command("compare", "a.nc", "a.nc")
-    assert second(both.out) == f"slip at the end {1e6 * slip.end:.8g} um in all; largest displacement 631.4779 um in all"
 
 
 def test_events_that_slip_back_have_a_sign_in_the_table(command: Command) -> None:
@@ -52,32 +47,9 @@ def test_proof_waves_and_predictability_are_one_line_and_all_has_the_rest(comman
         assert text in full
 
 
-def test_all_selection_rules_are_one_table(command: Command, tmp_path: Path) -> None:
-    """The waits are those of the four runs one by one: 468.805 years for rules that wait for the strength."""
-    shown = command("compare", "second-event-maxwell", "--rules", "--out", "rules.csv")
-    assert shown.code == 0
-    rows = {
-        line.split()[0]: line.split() for line in shown.out.splitlines() if re.match(r"(perfect|maxwell|minimal|maximal)", line)
-    }
-    table = pd.read_csv(tmp_path / "rules.csv", comment="#").set_index("name")
-    assert list(rows) == list(table.index) == ["perfect-delay", "maxwell", "minimal", "maximal"]
-    for rule in rows:
-        run = ss.simulate(f"second-event-{rule}")
-        wait = run.events.start[1] - run.events.end[0]
-        assert table.wait[rule] == pytest.approx(wait, rel=1e-12, abs=0.0)
-        assert float(rows[rule][1]) == pytest.approx(wait / ss.YEAR, rel=1e-5, abs=0.0)
-        assert rows[rule][2] == "years"
-        assert float(rows[rule][3]) == pytest.approx(run.events.slip[1], rel=1e-7, abs=0.0)
-        assert table.end_slip[rule] == float(run.slip())
-        assert rows[rule][-2:] == [str(len(run.events)), str(len(run.shocks))]
-    assert "from 30.633498 m (maximal) to 46.880466 m (perfect-delay and minimal)" in second(shown.out)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["compare", "fig6-slab", "fig6-slab", "--rules"], "compare: every rule is that of one scenario, got 2 of them"),
-        (["compare", "fig6-slab"], "--rules runs one under each selection rule"),
         (["export", "fig6-slab", "a.txt", "--points", "5"], "--points is for files .csv and .nc, not for .txt"),
         (["export", "fig6-slab", "a.csv", "--area", "1 m^2"], "--area is for files .txt and .dat, not for .csv"),
         (["export", "fig6-slab", "a.txt", "--area", "1 m^2"], "the loads of a slab are stresses already"),

@@ -2,7 +2,6 @@
 
 import re
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +13,7 @@ from stickslip import __version__
 from stickslip.cli.options import complete_result, complete_scenario, complete_source
 from stickslip.cli.output.summary import statistics
 from stickslip.problem.scenarios.scenario import load_scenario
-from tests.core.cli.conftest import Outcome
-
-Command = Callable[..., Outcome]
+from tests.command_line import Command
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +22,6 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder, problem = tmp_path_factory.mktemp("results"), load_scenario("cycles-block").problem
     ss.simulate(problem, 20 * ss.YEAR, checkpoint=folder / "run.nc")
     ss.catalogue(problem, 20 * ss.YEAR, folder / "events.csv")
-    ss.sweep("fig6-slab", {"friction.alpha": np.array([0.5, 1.0])}, out=folder / "map.zarr")
     (folder / "bad.nc").write_text("no")
     (folder / "bad.csv").write_text("a,b\n1,2\n")
     return folder
@@ -118,19 +114,6 @@ def test_a_table_without_its_checkpoint_is_shown_without_its_origin(command: Com
     assert command("show", "events.csv", "--scenario").refusal.startswith("events.csv: does not hold its scenario")
 
 
-@pytest.mark.drawn
-def test_show_repeats_the_summary_of_a_sweep(command: Command):
-    asked = ["sweep", "fig6-slab", "-v", "run.selection=perfect-delay,minimal,maximal", "-v", "friction.alpha=0.1..1:4"]
-    ran = command(*asked, "--out", "map.zarr", "-q", "slip", "-q", "events", "--figure", "ran.png").out
-    shown = command("show", "map.zarr", "--figure", "shown.png")
-    assert (shown.code, shown.err) == (0, "")
-    summary, _, made = after_title(shown.out).partition("made by ")
-    assert summary == after_title(ran).removesuffix("written: map.zarr\nwritten: ran.png\n")
-    assert made.endswith("written: shown.png\n")
-    assert Path("shown.png").read_bytes() == Path("ran.png").read_bytes(), "the first quantity of the sweep, in both"
-    assert "[run]\n" in command("show", "map.zarr", "--scenario").out
-
-
 def test_a_catalogue_of_another_version_may_lack_columns(command: Command, results: Path) -> None:
     table = pd.read_csv(results / "events.csv").drop(columns=["pulses", "amplification", "static_drop"])
     table.to_csv(results / "older.csv", index=False)
@@ -150,17 +133,11 @@ def test_the_scatter_of_slips_is_a_share_of_their_mean(slips: list[float], perce
     ("arguments", "message"),
     [
         (["no.nc"], "no.nc: no such file"),
-        (
-            ["fig6-slab"],
-            "fig6-slab: not a file of results, whose names end in .nc, .csv, .parquet or .zarr; `stickslip run fig6-slab`",
-        ),
+        (["fig6-slab"], "fig6-slab: not a file of results, whose names end in .nc, .csv, .parquet"),
         (["bad.nc"], "bad.nc: not a netCDF file that can be read"),
         (["bad.csv"], "bad.csv: not a catalogue of slip events: there is no column start"),
-        (["."], ".: exists and is not the store of a sweep"),
         (["run.nc", "--space-time", "a.png"], "show: --space-time needs a slab or a string: a block is rigid"),
         (["events.csv", "--figure", "a.png"], "events.csv: a catalogue keeps slip events only, no history: leave out --figure"),
-        (["run.nc", "--quantity", "slip"], "show: --quantity chooses what is drawn of a sweep, and run.nc is not a sweep"),
-        (["map.zarr", "--energy-figure", "a.png"], "map.zarr: the results of a sweep have no --energy-figure: --figure draws"),
     ],
 )
 def test_what_cannot_be_shown_is_told_in_one_line(

@@ -19,7 +19,7 @@ from stickslip.engine.input.branch_table import table_of_branches
 from stickslip.engine.state.layout import BranchRow
 from stickslip.friction import LAWS, FromExpression
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.core.friction.drawn import laws
 from tests.limits import examples
 

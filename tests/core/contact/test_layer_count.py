@@ -13,11 +13,11 @@ from stickslip.contact import layer_count
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.layer_discs import LinePieces
 from stickslip.contact.layer_modes import LayerModes
+from stickslip.contact.layer_response import response_of
 from stickslip.contact.sliding import Sliding
 from stickslip.contact.steady import _Steady, steady_slidings
 from stickslip.contact.wave_modes import Growth
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layer_response import response_of
 from tests.core.contact.layer_truth import exact_root, sought_roots
 
 BUNDLED = ("pipe-and-collar", "low-velocity-zone", "bowed-string-tenth", "steel-on-granite")

@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.contact.disturbance import Disturbed, Response
+from stickslip.contact.layer_response import growth_on_layers, response_of, taken_by_layers
 from stickslip.contact.steady import steady_slidings
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layer_response import growth_on_layers, response_of, taken_by_layers
 from stickslip.run.check.stability import stability_of
 from stickslip.run.reference.slab import growth_rate
 

@@ -29,7 +29,7 @@ BODY = SLOW.body
 assert isinstance(BODY, ss.ElasticSlab)
 TRIP = BODY.two_way_time
 YEARS = 30_000.0
-"""The storm begins after 23 700 of them (`tests/truth`)."""
+"""The storm begins after 23 700 of them (`tests/core/engine/truth`)."""
 
 
 def test_without_lumping_the_run_ends_in_a_storm() -> None:

@@ -1,4 +1,4 @@
-"""Slip event after slip event of a slab under the rate law, against 50 digits (`tests/truth`).
+"""Slip event after slip event of a slab under the rate law, against 50 digits (`tests/core/engine/truth`).
 
 Rounding is allowed to make an error of ROUNDING F in the load, F = S (muS - muD) what friction falls by; and, as a share of
 itself, in how steep the load is. What becomes of it:

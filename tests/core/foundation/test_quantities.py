@@ -194,7 +194,8 @@ def test_the_table_leaves_all_else_to_the_library_of_units(unit: str) -> None:
 
 def test_bundled_scenarios_are_read_without_the_library_of_units() -> None:
     code = (
-        "import sys; from stickslip.problem.scenarios.library import names; from stickslip.problem.scenarios.scenario import load_scenario\n"
+        "import sys; from stickslip.problem.scenarios.library import names\n"
+        "from stickslip.problem.scenarios.scenario import load_scenario\n"
         "for name in names(): load_scenario(name)\n"
         "sys.exit('pint' in sys.modules)"
     )

@@ -18,7 +18,7 @@ from stickslip.foundation.synonyms import last, plain, rows
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.parameter_paths import find_parameter, parameter_paths
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 
 scenario = cache(ss.load_scenario)
 
@@ -286,7 +286,7 @@ def every_name() -> set[str]:
     from stickslip.foundation.names import QUANTITIES
     from stickslip.problem.bodies import BODIES
     from stickslip.problem.loading import HISTORIES
-    from stickslip.problem.scenarios.schema import CONTACT, TABLES, keys_of
+    from stickslip.problem.scenarios.schema import TABLES, keys_of
     from stickslip.problem.selection_rule import SELECTION_RULES
     from stickslip.run.find import WHAT
 
@@ -302,7 +302,7 @@ def every_name() -> set[str]:
         KEYWORDS,
         SENSORS,
         TABLES,
-        (CONTACT,),
+        ("contact",),
     )
     found = {name for table in registered for name in table} | set(COMMANDS) | set(library.STARTERS) | set(library.names())
     kinds = [*BODIES.values(), *ss.friction.LAWS.values(), *HISTORIES.values()]

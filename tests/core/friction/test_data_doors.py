@@ -14,8 +14,8 @@ from stickslip.foundation.errors import InputError, InputWarning
 from stickslip.friction import LAWS, FromTable, PiecewiseLinearRate, PiecewiseLinearSlip, Points
 from stickslip.friction.piecewise import noise_in, reversals
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
+from stickslip.problem.scenarios.templates import template
 from stickslip.run.check.examine import examine
-from stickslip.run.templates import template
 from tests.messages import refused
 from tests.problems import RATE_LAW, SLAB, measured
 

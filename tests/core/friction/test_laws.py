@@ -25,7 +25,7 @@ from stickslip.friction import (
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.fields import INITIAL_STATES
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.limits import examples
 
 from .drawn import compiled_value, laws

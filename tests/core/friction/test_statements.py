@@ -18,7 +18,7 @@ from stickslip.friction.contract import StateVariable
 from stickslip.friction.formula.functions import exp, sin, tanh
 from stickslip.friction.law import check_statements
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.limits import examples
 from tests.messages import refused
 

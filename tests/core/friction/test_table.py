@@ -14,7 +14,7 @@ from scipy.interpolate import PchipInterpolator
 from stickslip import InputError, load_scenario
 from stickslip.friction import FromTable, PiecewiseLinearRate
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.messages import refused
 
 points = st.lists(st.tuples(st.floats(0.01, 2.0), st.floats(0.0, 1.5)), min_size=2, max_size=12)

@@ -49,7 +49,7 @@ def explorer(answer: FaultAnswer) -> Explorer:
     """An explorer whose every answer is that of the first setting, and which notes what it is asked for."""
 
     def solve(scenario: Any, told: Any) -> FaultAnswer:
-        _ = scenario.planar_slab
+        _ = scenario.to_solve
         return replace(answer, scenario=scenario)
 
     return Explorer(SETTING, DeskAtOnce(), solve)
@@ -170,7 +170,7 @@ def test_the_page_has_all_its_panels_without_an_answer(explorer: Explorer) -> No
 
 def test_the_numbers_in_the_tour_are_those_of_its_runs() -> None:
     texts = " ".join(step.text for step in TOUR_OF_A_FAULT)
-    problem, contact = TOUR_OF_A_FAULT[0].setting.scenario().problem, TOUR_OF_A_FAULT[0].setting.scenario().contact
+    problem, contact = TOUR_OF_A_FAULT[0].setting.scenario().problem, TOUR_OF_A_FAULT[0].setting.scenario().table("contact")
     assert contact is not None
     law: Any = problem.friction
     assert (law.static, law.dynamic, law.distance) == (0.7, 0.5, 0.4)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.explorer.model.answer import Backdrop
 from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.explorer.model.solve import solve
 from stickslip.extensions.explorer.model.strip import strip_range
 from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.extensions.explorer.page.panels import view_of
+from stickslip.extensions.inference.record.beside import RecordBeside
 from stickslip.extensions.inference.record.record import Record
 from stickslip.problem.scenarios.scenario import Scenario
 from tests.extensions.explorer.desk_at_once import DeskAtOnce
@@ -98,8 +98,8 @@ def clean() -> Floats:
     return TRUE.friction(CLOCK, TIMES, RATES)
 
 
-def behind(**measured: Any) -> Backdrop:
-    return Backdrop.of(Record.read({"time (s)": CLOCK + 7.0, **measured}), "contact", SCENARIO.scenario().problem)
+def behind(**measured: Any) -> RecordBeside:
+    return RecordBeside.of(Record.read({"time (s)": CLOCK + 7.0, **measured}), "contact", SCENARIO.scenario().problem, "explore")
 
 
 def test_the_misfit_is_the_distance_from_what_another_integrator_made() -> None:
@@ -141,4 +141,4 @@ def test_what_cannot_be_drawn_is_refused() -> None:
     ):
         behind(**{"tau (Pa)": 1e6 * clean()})
     with pytest.raises(ss.InputError, match="did you mean 'spring'"):
-        Backdrop.of(Record.read({"time (s)": CLOCK, "mu": clean()}), "sprnig", SCENARIO.scenario().problem)
+        RecordBeside.of(Record.read({"time (s)": CLOCK, "mu": clean()}), "sprnig", SCENARIO.scenario().problem, "explore")

@@ -228,7 +228,7 @@ def test_the_rate_after_the_jump_is_a_straight_line_in_normal_stress() -> None:
 
 def test_the_lesson_asks_the_question_of_each_step_within_its_time() -> None:
     """The answers on that page are run with the page itself."""
-    page = (Path(__file__).parents[2] / "docs" / "explorer-lesson.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "explorer-lesson.md").read_text(encoding="utf-8")
     plan = re.findall(r"^\| (\d+) \| (.+?) \| (.+) \|$", page, re.MULTILINE)
     minutes = [int(minute) for minute, _, _ in plan]
     assert minutes == sorted(set(minutes))

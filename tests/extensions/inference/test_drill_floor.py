@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.inference.record.beside import RecordBeside
 from stickslip.extensions.inference.record.record import Record
 
 RPM = math.pi / 30.0
@@ -169,9 +169,9 @@ def test_what_a_log_cannot_be_used_for_is_refused_in_one_line(problem: ss.Proble
 def test_a_log_behind_a_run_in_the_explorer_is_compared_with_the_torque_at_the_drive(tmp_path: Path) -> None:
     lines = [",".join(LOG), *(",".join(f"{value:.7g}" for value in row) for row in zip(*LOG.values(), strict=True))]
     (tmp_path / "floor.csv").write_text("\n".join(lines))
-    behind = Backdrop.of(Record.read(tmp_path / "floor.csv"), "contact", TRUE).behind(ss.simulate(TRUE, TIME[-1]))
-    assert [one.name for one in behind.misfits] == ["misfit of surface torque"]
-    assert behind.misfits[0].value == pytest.approx(NOISE, rel=0.2)
+    behind = RecordBeside.of(Record.read(tmp_path / "floor.csv"), "contact", TRUE, "explore").beside(ss.simulate(TRUE, TIME[-1]))
+    assert list(behind.misfits) == ["surface_torque"]
+    assert behind.misfits["surface_torque"][0] == pytest.approx(NOISE, rel=0.2)
 
 
 @pytest.mark.slow

@@ -62,7 +62,7 @@ def test_a_length_beside_an_angle_is_refused() -> None:
 
 
 def test_fit_takes_a_string_by_itself_and_refuses_a_slab(tmp_path: Path) -> None:
-    from stickslip.run.templates import with_law
+    from stickslip.problem.scenarios.templates import with_law
 
     found = fit(Points.read(TABLE), "exponential-stribeck", fixed={"viscosity": 0.0})
     (tmp_path / "string.toml").write_text(with_law("string", found.law, ["from points"]), encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.app import COMMANDS
-from stickslip.extensions.studies.summary import as_options
+from stickslip.extensions.inference.summary import as_options
 from tests.extensions.inference.laboratory import RateAndStateBlock, correlated, load_point
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]

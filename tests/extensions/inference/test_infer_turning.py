@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.inference.record.beside import RecordBeside
 from stickslip.extensions.inference.record.record import Record
 
 RPM = math.pi / 30.0
@@ -53,11 +53,11 @@ def test_angles_are_read_with_their_units_and_torque_over_torque_is_friction() -
     assert np.median(read.measured["friction"]) == pytest.approx(0.5, abs=0.1)
 
 
-def test_a_record_is_drawn_behind_a_contact_that_turns() -> None:
+def test_a_record_is_put_beside_a_contact_that_turns() -> None:
     run = ss.simulate(TRUE, TIME[-1])
-    behind = Backdrop.of(Record.read(record(TRUE)), "contact", TRUE).behind(run)
-    assert {one.name: one.unit for one in behind.misfits} == {"misfit of torque": "N m", "misfit of slip rate": "rad/s"}
-    assert [one.value for one in behind.misfits] == pytest.approx([NOISE, NOISE * RPM], rel=0.2)
+    behind = RecordBeside.of(Record.read(record(TRUE)), "contact", TRUE, "explore").beside(run)
+    assert {name: unit for name, (_, unit) in behind.misfits.items()} == {"torque": "N m", "slip_rate": "rad/s"}
+    assert [size for size, _ in behind.misfits.values()] == pytest.approx([NOISE, NOISE * RPM], rel=0.2)
 
 
 SLIDES = ss.Problem(ss.SpringBlock(2.0, 400.0, 60.0), ss.friction.Coulomb(0.8, 0.5), pull_rate=1.0, initial_load=0.0)

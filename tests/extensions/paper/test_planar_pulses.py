@@ -28,7 +28,7 @@ from stickslip.extensions.paper.planar import (
 from tests.extensions.planar.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 TRIP = 40.0 / 7.0
-PAGE = Path(__file__).parents[2] / "docs" / "pulses-in-2d-and-3d.md"
+PAGE = Path(__file__).parents[3] / "docs" / "pulses-in-2d-and-3d.md"
 
 
 def test_the_paper_belongs_to_the_family_of_slip_laws() -> None:

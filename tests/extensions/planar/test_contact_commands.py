@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,9 +13,8 @@ from stickslip.cli.app import COMMANDS
 from stickslip.cli.options import complete_scenario, complete_vary
 from stickslip.problem.scenarios import library, read_scenario
 from stickslip.run.run_loop import Interrupts
-from tests.core.cli.conftest import Outcome
+from tests.command_line import Command
 
-Command = Callable[..., Outcome]
 SMALL = ("planar-patch", "--set", "contact.nodes=64", "--duration", "1 s")
 IN_1D = {
     "analogy": ("--map", "friction.static=0.6..0.8:3", "--map", "friction.dynamic=0.4..0.5:3", "planar-patch"),
@@ -160,7 +158,7 @@ def test_an_interrupted_run_is_shown_and_resumed(command: Command, monkeypatch: 
     assert "27% of the contact slips" in shown.out
     expected = ss.scenarios["planar-patch"].with_values({"contact.nodes": 64, "run.duration": 1.0})
     again = read_scenario(command("show", "fault.zarr", "--scenario").out, "again")
-    assert again.contact == replace(expected.contact, frames=100)
+    assert again.table("contact") == replace(expected.table("contact"), frames=100)
     assert (again.problem, again.duration) == (expected.problem, 1.0)
 
 

@@ -10,10 +10,11 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.planar.contact import Contact
+from stickslip.extensions.planar.kind import PLANAR
+from stickslip.extensions.planar.table import planar_slab_of
 from stickslip.extensions.studies.compare import compare
 from stickslip.problem.scenarios import Scenario, library, load_scenario, read_scenario
 from stickslip.problem.scenarios.parameter_paths import parameter_paths
-from stickslip.run.simulate import PLANAR
 from tests.messages import refused
 
 NODE = """\
@@ -42,7 +43,7 @@ PATCH = '[[contact.patches]]\ny = ["-4 km", "4 km"]\ninitial.load = "71 MPa"\n'
 
 def load_along(text: str) -> np.ndarray:
     """Return the initial load (MPa) at the nodes, or the friction that varies in its place."""
-    return read_scenario(text, "my.toml").planar_slab.values.load / 1e6
+    return read_scenario(text, "my.toml").to_solve.values.load / 1e6
 
 
 def test_a_patch_has_its_values_at_its_nodes_and_lies_on_those_before() -> None:
@@ -60,7 +61,7 @@ def test_a_taper_is_linear() -> None:
 def test_outside_is_all_the_rest() -> None:
     locked = read_scenario(
         LINE + '[[contact.patches]]\ny = ["-10 km", "5 km"]\noutside = true\nlocked = true\n', "x"
-    ).planar_slab.locked
+    ).to_solve.locked
     assert np.array_equal(locked, (Y < -10e3) | (Y > 5e3))
 
 
@@ -71,7 +72,7 @@ def test_a_later_patch_may_unlock() -> None:
         + ", ".join(["true"] * 32)
         + ']\n[[contact.patches]]\ny = [0, "3 km"]\nlocked = false\n'
     )
-    assert np.array_equal(~read_scenario(text, "x").planar_slab.locked, (Y >= 0) & (Y <= 3e3))
+    assert np.array_equal(~read_scenario(text, "x").to_solve.locked, (Y >= 0) & (Y <= 3e3))
 
 
 def test_points_are_joined_by_straight_lines_with_steps_where_a_place_stands_twice() -> None:
@@ -105,7 +106,7 @@ def test_a_box_has_round_corners_of_the_taper() -> None:
 
 def test_friction_and_normal_stress_vary_and_short_names_do() -> None:
     patch = '[[contact.patches]]\ny = [-1e3, 1e3]\nstatic = 0.8\nbody = {normal_stress = "90 MPa"}\n"initial.slip" = "1 cm"\n'
-    values = read_scenario(LINE + patch, "x").planar_slab.values
+    values = read_scenario(LINE + patch, "x").to_solve.values
     middle = np.abs(Y) <= 1e3
     assert np.array_equal(values.normal, np.where(middle, 90e6, 100e6))
     assert np.array_equal(values.slip, np.where(middle, 0.01, 0.0))
@@ -124,7 +125,7 @@ def test_a_scenario_is_written_and_read_back_exactly(text: str, more: str) -> No
     assert again == scenario
     assert again.to_toml() == scenario.to_toml()
     for name in ("load", "normal", "slip"):
-        assert np.array_equal(getattr(again.planar_slab.values, name), getattr(scenario.planar_slab.values, name))
+        assert np.array_equal(getattr(again.to_solve.values, name), getattr(scenario.to_solve.values, name))
 
 
 def test_profiles_of_a_planar_slab_become_lists() -> None:
@@ -136,11 +137,11 @@ def test_profiles_of_a_planar_slab_become_lists() -> None:
         along={"load": lambda y: 60e6 + 10e6 * np.exp(-((y / 3e3) ** 2)), "friction.static": np.linspace(0.7, 0.8, 32)},
         barrier=lambda y: np.abs(y) > 9e3,
     )
-    scenario = Scenario(problem, 2.0, contact=Contact.of(slab))
+    scenario = Scenario(problem, 2.0, tables=(("contact", Contact.of(slab)),))
     again = read_scenario(scenario.to_toml(), "again")
     assert again == scenario
-    assert np.array_equal(again.planar_slab.values.load, slab.values.load)
-    assert np.array_equal(again.planar_slab.locked, slab.locked)
+    assert np.array_equal(again.to_solve.values.load, slab.values.load)
+    assert np.array_equal(again.to_solve.locked, slab.locked)
 
 
 def test_other_values_are_put_into_patches_and_sizes() -> None:
@@ -154,11 +155,11 @@ def test_other_values_are_put_into_patches_and_sizes() -> None:
             "static": 0.71,
         }
     )
-    slab = changed.planar_slab
+    slab = changed.to_solve
     assert slab.shape == (64,)
     assert slab.values.load.max() == 72e6
     assert slab.y[~slab.locked].min() >= -17e3 > slab.y[~slab.locked].min() - slab.spacing[0]
-    assert changed.contact.patches[0].taper == 500.0
+    assert changed.table("contact").patches[0].taper == 500.0
     for one in parameter_paths(scenario):
         assert one.name in {other.name for other in parameter_paths(changed)}
 
@@ -166,11 +167,11 @@ def test_other_values_are_put_into_patches_and_sizes() -> None:
 def test_a_name_or_a_file_is_run_with_its_duration_and_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "mine.toml"
     file.write_text((LINE + PATCH).replace("nodes = 32", "nodes = 32\nframes = 20"))
-    shown = replace(PLANAR, run=lambda found, options: (found.planar_slab.shape, options.duration, options.frames))
-    monkeypatch.setattr("stickslip.run.simulate.SOLVERS", (shown,))
-    assert ss.simulate(file) == ((32,), 2.0, 20)
-    assert ss.simulate(str(file), "1 s", frames=5) == ((32,), "1 s", 5)
-    assert ss.simulate("planar-plane") == ((48, 40), 4.5, None)
+    shown = replace(PLANAR, run=lambda found, options: (found.to_solve.shape, options.duration, dict(options.of_solver)))
+    monkeypatch.setattr("stickslip.extensions.planar.kind.PLANAR", shown)
+    assert ss.simulate(file) == ((32,), 2.0, {})
+    assert ss.simulate(str(file), "1 s", frames=5) == ((32,), "1 s", {"frames": 5})
+    assert ss.simulate("planar-plane") == ((48, 40), 4.5, {})
     with pytest.raises(ss.InputError, match="a PlanarSlab has no rtol"):
         ss.simulate("planar-patch", rtol=1e-8)
 
@@ -257,6 +258,6 @@ def test_what_is_for_problems_in_1d_says_so_in_one_line(what: str) -> None:
 
 
 def test_the_scenarios_in_1d_are_those_without_a_contact() -> None:
-    assert library.in_1d() == [name for name in library.names() if load_scenario(name).contact is None]
+    assert library.in_1d() == [name for name in library.names() if load_scenario(name).is_of_core]
     with pytest.raises(ss.InputError, match=r"^fig6-slab: has no \[contact\] of many nodes"):
-        _ = load_scenario("fig6-slab").planar_slab
+        planar_slab_of(load_scenario("fig6-slab"))

@@ -159,8 +159,8 @@ def test_a_contact_of_more_nodes_than_can_be_used_is_refused_before_it_is_made(m
 
 def test_a_contact_of_as_many_nodes_as_can_be_used_is_read() -> None:
     found = scenario_of(tomllib.loads(ss.scenarios["planar-patch"].to_toml()), Source("x", most_nodes=256))
-    assert found.contact is not None
-    assert found.contact.nodes == 256
+    assert found.table("contact") is not None
+    assert found.table("contact").nodes == 256
 
 
 def test_the_memory_of_the_machine_bounds_a_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -87,7 +87,7 @@ def test_a_run_draws_itself_with_units(plane: bool) -> None:
 
 def test_the_figure_has_the_title_of_the_scenario_also_from_a_folder(tmp_path: Path) -> None:
     scenario = ss.load_scenario("planar-patch")
-    scenario = replace(scenario, duration=0.5, contact=replace(scenario.contact, nodes=64, frames=10))
+    scenario = replace(scenario, duration=0.5).with_table("contact", replace(scenario.table("contact"), nodes=64, frames=10))
     run = ss.simulate(scenario, checkpoint=tmp_path / "fault.zarr")
     for one in (run, ss.open_solution(tmp_path / "fault.zarr"), ss.simulate(scenario)):
         assert one.title == scenario.title

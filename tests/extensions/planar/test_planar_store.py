@@ -275,9 +275,9 @@ def test_a_folder_without_one_of_its_files_is_refused(store: Path, file: str) ->
 
 
 def test_what_is_no_planar_run_is_refused(store: Path, tmp_path: Path) -> None:
-    refused(lambda: ss.open_solution(tmp_path), "not the run of a planar slab: it is no folder of zarr")
+    refused(lambda: ss.open_solution(tmp_path), "is a folder that holds no results of stickslip")
     zarr.create_group(tmp_path / "sweep.zarr", attributes={"stickslip_sweep": 1})
-    refused(lambda: ss.open_solution(tmp_path / "sweep.zarr"), "it is the store of a sweep")
+    refused(lambda: ss.open_solution(tmp_path / "sweep.zarr"), "holds a sweep, which is not a run")
     refused(lambda: ss.resume(tmp_path / "missing.zarr"), "missing.zarr")
     (tmp_path / "two.zarr").mkdir()
     refused(lambda: ss.resume(tmp_path / "two.zarr"), "two.zarr")

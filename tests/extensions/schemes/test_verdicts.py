@@ -191,7 +191,7 @@ def test_verdicts_by_scheme_on_the_loop(search: str, expected: str) -> None:
 @pytest.mark.parametrize("search", ["stick-first", "continue"])
 def test_the_table_of_the_page_is_what_its_script_measures(search: str) -> None:
     """On the two coarsest meshes here; the script measures all six."""
-    docs = Path(__file__).parents[2] / "docs"
+    docs = Path(__file__).parents[3] / "docs"
     column = {"stick-first": 1, "continue": 2}[search]
     text = (docs / "theory" / "schemes-at-a-jump.md").read_text(encoding="utf-8")
     page = re.findall(r"^\| (.*?) \| `([-DmMx?]{6})` \| `([-DmMx?]{6})` \|$", text, re.MULTILINE)

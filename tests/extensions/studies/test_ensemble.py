@@ -116,7 +116,7 @@ def test_just_above_critical_one_echo_shifts_all_that_follows() -> None:
 
 
 def test_at_the_real_pull_rate_the_storm_is_lost() -> None:
-    """50 digits (`tests/truth`) lose the order of events at the 57th: members keep 50 events at least, and not all 64."""
+    """50 digits (core/engine/truth) lose the order of events at the 57th: members keep at least 50 events, and not all 64."""
     found = ensemble(SLOW, 1e13, members=3, max_events=65)
     assert found.first_lost is not None
     assert 50 < found.first_lost < 64

@@ -11,9 +11,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.schemes.verdict import groups, local_orders
-from stickslip.extensions.studies.analogy import QUANTITIES, Analogy, _stands, analogy, block_for, weakening
+from stickslip.extensions.studies.analogy import QUANTITIES, Analogy, _stands, analogy, weakening
 from stickslip.extensions.studies.figures import analogy as figure
 from stickslip.foundation.axis import Axis
+from stickslip.problem.equivalent_block import block_for
 from stickslip.problem.scenarios.scenario import Scenario
 
 CASE = ss.load_scenario("block-or-slab")

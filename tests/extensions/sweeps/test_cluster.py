@@ -137,7 +137,7 @@ def test_a_killed_sweep_continues(undisturbed: dict[str, bytes], tmp_path: Path)
     """kill -9 while a local cluster works: its worker goes with it, and the rest is done in one process."""
     out, script = tmp_path / "map.zarr", tmp_path / "suicidal.py"
     script.write_text(SUICIDAL)
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[2]), *sys.path])}
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[3]), *sys.path])}
     sweep = subprocess.Popen([sys.executable, str(script), str(out)], env=environment, start_new_session=True)
     assert sweep.wait(timeout=120) == -signal.SIGKILL
     assert sum(name.startswith("status/c.") for name in files(out)) == 3

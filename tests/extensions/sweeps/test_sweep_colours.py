@@ -30,6 +30,8 @@ from stickslip.problem.scenarios.library import names
 from stickslip.problem.scenarios.parameter_paths import ParameterPath, parameter_paths
 from tests.core.figures.legible import SIZES, SLAB_PROBLEM
 
+pytestmark = pytest.mark.usefixtures("closed_figures")
+
 
 def declared() -> list[ParameterPath]:
     """Every parameter that can be varied in some bundled scenario."""

@@ -25,6 +25,7 @@ from stickslip.figures.style import PALE
 from stickslip.problem.scenarios.parameter_paths import parameter_paths
 
 Floats = NDArray[np.float64]
+pytestmark = pytest.mark.usefixtures("closed_figures")
 ALPHA, THICKNESS, STRESS = "friction.alpha", "body.thickness", "body.normal_stress"
 RULES = np.array(["perfect-delay", "minimal", "maximal", "maxwell", "middle"], np.dtypes.StringDType())
 ABOUT = {one.name: {"long_name": one.declared.meaning, "units": one.unit} for one in parameter_paths(ss.load_scenario("fig6-slab"))}

@@ -71,12 +71,12 @@ def check(
     look.check(figure, steady_figure)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*the points look noisy", InputWarning)  # the examination says so
-        loaded = load(scenario, "check", changes, contact=True)
+        loaded = load(scenario, "check", changes, any_kind=True)
     if parameters:
         _show_parameters(loaded)
         return
-    if loaded.contact is not None:
-        _show_contact(loaded, figure or map_axes or steady_figure)
+    if not loaded.is_of_core:
+        _show_special(loaded, figure or map_axes or steady_figure)
         return
     axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
@@ -108,17 +108,20 @@ def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
         return steady(loaded, from_rest=runs, progress=report)
 
 
-def _show_contact(loaded: Scenario, drawing_wanted: object) -> None:
-    """Print what was found about a scenario with a contact of many nodes. Raises InputError if a drawing is wanted."""
-    from stickslip.extensions.planar.examine import examine_contact
-    from stickslip.extensions.planar.summary import size_of
-    from stickslip.run.check.facts import Fact
+def _show_special(loaded: Scenario, drawing_wanted: object) -> None:
+    """Print what is found about a scenario that the solver of an extension runs. Raises InputError if a drawing is wanted."""
+    from stickslip.run.kinds import special_solver_of
 
+    tables = "] and [".join(name for name, _ in loaded.tables)
     if drawing_wanted:
-        raise InputError("check: figures and maps draw the contact equation of a single place: leave them out with a [contact]")
-    found = examine_contact(loaded)
-    found.derived.append(Fact("memory", size_of(loaded), "", "of a run"))
-    show_examination(loaded, found)
+        raise InputError(f"check: figures and maps draw the contact equation of a single place: leave them out with a [{tables}]")
+    solver = special_solver_of(loaded)
+    if solver is None:
+        raise InputError(f"check: {loaded.name}: no solver is there for what [{tables}] describes")
+    if solver.examine is None:
+        _show_parameters(loaded)
+        return
+    show_examination(loaded, solver.examine(loaded))
 
 
 def _set(loaded: Scenario) -> Callable[..., object]:

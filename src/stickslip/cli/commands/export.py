@@ -12,7 +12,8 @@ from stickslip.cli.output.files import announce, check_target
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.extensions.studies.compare import RunSource
+    from stickslip.run.kinds import Reader
+    from stickslip.run.source import RunSource
     from stickslip.solution.solution import Solution
 
 RUN = "A TOML file, a bundled name, a file or folder of `run --out`, or - for a scenario from standard input."
@@ -60,7 +61,9 @@ def export(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
+    from stickslip.cli.overrides import STDIN
     from stickslip.problem.scenarios.text_of_files import is_scenario_name
+    from stickslip.run.kinds import reader_of
     from stickslip.run.progress import progress_line
 
     if is_scenario_name(str(file)):
@@ -68,9 +71,10 @@ def export(
     check_target(file, "FILE", (".csv", ".nc", *OF_SCEC))
     for_scec = {"--components": components, "--area": area is not None}
     _check_fitting(file, for_scec, {"--points": points is not None})
-    if Path(run).is_dir():
+    reader = None if run == STDIN else reader_of(Path(run))
+    if reader is not None:
         given = {"--sampling-rate": sampling_rate, "--points": points, "--event": event, "--duration": duration}
-        _export_contact(Path(run), file, given | {"--antialias": antialias or None})
+        _export_special(reader, Path(run), file, given | {"--antialias": antialias or None})
         return
     source = _source(run, duration)
     with progress_line(f"{source.name}:") as report:
@@ -94,21 +98,19 @@ def _check_fitting(file: Path, for_scec: dict[str, bool], for_curves: dict[str, 
         raise InputError(f"export: {wrong[0]} is for files {others}, not for {file.suffix.lower()}: leave it out")
 
 
-def _export_contact(folder: Path, file: Path, given: dict[str, Any]) -> None:
-    """Write the run of a contact of many nodes in a folder at its own frames. Raises InputError for other options."""
-    from stickslip.extensions.planar.store_layout import open_planar
-
+def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any]) -> None:
+    """Write the results of an extension at their own times. Raises InputError for options that choose others."""
     wrong = [name for name, value in given.items() if value is not None]
     if wrong or file.suffix.lower() in OF_SCEC:
         what = f"leave out {wrong[0]}" if wrong else f"write .csv or .nc, not {file.suffix.lower()}"
-        raise InputError(f"export: {folder} holds a contact of many nodes, which is written at its frames: {what}")
-    announce(open_planar(folder).to_csv(file))
+        raise InputError(f"export: {path} holds {reader.what}, which is written at its own times: {what}")
+    announce(reader.open(path).to_csv(file))
 
 
 def _source(run: str, duration: str | None) -> RunSource:
     from stickslip.cli.overrides import STDIN, load, read
-    from stickslip.extensions.studies.compare import read_source
     from stickslip.problem.scenarios.schema import read_duration
+    from stickslip.run.source import read_source
 
     length = read(read_duration, duration, "export", "duration")
     return read_source(load(run, "export") if run == STDIN else run, length, who="export")

@@ -41,7 +41,7 @@ def new(
     elif name is None:
         raise InputError("new: which scenario? `stickslip new --list` lists them")
     else:
-        from stickslip.run.templates import template
+        from stickslip.problem.scenarios.templates import template
 
         typer.echo(template(name, friction, pull), nl=False)
 

@@ -89,9 +89,7 @@ def run(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.summary import show_catalogue, show_solution
-    from stickslip.cli.request import Request, list_events, solve, solve_contact
-    from stickslip.extensions.planar.summary import show_run
+    from stickslip.cli.request import Request
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
@@ -108,34 +106,12 @@ def run(
         pictures=pictures,
     )
     request.check()
-    if request.has_contact:
-        run = solve_contact(request)
-        show_run(run)
-        announce(out or resume, *write_files((csv, run.to_csv)), *pictures.draw_contact(run))
-        _leave(run.status)
-    if request.keeps_events_only:
-        chosen, found = list_events(request)
-        show_catalogue(chosen, found, everything=everything)
-        if pictures.wanted:
-            announce(*pictures.draw_events(found.read(), chosen.title or chosen.name, chosen.problem.load_unit))
-        _say_how_to_go_on(found.status, found.files[-1], request.most_pieces)
-        _leave(found.status)
-    chosen, solution = solve(request)
-    show_solution(chosen, solution, everything=everything)
-    announce(request.file, *write_files((csv, solution.to_csv)), *pictures.draw(solution))
-    _say_how_to_go_on(solution.status, request.file, len(solution.history))
-    _leave(solution.status)
-
-
-def _say_how_to_go_on(status: Status, file: Path | None, pieces: int) -> None:
-    """Say in one line how a run whose history is full goes on from its file, if it has one."""
-    from stickslip.problem.run_status import SHORT_OF_MEMORY, TOO_MANY
-
-    if file is None or status.name != TOO_MANY:
-        return
-    short = status.message.startswith(SHORT_OF_MEMORY)
-    more, once = ("", " once more memory is free") if short else (f" --max-pieces {2 * pieces}", "")
-    typer.echo(f"nothing is lost: stickslip run --resume {file}{more} goes on from there{once}")
+    work, results = request.work, request.work.run(request)
+    results.summarise(everything=everything)
+    announce(work.file(request), *write_files((csv, results.to_csv)), *results.draw(pictures))
+    if line := work.how_to_go_on(request, results):
+        typer.echo(line)
+    _leave(results.status)
 
 
 def _leave(status: Status) -> NoReturn:

@@ -15,7 +15,6 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.problem.problem import Problem
     from stickslip.solution.solution import Solution
 
@@ -73,18 +72,6 @@ class Pictures:
         if others:
             raise InputError(f"{where}: a catalogue keeps slip events only, no history: leave out {', '.join(others)}")
 
-    def check_contact(self, where: str) -> None:
-        """Refuse, before the run, figures that a contact of many nodes does not have. Raises InputError."""
-        others = [option for option in self.wanted if option not in ("--figure", "--animation")]
-        if others:
-            raise InputError(f"{where}: a [contact] of many nodes has --figure and --animation: leave out {', '.join(others)}")
-
-    def draw_contact(self, solution: PlanarSolution) -> list[Path]:
-        """Draw what is wanted of a contact of many nodes, and return the files."""
-        return write_files(
-            (self.figure, drawing(solution.plot, self.look)), (self.animation, lambda target: _animate(solution, target))
-        )
-
     def draw_events(self, table: pd.DataFrame, title: str, load_unit: str) -> list[Path]:
         """Draw the figure of a catalogue, of a body whose loads have this unit, if it is wanted and there is an event.
 
@@ -107,7 +94,7 @@ class Pictures:
             (self.energy_figure, drawing(solution.plot.energy, self.look)),
             (self.friction_figure, drawing(solution.plot.friction, self.look)),
             (self.space_time, drawing(solution.plot.field, self.look)),
-            (self.animation, lambda target: _animate(solution, target)),
+            (self.animation, lambda target: animated(solution, target)),
         )
 
     def _file_of_events(self, table: pd.DataFrame) -> Path | None:
@@ -118,8 +105,10 @@ class Pictures:
         return self.catalogue_figure
 
 
-def _animate(solution: Solution | PlanarSolution, target: Path) -> Path:
+def animated(solution: Any, target: Path) -> Path:
+    """Write the animation of a run with its progress on one line, and return the file."""
     from stickslip.run.progress import progress_line
 
     with progress_line(f"{target}:") as report:
-        return solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))
+        found: Path = solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))
+    return found

@@ -76,7 +76,7 @@ COMPILED_FILES = (
     "problem/run_codes.py",
     "engine/history/turning_points.py",
 )
-"""Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
+"""Other files that hold compiled functions, or constants that compiled functions use; tests/test_rooms.py checks the list."""
 VERSIONS = f"{numba.__version__} {sys.version}"
 """The versions of numba and Python, because machine code depends on them, too."""
 DIGITS = 16

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.options import SCENARIO, Changes, Columns, argument, complete_scenario, option
+from stickslip.extension import check_is_there
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.extensions.explorer.model.answer import Backdrop
+    from stickslip.extensions.explorer.model.answer import RecordBehind
     from stickslip.problem.problem import Problem
 
 SERVER = "Server"
@@ -74,8 +75,8 @@ def explore(
     if static is not None:
         _write(static, scenario, changes, record)
         return
-    loaded = load(scenario or FIRST, "explore", changes, contact=True)
-    if loaded.contact is not None and (loaded.planar_slab.is_plane or record is not None):
+    loaded = load(scenario or FIRST, "explore", changes, any_kind=True)
+    if not loaded.is_of_core and (loaded.to_solve.is_plane or record is not None):
         raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
     from stickslip.extensions.explorer.model.setting import Setting
     from stickslip.extensions.explorer.server.serve import Endpoint
@@ -90,17 +91,17 @@ def explore(
     start(setting, endpoint, browser=not no_browser, say=typer.echo, behind=behind)
 
 
-def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None, sensor: str, problem: Problem) -> Backdrop:
+def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None, sensor: str, problem: Problem) -> RecordBehind:
     """Return the record that is drawn behind all runs. Raises InputError."""
+    check_is_there("inference", "explore: --record")
     from stickslip.cli.overrides import typed_columns
-    from stickslip.extensions.explorer.model.answer import Backdrop
-    from stickslip.extensions.inference.record.record import Record
+    from stickslip.extensions.inference import record_beside
     from stickslip.foundation.quantities import Quantity
     from stickslip.problem.scenarios.entries import typed_number
 
     time = Quantity("s", "time of the record")
     found = {name: time.check("explore", name, typed_number(text)) for name, text in ends.items() if text is not None}
-    return Backdrop.of(Record.read(record, **found, columns=typed_columns(column, "explore: --column")), sensor, problem)
+    return record_beside(record, sensor, problem, "explore", **found, columns=typed_columns(column, "explore: --column"))
 
 
 def _write(folder: Path, scenario: str | None, changes: list[str] | None, record: Path | None) -> None:
@@ -113,6 +114,7 @@ def _write(folder: Path, scenario: str | None, changes: list[str] | None, record
         raise InputError(
             "explore: --static writes the guided tour, which has scenarios of its own: leave out SCENARIO, --set and --record"
         )
+    check_is_there("sweeps", "explore: --static")
     with progress_line("explore:") as report:
         written = write_tour(folder, report)
     typer.echo(written)

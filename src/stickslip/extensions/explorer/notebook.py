@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stickslip.extension import check_is_there
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -80,17 +81,17 @@ def explore(
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.problem.scenarios.source import read_source
 
-    found = read_source("explore", problem, contact=True)
+    found = read_source("explore", problem, any_kind=True)
     if isinstance(found, Problem):
         found = Scenario(found, found.round_trip_time * ROUND_TRIPS if duration is None else duration, name="problem")
     elif duration is not None:
         found = replace(found, duration=duration)
     behind = None
-    if record is not None and found.contact is not None:
+    if record is not None and not found.is_of_core:
         raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")
     if record is not None:
-        from stickslip.extensions.explorer.model.answer import Backdrop
-        from stickslip.extensions.inference.record.record import Record
+        check_is_there("inference", "explore: record=")
+        from stickslip.extensions.inference import record_beside
 
-        behind = Backdrop.of(Record.read(record), sensor, found.problem)
+        behind = record_beside(record, sensor, found.problem, "explore")
     return shown_in_notebook(found, behind)

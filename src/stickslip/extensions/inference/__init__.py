@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from stickslip.extension import Command, Extension
+
+if TYPE_CHECKING:
+    from stickslip.extensions.inference.record.beside import BesideRun as BesideRun
+    from stickslip.extensions.inference.record.beside import RecordBeside
+    from stickslip.problem.problem import Problem
 
 
 class InferenceExtension(Extension):
@@ -37,3 +43,14 @@ class InferenceExtension(Extension):
 
 
 EXTENSION = InferenceExtension()
+
+
+def record_beside(source: Any, sensor: str, problem: Problem, who: str, **given: Any) -> RecordBeside:
+    """Return a record, as `Record.read` reads it, that is put beside runs of a problem: this is what other extensions may use.
+
+    Raises InputError, which begins with `who` or with the name of the record.
+    """
+    from stickslip.extensions.inference.record.beside import RecordBeside
+    from stickslip.extensions.inference.record.record import Record
+
+    return RecordBeside.of(Record.read(source, **given), sensor, problem, who)

@@ -36,8 +36,8 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
     study.to_netcdf(folder / "inference.nc")
     study.to_csv(folder / "numbers.csv")
     scenario = study.to_toml(folder / "best.toml").read_text(encoding="utf-8")
-    page = rendered(
-        "stickslip.reports",
+    html = rendered(
+        "stickslip.extensions.inference",
         "inference.html.j2",
         version=ss.__version__,
         study=study,
@@ -58,7 +58,7 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
         asked=[(name, str(value)) for name, value in study.asked.items()],
         digits=DIGITS,
     )
-    return save_text(folder / PAGE, page)
+    return save_text(folder / PAGE, html)
 
 
 def _left(study: Inference) -> str:

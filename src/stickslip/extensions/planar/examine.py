@@ -11,12 +11,14 @@ import numpy as np
 from stickslip.extensions.planar.contact import LOCKED, Contact, Patch, PointsAlong
 from stickslip.extensions.planar.nodes import varying
 from stickslip.extensions.planar.slab import ENOUGH_NODES, PlanarSlab
+from stickslip.extensions.planar.summary import size_of
+from stickslip.extensions.planar.table import CONTACT, contact_of, planar_slab_of
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
 from stickslip.problem.scenarios.scenario import Scenario, doubts
+from stickslip.problem.start import loading_rate
 from stickslip.run.check.examine import LARGE_STRAIN, Examination, examine
 from stickslip.run.check.facts import Fact
-from stickslip.run.check.stability import loading_rate
 
 
 def examine_contact(scenario: Scenario) -> Examination:
@@ -24,13 +26,12 @@ def examine_contact(scenario: Scenario) -> Examination:
 
     Given and derived numbers, stability and uniqueness are those of a node where no patch and no profile gives others.
     """
-    slab, contact, found = scenario.planar_slab, scenario.contact, examine(replace(scenario, contact=None))
-    assert contact is not None
+    slab, contact, found = planar_slab_of(scenario), contact_of(scenario), examine(scenario.with_table(CONTACT, None))
     run = [fact for fact in found.given["run"] if fact.name == "duration"]
     return replace(
         found,
         given=found.given | {"run": run, "contact": list(_given(contact, slab))},
-        derived=[*found.derived, *_derived(slab, scenario.duration)],
+        derived=[*found.derived, *_derived(slab, scenario.duration), Fact("memory", size_of(scenario), "", "of a run")],
         start=_start(slab),
         critical=[],
         along_slip="",

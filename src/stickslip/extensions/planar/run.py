@@ -15,7 +15,8 @@ import numpy as np
 
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.extensions.planar.solution import Frames, PlanarSolution
-from stickslip.foundation.arguments import shown
+from stickslip.extensions.planar.table import contact_of, planar_slab_of
+from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
@@ -116,16 +117,27 @@ def check_memory(slab: PlanarSlab, duration: float, frames: int) -> float:
     return needed
 
 
+def with_frames(who: str, options: RunOptions, frames: int | None) -> RunOptions:
+    """Return options with the number of frames of each two-way travel time; None for the default. Raises InputError."""
+    return replace(options, of_solver={"frames": FRAMES if frames is None else check_whole(f"{who}: frames", frames)})
+
+
+def frames_of(options: RunOptions) -> int:
+    """Return the number of frames that are kept of each two-way travel time."""
+    return int(options.of_solver["frames"])
+
+
 def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> PlanarSolution:
     """Run a planar slab from t = 0, with the step that reaches the duration as the last one: see `stickslip.simulate`.
 
     Frames are written to the folder `options.checkpoint` (NAME.zarr) while the run continues, and `resume_planar` continues it.
     Raises InputError if an option is out of range, or the library JAX is missing.
     """
-    slab = source if isinstance(source, PlanarSlab) else source.planar_slab
+    slab = source if isinstance(source, PlanarSlab) else planar_slab_of(source)
     if options.duration is None:
         raise InputError("simulate: a PlanarSlab needs a duration, in s or with a unit")
-    options = options.checked("simulate")
+    frames_kept = options.of_solver.get("frames", None if isinstance(source, PlanarSlab) else contact_of(source).frames)
+    options = with_frames("simulate", options.checked("simulate"), frames_kept)
     path, duration = options.checkpoint, options.duration
     if path is not None and path.suffix != ".zarr":
         raise InputError(f"simulate: the checkpoint of a PlanarSlab is a folder NAME.zarr, got {shown(str(path))}")
@@ -136,7 +148,7 @@ def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> Plana
             from stickslip.extensions.planar.store import PlanarStore  # with zarr, which takes half a second to load
 
             about = Scenario(slab.problem, duration) if isinstance(source, PlanarSlab) else replace(source, duration=duration)
-            frames = stack.enter_context(PlanarStore.new(path, slab, about, options.frames or FRAMES, solver))
+            frames = stack.enter_context(PlanarStore.new(path, slab, about, frames_of(options), solver))
         run = PlanarRun(options, solver, here, memory, frames)
         run.keep(solver.now())
         frames.save(solver)
@@ -150,7 +162,7 @@ def resume_planar(path: Path, duration: float | str | WithUnit | None = None, **
     with PlanarStore.at(path) as store:
         before = store.duration
         asked: Any = before if duration is None else duration
-        options = RunOptions(asked, frames=store.frames, checkpoint=path, **given).checked("resume")
+        options = with_frames("resume", RunOptions(asked, checkpoint=path, **given).checked("resume"), store.frames)
         store.duration = options.duration
         check_duration(store, before)
         solver, here, memory = begun(store.slab, options, store.times[-1])
@@ -190,7 +202,7 @@ def begun(slab: PlanarSlab, options: RunOptions, time: float) -> tuple[PlanarSol
         from stickslip.extensions.planar.solver import PlanarSolver
     except ImportError:
         raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
-    memory = check_memory(solved, options.duration, 0 if options.checkpoint is not None else options.frames or FRAMES)
+    memory = check_memory(solved, options.duration, 0 if options.checkpoint is not None else frames_of(options))
     if options.progress is not None:
         options.progress(PlanarReport(time, options.duration, math.nan, math.nan, math.nan, memory))
     return PlanarSolver(solved, options.duration), here, memory
@@ -214,7 +226,7 @@ class PlanarRun:
 
     def __post_init__(self) -> None:
         self.fastest = self.frames.fastest
-        self.steps_to_frame = max(1, self.solver.steps // (self.options.frames or FRAMES))
+        self.steps_to_frame = max(1, self.solver.steps // frames_of(self.options))
         self.nodes = math.prod(self.solver.slab.shape)
 
     @property

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
 from stickslip.problem.bodies import MACHINE, ElasticSlab, has_dashpot
 from stickslip.problem.problem import Problem, check_problem
+
+if TYPE_CHECKING:
+    from stickslip.extensions.planar.solution import PlanarSolution
 
 Profile = ArrayLike | Callable[..., Any]
 """Values at the nodes: an array, or a function of y, or of y and z (m), that returns one."""
@@ -165,6 +168,13 @@ class PlanarSlab(CheckedArguments):
                     f" {type(law).__name__} is {regime}): the shorter a disturbance along the contact, the faster it grows, without"
                     " bound, and no selection rule is known to give a solution; take slip weakening, a state, or a smaller fall"
                 )
+
+    @property
+    def run_type(self) -> type[PlanarSolution]:
+        """The class of its runs."""
+        from stickslip.extensions.planar.solution import PlanarSolution
+
+        return PlanarSolution
 
     @property
     def body(self) -> ElasticSlab:

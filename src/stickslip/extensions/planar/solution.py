@@ -275,7 +275,7 @@ class PlanarSolution(NamesAttributes):
 
         The headings name the units (SI). A path that ends in .nc makes a netCDF file of `dataset`, with all nodes.
         """
-        from stickslip.solution.files.curves import write_contact
+        from stickslip.extensions.planar.curves import write_contact
 
         return write_contact(self, as_path("to_csv: path", path))
 

@@ -21,6 +21,7 @@ import stickslip
 from stickslip.extensions.planar.contact import GRID, Contact
 from stickslip.extensions.planar.slab import COUNTS, MOST_NODES, PlanarSlab
 from stickslip.extensions.planar.solution import FIELDS, PlanarSolution
+from stickslip.extensions.planar.table import CONTACT
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
@@ -80,7 +81,7 @@ def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSol
     """Return the attributes of a new folder. Raises InputError for a problem that files cannot hold."""
     text = scenario.to_toml()
     if len(text) > LARGEST_TEXT:  # the profiles are in the folder anyway
-        text = replace(scenario, contact=None).to_toml()
+        text = scenario.with_table(CONTACT, None).to_toml()
     about: dict[str, Any] = {
         "Conventions": "CF-1.11",
         "title": scenario.heading or f"{UNTITLED}, {type(slab.problem.friction).__name__}",
@@ -168,8 +169,8 @@ def scenario_in(path: Path) -> Scenario:
         group = opened(path)
         about: Any = group.attrs
         found = replace(read_scenario(about["scenario"], str(path), path.stem), duration=about["duration"])
-        contact = found.contact or Contact.of(slab_in(group, path))
-        return replace(found, contact=replace(contact, frames=about["frames"]))
+        contact = found.table(CONTACT) or Contact.of(slab_in(group, path))
+        return found.with_table(CONTACT, replace(contact, frames=about["frames"]))
 
 
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:

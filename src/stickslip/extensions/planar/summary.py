@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from stickslip.cli.output.files import file_size
 from stickslip.cli.output.show import console, say, titled
+from stickslip.extensions.planar.table import contact_of, planar_slab_of
 from stickslip.foundation.show import brief
 from stickslip.problem.scenarios.scenario import doubts
 
@@ -18,16 +19,16 @@ def size_of(scenario: Scenario, *, streamed: bool = False) -> str:
     """Return the memory that a run of a scenario needs, in words; less of it if its frames are `streamed` to a folder."""
     from stickslip.extensions.planar.run import FRAMES, memory_of
 
-    assert scenario.contact is not None
-    solved, _ = scenario.planar_slab.alone_for(scenario.duration)
-    beyond = "" if solved.shape == scenario.planar_slab.shape else f", with {_shape(solved.shape)} nodes against replicas"
-    frames = 0 if streamed else scenario.contact.frames or FRAMES
+    slab = planar_slab_of(scenario)
+    solved, _ = slab.alone_for(scenario.duration)
+    beyond = "" if solved.shape == slab.shape else f", with {_shape(solved.shape)} nodes against replicas"
+    frames = 0 if streamed else contact_of(scenario).frames or FRAMES
     return f"{file_size(memory_of(solved, scenario.duration, frames))}{beyond}"
 
 
 def announce_run(scenario: Scenario, *, streamed: bool) -> None:
     """Print on standard output what is about to be run, with its frames `streamed` to a folder or kept in memory."""
-    slab, size = scenario.planar_slab, size_of(scenario, streamed=streamed)
+    slab, size = planar_slab_of(scenario), size_of(scenario, streamed=streamed)
     apart = " and ".join(brief(one, "m") for one in slab.spacing)
     steps = f"{slab.steps(scenario.duration)} steps up to {brief(scenario.duration, 's')}"
     screen = titled(scenario)

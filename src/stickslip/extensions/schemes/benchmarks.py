@@ -149,7 +149,8 @@ def judge_series(
     Parameters
     ----------
     series : Series, str, Path or sequence of them
-        Slip since t = 0, slip rate and traction over time, or files of them, which `stickslip.extensions.schemes.series.read_series` reads.
+        Slip since t = 0, slip rate and traction over time, or files of them, which
+        `stickslip.extensions.schemes.series.read_series` reads.
     problem : Problem, Scenario, str or Path, optional
         As for `schemes`; by default the benchmark or the bundled scenario that has the name of the first series.
     tolerance : float
@@ -241,10 +242,10 @@ def judge_benchmark(
     columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
 ) -> Schemes:
-    """Compare the series of another program, in a file that `stickslip.extensions.schemes.series.read_series` reads, with the exact solution.
+    """Compare the series of another program with the exact solution.
 
-    The problem is by default that with the name of the file; the other arguments are as for `judge_series`. Raises InputError if
-    the name is unknown, or the file cannot be read.
+    `stickslip.extensions.schemes.series.read_series` reads the file. The problem is by default that with the name of the file; the
+    other arguments are as for `judge_series`. Raises InputError if the name is unknown, or the file cannot be read.
     """
     scenario = benchmark_of(Path(file).stem if name is None else name).scenario
     return judge_series(file, scenario, tolerance=tolerance, columns=columns, progress=progress)

@@ -34,7 +34,7 @@ class SchemeCurve(NamedTuple):
     time: Floats
     values: dict[str, Floats]
     colour: str
-    style: str
+    linestyle: str
     width: float
 
 
@@ -69,7 +69,7 @@ def draw(study: Schemes, **place: Unpack[Place]) -> Figure:
     letter_panels(axes.values(), ["errors", "slip", "slip rate"])
     figure.align_ylabels([axes["slip"], axes["slip_rate"]])
     for one in drawn:
-        look: Any = {"color": one.colour, "linestyle": one.style, "linewidth": one.width}
+        look: Any = {"color": one.colour, "linestyle": one.linestyle, "linewidth": one.width}
         marks.append(Line2D([], [], label=f"(b, c) {one.text}", **look))
     add_legend(axes["errors"], marks)
     set_title(figure, "Numerical schemes beside the exact solution")
@@ -96,6 +96,6 @@ def _draw_curves(axes: Axes, drawn: list[SchemeCurve], name: str) -> None:
     unit = readable_unit(si_unit(name, "Pa"), *(one.values[name] for one in drawn))
     for one in drawn:
         heights = one.values[name] / unit[1]
-        axes.plot(one.time / clock[1], heights, one.style, color=one.colour, linewidth=one.width)
+        axes.plot(one.time / clock[1], heights, one.linestyle, color=one.colour, linewidth=one.width)
     zero_line(axes)
     axes.set(xlabel=curve_label("time", clock[0]), ylabel=curve_label(name, unit[0]))

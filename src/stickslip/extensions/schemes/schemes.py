@@ -116,7 +116,7 @@ class Schemes(Study):
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Each exact shock beside that of each series; columns and units are in `stickslip.extensions.schemes.shocks.SHOCK_COLUMNS`."""
+        """Each exact shock beside that of each series; columns and units: `stickslip.extensions.schemes.shocks.SHOCK_COLUMNS`."""
         pairs = [(one.series, shock) for one in self.measured for shock in one.shocks]
         rows = [{"scheme": series.name, "cells": series.cells, **shock._asdict()} for series, shock in pairs]
         return pd.DataFrame(rows, columns=list(SHOCK_COLUMNS))
@@ -222,7 +222,8 @@ def schemes(
     duration : float or str, optional
         Duration of each run (s, or a text with a unit); by default the scenario's.
     scheme : str, Scheme or sequence of them
-        Names in `stickslip.extensions.schemes.regularisations.LAB`, each once, or objects like `stickslip.extensions.schemes.contract.Scheme`.
+        Names in `stickslip.extensions.schemes.regularisations.LAB`, each once, or objects like
+        `stickslip.extensions.schemes.contract.Scheme`.
     cells : int or sequence of int
         Number of cells in the thickness, for each mesh.
     search : str

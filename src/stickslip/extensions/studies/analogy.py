@@ -26,6 +26,7 @@ from stickslip.foundation.axis import Axis
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies import BodyWithWaves
+from stickslip.problem.equivalent_block import block_for
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.source import read_duration_and_problem
 from stickslip.run.simulate import simulate
@@ -96,18 +97,6 @@ class Analogy(StudyWithDataset):
 
     def _lines(self) -> tuple[str, ...]:
         return (self.text,)
-
-
-def block_for(problem: Problem) -> Problem:
-    """Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
-
-    Raises InputError if the body is a block, or if the driver of the slab is not rigid, or not for ever.
-    """
-    if not problem.body.has_waves:
-        raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
-    if problem.driver_changes:
-        raise InputError("analogy: a block has no driver that changes: leave driver_reflection out")
-    return replace(problem, body=cast(BodyWithWaves, problem.body).equivalent_block())
 
 
 @for_users

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pandas as pd
 
@@ -21,10 +21,9 @@ from stickslip.foundation.names import si_unit
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol, default_event_rate
 from stickslip.problem.scenarios import Scenario, load_scenario
-from stickslip.problem.scenarios.source import all_slips_alike
-from stickslip.run.progress import Progress
-from stickslip.run.simulate import simulate
-from stickslip.run.study import Study, TextProgress, telling, uninterrupted
+from stickslip.problem.scenarios.source import solved_by_core
+from stickslip.run.source import read_source
+from stickslip.run.study import Study, TextProgress, telling
 from stickslip.solution.files.netcdf import read_solution
 from stickslip.solution.observables.energetics import extreme_tractions
 from stickslip.solution.observables.energy.pulses import Pulses
@@ -53,37 +52,6 @@ COLUMNS = {
     "status": ("", "what ended the run"),
 }
 """Columns of the table, each with its unit, as `names.si_unit` understands it, and its meaning."""
-
-
-class RunSource(NamedTuple):
-    """A run to compare or to export: its name, and a function that runs or reads it, with a callback for its progress.
-
-    The function raises KeyboardInterrupt if Ctrl-C ends the run.
-    """
-
-    name: str
-    solution: Callable[[Progress | None], Solution]
-
-
-def read_source(
-    source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None, who: str = "compare"
-) -> RunSource:
-    """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
-
-    `duration` (s) and `rtol` replace those of a scenario; `who` begins messages. Raises InputError if `source` is none of these,
-    and if `duration` or `rtol` is given with a solution, which has been run already.
-    """
-    computed = isinstance(source, Solution)
-    if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
-        raise InputError(f"{'a solution' if computed else source}: has been run: leave out duration and rtol")
-    if isinstance(source, Solution):
-        return RunSource("run", lambda _: source)
-    if Path(str(source)).suffix == ".nc":
-        solution = read_solution(Path(str(source)))
-        return RunSource(Path(str(source)).stem, lambda _: solution)
-    scenario = all_slips_alike(who, source if isinstance(source, Scenario) else load_scenario(source))
-    changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
-    return RunSource(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -258,7 +226,7 @@ def _scenario_of(source: str | Path | Scenario | Solution) -> Scenario:
         return source.scenario()
     if not isinstance(source, Scenario) and Path(str(source)).suffix == ".nc":
         return read_solution(Path(str(source))).scenario()
-    return all_slips_alike("compare", source if isinstance(source, Scenario) else load_scenario(source))
+    return solved_by_core("compare", source if isinstance(source, Scenario) else load_scenario(source))
 
 
 def distinct(names: Sequence[str]) -> list[str]:

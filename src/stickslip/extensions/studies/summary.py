@@ -1,14 +1,12 @@
-"""Show the results of studies: comparisons, block against slab, ensembles, schemes, inferences."""
+"""Show the results of studies: comparisons, block against slab, ensembles."""
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Hashable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
+from stickslip.cli.output.show import console, print_numbers, print_sentences, say, titled
 from stickslip.engine.history.reach import shown_slip
 from stickslip.foundation.given import preferred, show_in
 from stickslip.foundation.names import si_unit
@@ -18,8 +16,6 @@ from stickslip.problem.given_units import units_shared
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from stickslip.extensions.inference.inference import Inference
-    from stickslip.extensions.schemes.schemes import Schemes
     from stickslip.extensions.studies.analogy import Analogy
     from stickslip.extensions.studies.compare import Comparison
     from stickslip.extensions.studies.ensemble import Ensemble
@@ -27,10 +23,6 @@ if TYPE_CHECKING:
 
 FIRST = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
-_ARGUMENT = re.compile(
-    r"\b(by|each|held_out|loss|max_time|normal|observe|parts|profiles|samples|sensor|start|starts|trend|weight|windows)='?([\w.]*\w)'?"
-)
-"""An argument of `infer` as messages name it, with its value."""
 
 
 def show_comparison(found: Comparison) -> None:
@@ -135,106 +127,3 @@ def _show_events(screen: Console, study: Ensemble) -> None:
         rows.append([str(i), number(float(row["start"]), 10), shared, number(float(row["amplification"]), 3)])
     say(screen, f"{len(study.table)} slip events" + (f", of them {first + 1} to {first + len(rows)}" if first else ""))
     print_numbers(screen, headings, rows)
-
-
-def show_inference(scenario: Scenario, found: Inference) -> None:
-    """Print the numbers with their intervals, and what the record does not determine."""
-    screen = titled(scenario)
-    say(screen, clean(f"{found.headline}\n"))
-    print_words(screen, ("", "value", "unit and interval"), found.rows)
-    screen.print()
-    if not found.determined:
-        print_sentences(screen, "the record determines none of these numbers")
-    print_sentences(screen, *(as_options(clean(note)) for note in found.notes))
-
-
-def as_options(text: str) -> str:
-    """Return a text in which an argument of `infer` in Python, such as held_out=0.3, is the option of the command line."""
-    return _ARGUMENT.sub(lambda one: f"--{one[1].replace('_', '-')}{'' if one[2] == 'True' else ' ' + one[2]}", text)
-
-
-def show_ranking(*found: Inference) -> None:
-    """Print a table of laws, the best prediction first."""
-    from stickslip.extensions.inference.inference import ranking
-
-    screen = console()
-    say(screen, "\nerrors in units of the noise: of the part that was fitted, and of the part that was left out\n")
-    rows = [
-        [str(row["law"]), str(row["free"]), number(row["fit"], 3), number(row["prediction"], 3), number(row["bic"], 8)]
-        for row in ranking(*found).to_dict("records")
-    ]
-    print_numbers(screen, ("law", "free", "fit", "prediction", "BIC"), rows, text=1)
-
-
-def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Callable[[Path], object]]]:
-    """Return the files of a study with what writes each: the table, and a table of shocks beside it."""
-    if out is None:
-        return []
-    return [(out, study.to_csv), (out.with_name(f"{out.stem}-shocks{out.suffix}"), study.shocks_to_csv)]
-
-
-def show_schemes(scenario: Scenario, study: Schemes) -> None:
-    """Print errors, orders, pulses and the rule that each run follows on standard output."""
-    from stickslip.extensions.schemes.measures import period_of
-
-    screen = titled(scenario)
-    own = study.own
-    slip = float(own.slip(study.until)) - study.problem.initial_slip
-    is_periodic = bool(study.table.periods.notna().any())
-    periods = f", {number(slip / period_of(study.problem.friction), 3)} periods of friction," if is_periodic else ""
-    say(screen, f"exact, {study.problem.rule}: slip {number(slip, 6)} m{periods} after {number(study.until, 6)} s\n")
-    headings: tuple[str, ...] = ("\nscheme", "\ncells", "mean slip\nerror m", "\norder", "rate error\nm/s", "\npulses")
-    headings = (
-        *headings,
-        *["periods\nof slip"] * is_periodic,
-        "arrest\ns",
-        "final slip\nm",
-        "own\nshocks",
-        "heat\nerror",
-        "damped,\nof heat",
-        "oscil-\nlation",
-        "follows\nthe rule",
-    )
-    rows = []
-    for row in study.table.to_dict("records"):
-        errors = [number(row["slip_error"], 3), _order(row["slip_order"]), number(row["rate_error"], 3)]
-        of_slip = [number(row["periods"], 3)] * is_periodic
-        results = [str(row["pulses"]), *of_slip, number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
-        damped = row["damped"] / row["heat"] if row["heat"] else math.nan
-        shares = [number(row["heat_error"], 2), number(damped, 2), number(row["oscillation"], 2), str(row["rule"])]
-        rows.append([clean(row["scheme"]), str(row["cells"] or "-"), *errors, *results, *shares])
-    print_numbers(screen, headings, rows, text=1)
-    screen.print()
-    _show_shocks(screen, study)
-    if study.interrupted:
-        print_sentences(screen, "Interrupted: these are the runs that were finished")
-    if len(study.paths.groups()) == 1:
-        print_sentences(screen, "all selection rules have the same solution here")
-    else:
-        for verdict in dict.fromkeys(study.verdicts.values()):
-            names = [clean(scheme) for scheme, found in study.verdicts.items() if found == verdict]
-            print_sentences(screen, f"rule {verdict}: {', '.join(names)}")
-    if study.tolerance is not None:
-        print_sentences(screen, *(clean(text) for one in study.judgements for text in (one.text, one.reasons, *one.hints)))
-
-
-def _order(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.2f}"
-
-
-def _show_shocks(screen: Console, study: Schemes) -> None:
-    """Print the exact shocks beside those of each scheme's finest mesh; shocks of its own are counted in the table before."""
-    finest = study.table.loc[study.table.groupby("scheme", sort=False).step.idxmin(), ["scheme", "cells"]]
-    table = finest.merge(study.shocks, on=["scheme", "cells"])
-    table = table[table.exact_time.notna()]
-    if table.empty:
-        return
-    headings = ("\nshocks of", "\ncells", "exact\ntime s", "\ntime s", "\ndelay s", "exact\nm/s", "\nm/s", "\nsize")
-    rows = []
-    for row in table.to_dict("records"):
-        times = [number(row["exact_time"], 6), number(row["time"], 6), number(row["delay"], 2)]
-        jumps = [f"{number(row[f'{whose}before'], 3)} to {number(row[f'{whose}after'], 3)}" for whose in ("exact_", "")]
-        jumps[1] = jumps[1] if math.isfinite(row["time"]) else "-"
-        rows.append([clean(row["scheme"]), str(row["cells"] or "-"), *times, *jumps, number(row["size"], 3)])
-    print_numbers(screen, headings, rows, text=1)
-    screen.print()

@@ -6,14 +6,25 @@ Results are kept in a store. A sweep that was killed continues from its store.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from stickslip.extension import Command, Extension
+
+if TYPE_CHECKING:
+    from stickslip.extensions.sweeps.along import Along
+    from stickslip.run.kinds import Reader
 
 
 class SweepsExtension(Extension):
     """The command `sweep`, `ss.sweep` and `ss.figures.plot_sweep`."""
 
     name = "sweeps"
+
+    def readers(self) -> Sequence[Reader]:
+        """Return the reader of its folders."""
+        from stickslip.extensions.sweeps.reader import SweepReader
+
+        return (SweepReader(),)
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `sweep`."""
@@ -28,3 +39,10 @@ class SweepsExtension(Extension):
 
 
 EXTENSION = SweepsExtension()
+
+
+def run_along(*given: Any) -> Along:
+    """Run a scenario for many values of one parameter, as `along.run_along` says: this is what other extensions may use."""
+    from stickslip.extensions.sweeps.along import run_along as run
+
+    return run(*given)

@@ -14,10 +14,10 @@ from stickslip.cli.options import (
     Changes,
     Duration,
     ScenarioName,
-    complete_design,
-    complete_quantity,
+    choices,
     complete_series,
     complete_vary,
+    names_in,
     option,
 )
 from stickslip.cli.output.files import FigureLook, announce, drawing
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
     from stickslip.extensions.sweeps.execution.plan import Plan
     from stickslip.extensions.sweeps.sweep import SweepProgress
+
+complete_design = choices("design", names_in("extensions.sweeps.design.design", "KINDS"))
+complete_quantity = choices("quantity", names_in("extensions.sweeps.design.quantities", "QUANTITIES"))
 
 VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key."
 Vary = Annotated[list[str] | None, option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]

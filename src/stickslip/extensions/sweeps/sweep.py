@@ -104,7 +104,8 @@ def sweep(
     seed : int
         Seed of the random designs.
     quantities : iterable
-        Names of built-in quantities (`stickslip.extensions.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a `Solution`).
+        Names of built-in quantities (`stickslip.extensions.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a
+        `Solution`).
     series : sequence of str
         Curves of a solution to keep over time, as variables `series_...`.
     samples : int

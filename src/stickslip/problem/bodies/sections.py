@@ -114,8 +114,9 @@ class SectionedString(Declared, OnBit, OfOneSide):
     def with_soft_torque(self, setting: Any, gain: Any = None, inertia: Any = None) -> SectionedString:
         """Return the string with a drive tuned to a period of stick-slip (s, or a text such as "5 s"), or "impedance matched".
 
-        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see `stickslip.problem.bodies.soft_torque`.
-        `gain` (N m s) takes the place of the impedance of the pipe, and `inertia` (kg m^2) that of the drive. Raises InputError.
+        The setting gives `driver_impedance`, `driver_inertia` and `driver_integral_gain`: see
+        `stickslip.problem.bodies.soft_torque`. `gain` (N m s) takes the place of the impedance of the pipe, and `inertia` (kg m^2)
+        that of the drive. Raises InputError.
         """
         return with_soft_torque(self, setting, gain, inertia)
 

@@ -8,6 +8,7 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from typing import Any, NamedTuple
 
+from stickslip.extension import tables
 from stickslip.foundation.errors import InputError, nearest
 
 
@@ -41,25 +42,27 @@ LISTED = "`stickslip new --list` lists them"
 """Where all names are."""
 
 
-def _folder() -> Traversable:
-    return resources.files("stickslip.problem.scenarios") / "bundled"
-
-
 @cache
-def _names() -> tuple[str, ...]:
-    return tuple(sorted(file.name.removesuffix(".toml") for file in _folder().iterdir() if file.name.endswith(".toml")))
+def _files() -> dict[str, Traversable]:
+    """Return the files of all bundled scenarios by their names, in alphabetical order: our own, and those of extensions."""
+    added = [folder for table in tables().values() if (folder := table.examples()) is not None]
+    folders = (*added, resources.files("stickslip.problem.scenarios") / "bundled")  # no extension replaces one of the core
+    found = {
+        file.name.removesuffix(".toml"): file for folder in folders for file in folder.iterdir() if file.name.endswith(".toml")
+    }
+    return dict(sorted(found.items()))
 
 
 def names() -> list[str]:
     """Return the sorted names of the bundled scenarios."""
-    return list(_names())
+    return list(_files())
 
 
 def text(name: str) -> str:
     """Return the TOML text of a bundled scenario. Raises InputError for a name that is not among `names()`."""
     if name not in names():
         raise InputError(f"no bundled scenario {ascii(name)[:60]}; {nearest(name, names(), listed=LISTED)}")
-    return (_folder() / f"{name}.toml").read_text(encoding="utf-8")
+    return _files()[name].read_text(encoding="utf-8")
 
 
 @cache
@@ -81,5 +84,5 @@ def by_trade() -> dict[str, list[str]]:
 
 
 def in_1d() -> list[str]:
-    """Return the names of the bundled scenarios without a contact of many nodes."""
-    return [name for name, document in _documents().items() if "contact" not in document]
+    """Return the names of the bundled scenarios without tables of extensions."""
+    return [name for name, document in _documents().items() if not set(tables()) & set(document)]

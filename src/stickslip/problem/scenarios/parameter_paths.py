@@ -1,7 +1,7 @@
 """The parameters of a scenario, named by their place in the file, and scenarios with other values for some of them.
 
-The names of the problem's numbers are those of `problem.parameters`, "pressing" among them; to them come those of [run] and
-[contact]. The last part of a name ("thickness") is sufficient if it is unambiguous.
+The names of the problem's numbers are those of `problem.parameters`, "pressing" among them; to them come those of [run] and of
+the tables of extensions. The last part of a name ("thickness") is sufficient if it is unambiguous.
 """
 
 from __future__ import annotations
@@ -12,17 +12,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from stickslip.extensions.planar.contact import LOCKED, Contact
-from stickslip.extensions.planar.contact_table import PLACES, TAPER
-from stickslip.extensions.planar.nodes import varying
+from stickslip.extension import tables
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.names import short_units
-from stickslip.foundation.quantities import Choice, Quantity, quantities_of
+from stickslip.foundation.quantities import Choice, Quantity
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.fields import STEADY
 from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.scenarios.entries import Source
 from stickslip.problem.scenarios.scenario import Scenario, scenario_of
 from stickslip.problem.scenarios.schema import SOFT_TORQUE, WITH_SOFT_TORQUE, quantities_in, without_owner
@@ -33,8 +30,6 @@ SELECTION = "selection rule"
 LISTED = "`stickslip check SCENARIO --parameters` lists all"
 """Where all parameters are."""
 YES_OR_NO = Choice("true or false", ("true", "false"))
-WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
-"""Parameters that count."""
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
 MAY_BE_STEADY = ("initial.rate", *(f"initial.{name}" for name in STATE_NAMES))
@@ -52,6 +47,8 @@ class ParameterPath:
     """Unit that follows the number in the scenario file (only parameters of an expression have one)."""
     shown_in: str = ""
     """Unit in which its values are shown, because they were given in it; "" for a readable one."""
+    counts: bool = False
+    """True if its values are whole numbers."""
 
     @property
     def unit(self) -> str:
@@ -77,8 +74,7 @@ class ParameterPath:
         elif self.declared is YES_OR_NO:
             owner[key] = value == "true"
         else:
-            whole = self.name in WHOLE and isinstance(value, float) and value.is_integer()
-            owner[key] = int(value) if whole else value
+            owner[key] = int(value) if self.counts and isinstance(value, float) and value.is_integer() else value
 
 
 def place_of(name: str, document: Any) -> tuple[Any, Any]:
@@ -151,8 +147,9 @@ def _put(document: dict[str, Any], changes: Changes) -> None:
 
 def _pressed(scenario: Scenario, value: float) -> Scenario:
     """Return a scenario with another normal load, and all loads that it gives in proportion."""
-    contact, factor = scenario.contact, value / scenario.problem.normal
-    return replace(scenario, problem=pressed(scenario.problem, value), contact=contact and contact.pressed(factor))
+    factor = value / scenario.problem.normal
+    others = tuple((name, tables()[name].pressed(one, factor)) for name, one in scenario.tables)
+    return replace(scenario, problem=pressed(scenario.problem, value), tables=others)
 
 
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
@@ -188,7 +185,7 @@ def _said_back(parameter: ParameterPath, value: Any) -> Any:
     if isinstance(value, float) and parameter.unit in ("rad", "rad/s"):
         ((unit, size),) = short_units(parameter.unit)
         return f"{value:g} {parameter.unit} ({value / size:.5g} {unit})"
-    return int(value) if parameter.name in WHOLE and isinstance(value, float) and value.is_integer() else value
+    return int(value) if parameter.counts and isinstance(value, float) and value.is_integer() else value
 
 
 def values_in(scenario: Scenario) -> Iterator[tuple[ParameterPath, Any]]:
@@ -205,28 +202,19 @@ def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     ours = [ParameterPath(one.name, one.declared, one.written) for one in entries_of(problem)]
     for table in ("body", "friction", "loading", "initial"):
         yield from (one for one in ours if one.name.startswith(f"{table}."))
-        if table == "loading" and scenario.contact is None:
+        if table == "loading" and scenario.is_of_core:
             yield ParameterPath("loading.one_way", YES_OR_NO)
     yield ParameterPath(PRESSING, pressing_of(problem))
-    if scenario.contact is not None:
-        yield ParameterPath("run.duration", DURATION)
-        yield from _paths_in_contact(scenario.contact, problem)
-        return
-    yield from (ParameterPath(f"run.{name}", declared) for name, (declared, _) in quantities_in("run", Problem).items())
-    yield ParameterPath("run.events", EVENTS)
-    yield ParameterPath("run.selection", Choice(SELECTION, tuple(rules())))
+    allowed = scenario.run_keys
+    for name, declared in _in_run().items():
+        if allowed is None or name in allowed:
+            yield ParameterPath(f"run.{name}", declared, counts=name == "events")
+    for table, value in scenario.tables:
+        of, whole = tables()[table], tables()[table].whole()
+        for place, entry in of.paths(value, problem):
+            yield ParameterPath(f"{table}.{place}", entry, counts=place in whole)
 
 
-def _paths_in_contact(contact: Contact, problem: Problem) -> Iterator[ParameterPath]:
-    """Yield the sizes of a contact, and the numbers of its patches."""
-    for name, declared in quantities_of(Contact).items():
-        yield ParameterPath(f"contact.{name}", declared)
-    yield ParameterPath("contact.replicas", YES_OR_NO)
-    units = {name: declared for name, (declared, _) in varying(problem).items()}
-    for i, patch in enumerate(contact.patches):
-        place, values = f"contact.patches[{i}]", [name for name, _ in patch.values if name != LOCKED]
-        for axis, declared in PLACES.items():
-            yield from (ParameterPath(f"{place}.{axis}[{j}]", declared) for j in range(len(getattr(patch, axis) or ())))
-        yield from (ParameterPath(f"{place}.{name}", units[name]) for name in values)
-        if values:
-            yield ParameterPath(f"{place}.taper", TAPER)
+def _in_run() -> dict[str, Quantity | Choice]:
+    quantities: dict[str, Quantity | Choice] = {name: declared for name, (declared, _) in quantities_in("run", Problem).items()}
+    return quantities | {"events": EVENTS, "selection": Choice(SELECTION, tuple(rules()))}

@@ -13,9 +13,7 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.extensions.planar.contact import Contact
-from stickslip.extensions.planar.contact_table import contact_table, read_contact
-from stickslip.extensions.planar.slab import PlanarSlab
+from stickslip.extension import tables as tables_of_extensions
 from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
@@ -27,7 +25,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.entries import Source, as_written, to_table
-from stickslip.problem.scenarios.schema import CONTACT, read_document, read_part, read_table, without_owner
+from stickslip.problem.scenarios.schema import read_document, read_part, read_table, without_owner
 from stickslip.problem.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
 UNNAMED = "scenario"
@@ -50,8 +48,7 @@ class Scenario(CheckedArguments):
 
     Two scenarios are equal if they differ in `name` and `source`, the TOML text from which it was read, only. After `max_events`
     slip events the run stops. `creep_rtol` and `shortest_event` (s) are options of `stickslip.simulate`; None stands for automatic.
-    `contact` is the grid along the contact, and what varies along it; None for a contact all of which slips alike. `planar_slab` is
-    the two.
+    `tables` has what tables of extensions say, such as [contact], each with its name.
     """
 
     problem: Problem
@@ -62,7 +59,7 @@ class Scenario(CheckedArguments):
     max_events: int | None = None
     creep_rtol: float | None = None
     shortest_event: float | None = None
-    contact: Contact | None = None
+    tables: tuple[tuple[str, Any], ...] = ()
     name: str = field(default=UNNAMED, compare=False)
     source: str = field(default="", compare=False, repr=False)
 
@@ -84,12 +81,37 @@ class Scenario(CheckedArguments):
         """The title of figures: the scenario's title or name; "" if it has neither."""
         return self.title or (self.name if self.name != UNNAMED else "")
 
+    def table(self, name: str) -> Any:
+        """Return what the table of an extension says, such as "contact"; None if the scenario has no such table."""
+        return dict(self.tables).get(name)
+
+    def with_table(self, name: str, value: Any) -> Scenario:
+        """Return the scenario with a table of an extension, in place of the one that it may have; None for without it."""
+        others = tuple(one for one in self.tables if one[0] != name)
+        return replace(self, tables=others if value is None else (*others, (name, value)))
+
     @cached_property
-    def planar_slab(self) -> PlanarSlab:
-        """The slab with the contact of this scenario, which `stickslip.simulate` runs. Raises InputError if there is no contact."""
-        if self.contact is None:
-            raise InputError(f"{self.name}: has no [contact] of many nodes: take its .problem")
-        return self.contact.slab(self.problem)
+    def to_solve(self) -> Any:
+        """What a solver is given: the problem, or what the table of an extension makes of it, such as a `PlanarSlab`.
+
+        Raises InputError if two tables make something of it.
+        """
+        found = {name: tables_of_extensions()[name].problem(value, self) for name, value in self.tables}
+        special = {name: one for name, one in found.items() if one is not None}
+        if len(special) > 1:
+            raise InputError(f"{self.name}: [{'] and ['.join(special)}] each say what is solved: leave out all but one")
+        return next(iter(special.values()), self.problem)
+
+    @property
+    def is_of_core(self) -> bool:
+        """True if its own problem is solved, and not what the table of an extension makes of it."""
+        return self.to_solve is self.problem
+
+    @property
+    def run_keys(self) -> frozenset[str] | None:
+        """The keys that its [run] may have; None for all."""
+        found = [keys for name, _ in self.tables if (keys := tables_of_extensions()[name].run_keys) is not None]
+        return frozenset.intersection(*found) if found else None
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -119,17 +141,17 @@ class Scenario(CheckedArguments):
                 tables[table][f.name.removeprefix("initial_")] = (
                     to_table(value) if isinstance(value, LoadingHistory) else as_written(value)
                 )
-        if self.contact is not None:
-            tables |= {CONTACT: contact_table(self.contact), "run": {"duration": self.duration}}
-            return tomli_w.dumps(tables, multiline_strings=True)
-        run = {"duration": self.duration, "events": self.max_events, "rtol": self.rtol, "creep_rtol": self.creep_rtol}
-        run["shortest_event"] = self.shortest_event
-        tables["run"] = _without_none(run | {"selection": problem.rule})
+        tables |= {name: tables_of_extensions()[name].write(value) for name, value in self.tables}
+        run: dict[str, Any] = {
+            "duration": self.duration,
+            "events": self.max_events,
+            "rtol": self.rtol,
+            "creep_rtol": self.creep_rtol,
+        }
+        run |= {"shortest_event": self.shortest_event, "selection": problem.rule}
+        allowed = run if self.run_keys is None else self.run_keys
+        tables["run"] = {name: value for name, value in run.items() if value is not None and name in allowed}
         return tomli_w.dumps(tables, multiline_strings=True)
-
-
-def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in values.items() if value is not None}
 
 
 def doubts(problem: Problem) -> list[str]:
@@ -189,30 +211,27 @@ def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
         problem = Problem(body, law, **loading, **start, selection=run.pop("selection"))
     except InputError as error:
         raise InputError(f"{file}: {_in_tables(without_owner(error))}") from None
-    if document[CONTACT] is not None:
-        return _with_contact(Scenario(problem, run["duration"], name=file), document, source)
     check_rtol(run["rtol"], file, "[run] rtol")
     check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
     check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
     limits = {"max_events": run.pop("events")}
-    return Scenario(problem, **run, **limits, title=document["title"], description=document["description"], name=file)
+    found = Scenario(problem, **run, **limits, title=document["title"], description=document["description"], name=file)
+    return _with_tables(found, document, source)
 
 
-def _with_contact(plain: Scenario, document: Mapping[str, Any], source: Source) -> Scenario:
-    """Return a scenario with the contact and the texts of a document. Raises InputError."""
-    needless = next((name for name in document["run"] if name != "duration"), None)
-    if needless is not None:
-        why = "has no effect with a [contact], whose nodes and courant set the accuracy: leave it out"
-        raise InputError(f"{source.file}: [run] {needless} {why}")
-    contact = read_contact(read_table(CONTACT, Contact, document[CONTACT], source), plain.problem, source.file)
-    nodes = contact.nodes * (contact.width_nodes or 1)
-    if nodes > source.most_nodes:
-        raise InputError(f"{source.file}: [contact] has {nodes} nodes, {source.most_nodes:g} are the most that can be used here")
-    found = replace(plain, contact=contact, title=document["title"], description=document["description"])
-    try:
-        _ = found.planar_slab.steps(found.duration)
-    except InputError as error:
-        raise InputError(f"{source.file}: [contact] {without_owner(error)}") from None
+def _with_tables(plain: Scenario, document: Mapping[str, Any], source: Source) -> Scenario:
+    """Return a scenario with the tables of extensions that a document has. Raises InputError."""
+    given = {name: table for name, table in tables_of_extensions().items() if document[name] is not None}
+    found = plain
+    for name, table in given.items():
+        needless = next((key for key in document["run"] if table.run_keys is not None and key not in table.run_keys), None)
+        if needless is not None:
+            raise InputError(f"{source.file}: [run] {needless} {table.why_no_others}: leave it out")
+        entries = read_table(name, table.kind(), document[name], source)
+        found = found.with_table(name, table.read(entries, plain.problem, source))
+    for name, table in given.items():
+        table.check(found.table(name), found, source)
+    _ = found.to_solve if given else None
     return found
 
 
@@ -267,4 +286,4 @@ class BundledScenarios(Mapping[str, Scenario]):
 
 
 scenarios = BundledScenarios()
-"""The bundled scenarios, as `stickslip.problem.scenarios`."""
+"""The bundled scenarios, as `stickslip.scenarios`."""

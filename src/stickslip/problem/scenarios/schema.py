@@ -11,7 +11,7 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from stickslip.extensions.planar.contact import Contact
+from stickslip.extension import tables
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
@@ -40,9 +40,7 @@ REGISTERED = KINDS | {"loading": HISTORIES}
 LISTED, EXPLAINED = "`stickslip new --list` lists all", "`stickslip new slab`, or another starter, explains all"
 """Where the kinds of laws and histories are, and the keys."""
 TABLES = ("body", "friction", "loading", "initial", "run")
-"""The tables of a scenario."""
-CONTACT = "contact"
-"""The table that a scenario has if its contact is a line or a plane of nodes."""
+"""The tables of a scenario; extensions add others."""
 SOFT_TORQUE, WITH_SOFT_TORQUE = "soft_torque", "with_soft_torque"
 """The key of a string that stands for the three numbers of its drive, and the method of a body that has it."""
 DRIVE = ("driver_impedance", "driver_inertia", "driver_integral_gain")
@@ -74,14 +72,15 @@ def _read_inner(value: Any, place: DocumentPlace) -> dict[str, Any]:
     return value
 
 
-def _read_as(kind: type, wanted: str, value: Any, place: DocumentPlace) -> Any:
+def read_as(kind: type, wanted: str, value: Any, place: DocumentPlace) -> Any:
+    """Return a value of a key if it is of a type, `wanted` in words. Raises InputError."""
     check_type(f"{place.source.file}: {place}", value, kind, wanted)
     return value
 
 
 _DOCUMENT = {name: Key(_read_text, "") for name in ("title", "description", "trade")} | {name: Key(_read_inner) for name in TABLES}
-_DOCUMENT |= {name: Key(_read_inner, MappingProxyType({})) for name in ("loading", "initial")} | {CONTACT: Key(_read_inner, None)}
-"""The keys of a scenario outside its tables, and the tables."""
+_DOCUMENT |= {name: Key(_read_inner, MappingProxyType({})) for name in ("loading", "initial")}
+"""The keys of a scenario outside its tables, and the tables of the core."""
 
 
 def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> dict[str, tuple[Quantity, Any]]:
@@ -90,8 +89,8 @@ def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()
     `kind` is the class of the law for [friction] and of the body for every other table, because loads are stresses for a slab and
     forces for a block. `states` are the friction law's states, which [initial] needs.
     """
-    if table in KINDS or table == CONTACT:
-        return _declared(Contact if table == CONTACT else kind)
+    if table in KINDS or table in tables():
+        return _declared(tables()[table].kind() if table in tables() else kind)
     if table == "run":
         automatic = {"creep_rtol": (CREEP_RTOL, None), "shortest_event": (SHORTEST_EVENT, None)}
         return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), **automatic}
@@ -111,6 +110,8 @@ def entries_in(
 
     With the unit of a body's loads, the fields of laws and histories have the units that they take with that body.
     """
+    if table in tables():
+        return dict(fields_of(tables()[table].kind()))
     if not has_kind(table):
         return dict(quantities_in(table, kind, states))
     of = table.partition(".")[2]
@@ -141,12 +142,8 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
         keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
     if table == "loading":
-        keys["one_way"] = Key(partial(_read_as, bool, "true or false"), False, ONE_WAY)
-    if table == CONTACT:
-        keys["replicas"] = Key(partial(_read_as, bool, "true or false"), True)
-        keys["along"] = Key(partial(_read_as, dict, "a table of what varies along the contact"), MappingProxyType({}))
-        keys["patches"] = Key(partial(_read_as, list, "tables, each after a line [[contact.patches]]"), ())
-    return keys
+        keys["one_way"] = Key(partial(read_as, bool, "true or false"), False, ONE_WAY)
+    return keys | (dict(tables()[table].other_keys()) if table in tables() else {})
 
 
 def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
@@ -260,7 +257,7 @@ def check_rule(value: Any, where: str, name: str) -> str:
 
 def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
     """Return a parsed TOML document if it has a scenario's texts and tables, whose content is not checked. Raises InputError."""
-    return _read_keys(_DOCUMENT, raw, source)
+    return _read_keys(_DOCUMENT | {name: Key(_read_inner, None) for name in tables()}, raw, source)
 
 
 def read_table(
@@ -341,7 +338,7 @@ def _belongs(name: str, table: str) -> str:
     having = sorted(kind for kind, body in BODIES.items() if name in keys_of(table, body)) if table == "body" else []
     if having:
         return f"it is a key of {', '.join(having)}, and not of this kind"
-    others = () if table.startswith("friction.") else (other for other in (*TABLES, CONTACT) if other not in ("friction", table))
+    others = () if table.startswith("friction.") else (other for other in (*TABLES, *tables()) if other not in ("friction", table))
     for other in others:
         if any(name in keys_of(other, body) for body in KINDS["body"].values()):
             return f"it belongs in [{other}]"

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from stickslip.extension import tables
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
@@ -16,21 +17,20 @@ if TYPE_CHECKING:
     from stickslip.problem.scenarios.scenario import Scenario
 
 
-def all_slips_alike(who: str, scenario: Scenario) -> Scenario:
-    """Return a scenario if its contact is a single place, as it is for all but runs. Raises InputError, which begins with `who`."""
-    if scenario.contact is not None:
-        raise InputError(
-            f"{who}: {scenario.name} has a [contact] of many nodes, for which there are `stickslip run`, `check`, `show` and"
-            " (in 2D) `explore`, and ss.simulate: leave out [contact] for the problem in 1D that each node has"
-        )
+def solved_by_core(who: str, scenario: Scenario) -> Scenario:
+    """Return a scenario if its own problem is solved, as all but runs need it. Raises InputError, which begins with `who`."""
+    if not scenario.is_of_core:
+        name, table = next((name, tables()[name]) for name, _ in scenario.tables)
+        uses = "for which there are `stickslip run`, `check`, `show` and ss.simulate"
+        raise InputError(f"{who}: {scenario.name} has a {table.what.format(name)}, {uses}: {table.instead.format(name)}")
     return scenario
 
 
-def read_source(who: str, source: Problem | Scenario | str | Path, *, contact: bool = False) -> Problem | Scenario:
+def read_source(who: str, source: Problem | Scenario | str | Path, *, any_kind: bool = False) -> Problem | Scenario:
     """Return a problem or a scenario as it is, or the scenario of a bundled name or a file.
 
-    Raises InputError, for another type with a message that begins with `who`, and for a scenario with a contact of many nodes
-    unless `contact` is True.
+    Raises InputError, for another type with a message that begins with `who`, and unless it may be of `any_kind` for a scenario
+    whose own problem is not what is solved.
     """
     if isinstance(source, Problem):
         return source
@@ -39,7 +39,7 @@ def read_source(who: str, source: Problem | Scenario | str | Path, *, contact: b
     found = load_scenario(source) if isinstance(source, str | Path) else source
     if not isinstance(found, Scenario):
         check_problem(who, found, "a Problem, a scenario, or the name of one")
-    return found if contact else all_slips_alike(who, found)
+    return found if any_kind else solved_by_core(who, found)
 
 
 def under_rule(source: Problem | Scenario, rule: str | SelectionRule) -> Problem | Scenario:

@@ -5,26 +5,16 @@ from __future__ import annotations
 import cmath
 import math
 
+from stickslip.contact.layer_response import growth_on_layers
 from stickslip.contact.rules.loop import first_rate, resolved
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import exactly
 from stickslip.friction import RateAndState
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers, as_waves
-from stickslip.problem.bodies.layer_response import growth_on_layers
 from stickslip.problem.problem import Problem
+from stickslip.problem.start import loading_rate
 from stickslip.run.reference.rate_and_state import SteadySliding
 from stickslip.run.reference.slab import growth_rate
-
-
-def loading_rate(problem: Problem) -> float:
-    """Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
-
-    It is exact for a block, and a mean over round trips for a slab.
-    """
-    body = problem.body
-    if not body.is_driven_rigidly:
-        return problem.far_stress_rate
-    return body.stiffness * problem.first_pull_rate
 
 
 def start_of(problem: Problem) -> str:

@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
-import stickslip
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.files.sampling import Span, sampled_curves
 
 if TYPE_CHECKING:
-    from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.foundation.arrays import Floats
 
 FIRST: tuple[Curve, ...] = ("slip", "event_slip", "slip_rate", "load", "traction")
@@ -38,7 +36,7 @@ def write_curves(run: Readings, path: str | Path, **evenly: Unpack[Evenly]) -> P
 
     Raises InputError as that does, and for another suffix.
     """
-    file, known = _checked(Path(path)), run.curves
+    file, known = checked_path(Path(path)), run.curves
     names = [*(name for name in FIRST if name in known), *(name for name in known if name not in FIRST)]
     time, values = sampled_curves(run, names, **evenly)
     if file.suffix.lower() == ".csv":
@@ -52,20 +50,7 @@ def write_curves(run: Readings, path: str | Path, **evenly: Unpack[Evenly]) -> P
     return write(dataset, file)
 
 
-def write_contact(run: PlanarSolution, path: Path) -> Path:
-    """Write the motion of a contact of many nodes at its frames, and return the path; see `PlanarSolution.to_csv`."""
-    if _checked(path).suffix.lower() == ".nc":
-        from stickslip.foundation.netcdf_file import write
-
-        about = {"title": repr(run), "source": f"stickslip {stickslip.__version__}"}
-        return write(run.dataset().assign_attrs(about), path)
-    place = (slice(None), *(count // 2 for count in run.slab.shape))
-    units = {"slip": "m", "slip_rate": "m/s", "traction": "Pa", "heat": "J/m^2"}
-    curves = {heading(name, unit): getattr(run, name)[place] for name, unit in units.items()}
-    return write_columns(path, {heading("time", "s"): run.times} | curves)
-
-
-def _checked(file: Path) -> Path:
+def checked_path(file: Path) -> Path:
     """Return the path of a file of curves. Raises InputError for another suffix."""
     if file.suffix.lower() not in SUFFIXES:
         raise InputError(f"{file}: the name must end in {' or '.join(SUFFIXES)}")

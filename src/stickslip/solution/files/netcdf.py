@@ -13,12 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 import stickslip
 from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.slip_events import SlipEvents
+from stickslip.engine.history.soundness import check_history, history_table
 from stickslip.engine.history.status import ARRAYS, Checkpoint
 from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
-from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
@@ -33,7 +34,7 @@ from stickslip.problem.run_status import STATUSES, Status
 from stickslip.problem.scenarios import read_scenario
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.solution.evaluation import Curve, Readings
-from stickslip.solution.files.soundness import check_history, history_table, number
+from stickslip.solution.files.soundness import number
 from stickslip.solution.observables.event_table import EVENT_COLUMNS, event_columns
 from stickslip.solution.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.solution.solution import Solution
@@ -42,7 +43,6 @@ from stickslip.solution.window import Window
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.extensions.planar.solution import PlanarSolution
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -210,7 +210,7 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
     """
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
-            name, place = type(loading).__name__, f'stickslip.problem.loading.HISTORIES["{loading.kind}"]'
+            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
     variables = _history(solution)
     if solution.checkpoint is not None:
@@ -268,22 +268,6 @@ def _tables(solution: Solution) -> dict[str, Variable]:
             found = np.asarray(values, str) if name in ("cause", "rule") else np.asarray(values)
             variables[f"{prefix}_{name}"] = Variable((prefix,), found, about)
     return variables
-
-
-@for_users
-def open_solution(path: str | Path) -> Solution | PlanarSolution:
-    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
-
-    It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file
-    is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule
-    is not registered.
-    """
-    file = as_path("open_solution: path", path)
-    if file.is_dir():
-        from stickslip.extensions.planar.store_layout import open_planar  # with zarr, which takes half a second to load
-
-        return open_planar(file)
-    return read_solution(file)
 
 
 def read_solution(path: Path) -> Solution:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.problem.bodies.layer_response import response_of
+from stickslip.contact.layer_response import response_of
 from tests.core.problem.bodies.layers import RATE_LAW, SOFT
 from tests.messages import refused
 

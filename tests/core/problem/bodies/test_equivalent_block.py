@@ -9,7 +9,7 @@ import pytest
 from mpmath import cot, mp, mpf
 
 import stickslip as ss
-from stickslip.extensions.studies.analogy import block_for
+from stickslip.problem.equivalent_block import block_for
 
 mp.dps = 40
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)

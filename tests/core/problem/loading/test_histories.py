@@ -30,7 +30,7 @@ BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14)
 LAW = ss.friction.LinearSlipWeakening(0.8, 0.7, 0.1)
 STEPS = Steps([0.0, 1.0], [1.0, 2.0])
 VALUE = f'a number in {VARYING}, or a text with a unit such as "10 m/s"'
-HINT = "; what varies in time is one of stickslip.problem.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+HINT = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 NUMBER = 'a number in {0} or a text with a unit such as "10 {0}", got {1}'
 FAR = "Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance"
 
@@ -192,9 +192,7 @@ def test_an_own_history_runs_and_is_saved_once_it_is_known(tmp_path: Path, monke
     steady = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=1e-3, initial_excess=1e11), 5.0)
     times = np.linspace(0.0, 5.0, 301)
     np.testing.assert_allclose(mine.slip(times), steady.slip(times), rtol=1e-9, atol=1e-12)
-    with pytest.raises(
-        ss.InputError, match=r'^save: files do not know Own: set stickslip.problem.loading.HISTORIES\["own"\] = Own'
-    ):
+    with pytest.raises(ss.InputError, match=r'^save: files do not know Own: set stickslip.loading.HISTORIES\["own"\] = Own'):
         mine.to_netcdf(tmp_path / "mine.nc")
     monkeypatch.setitem(HISTORIES, "own", Own)
     loaded = ss.open_solution(mine.to_netcdf(tmp_path / "mine.nc"))

@@ -266,7 +266,7 @@ SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
         ),
         (
             lambda: ss.Problem(BLOCK, LAW, initial_load=0.0, ground_acceleration=3.0),  # type: ignore[arg-type]
-            "Problem: ground_acceleration must be a loading history, got 3.0; what varies in time is one of stickslip.problem.loading,"
+            "Problem: ground_acceleration must be a loading history, got 3.0; what varies in time is one of stickslip.loading,"
             " such as Steps([0.0, 10.0], [1e-6, 1e-5])",
         ),
         (

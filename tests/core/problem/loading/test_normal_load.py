@@ -231,7 +231,7 @@ def test_a_weight_on_the_bit_that_varies_is_its_torque_and_need_not_be_given_to_
 
 
 def test_a_scenario_gives_the_weight_on_the_bit_in_its_unit(tmp_path: Path) -> None:
-    text = (Path(ss.__file__).parent / "scenarios/bundled/drill-string.toml").read_text(encoding="utf-8")
+    text = (Path(ss.__file__).parent / "problem/scenarios/bundled/drill-string.toml").read_text(encoding="utf-8")
     table = '[loading.normal_load]\nkind = "sinusoidal"\nmean = "97.347 kN"\namplitude = "{}"\nperiod = "2 s"\n[initial]'
     path = tmp_path / "weight.toml"
     path.write_text(text.replace("[initial]", table.format("10 kN")), encoding="utf-8")

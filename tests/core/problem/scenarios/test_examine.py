@@ -12,10 +12,10 @@ from stickslip.contact.rules.loop import resolved
 from stickslip.friction import LAWS, FromTable, HyperbolicRate, RateAndState, SinusoidalSlip, TwoStateRateAndState
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.problem.scenarios.templates import template
 from stickslip.run.check.examine import examine
 from stickslip.run.check.facts import Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
-from stickslip.run.templates import template
 
 Floats = NDArray[np.float64]
 LAW = SinusoidalSlip(1.0, 0.5, 5.0)

@@ -9,8 +9,8 @@ import pytest
 from stickslip import InputError
 from stickslip.problem.loading import HISTORIES, PiecewiseLinear, Steps
 from stickslip.problem.scenarios.scenario import load_scenario, read_scenario
+from stickslip.problem.scenarios.templates import template
 from stickslip.run.check.examine import examine
-from stickslip.run.templates import template
 from tests.core.problem.scenarios.texts import GOOD
 
 RATE = 'a number in m/s or a text with a unit such as "10 m/s"'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.run.templates import template
+from stickslip.problem.scenarios.templates import template
 from tests.messages import refused
 
 CASES = [

@@ -14,11 +14,10 @@ from stickslip.foundation.quantities import LawField, NumberSeries, fields_of, q
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import BODIES
-from stickslip.problem.scenarios import library
+from stickslip.problem.scenarios import library, templates
 from stickslip.problem.scenarios.entries import describe
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.problem.scenarios.schema import entries_in, quantities_in
-from stickslip.run import templates
 from tests.limits import examples
 
 

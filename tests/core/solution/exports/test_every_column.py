@@ -229,7 +229,7 @@ def test_table_and_store_of_a_sweep(kind: str) -> None:
 @pytest.mark.slow
 def test_curves_of_a_contact_of_many_nodes(tmp_path: Path) -> None:
     scenario = ss.load_scenario("planar-patch")
-    slab = replace(scenario.planar_slab, nodes=64)
+    slab = replace(scenario.to_solve, nodes=64)
     run = ss.simulate(slab, 1.0)
     table = pd.read_csv(run.to_csv(tmp_path / "a.csv"))
     units = {"time": "s", "slip": "m", "slip rate": "m/s", "traction": "Pa", "heat": "J/m^2"}

@@ -49,7 +49,7 @@ def test_the_amplification_is_that_of_a_disturbed_run(driver: float) -> None:
 
 
 def test_the_horizon_is_where_50_digits_lose_the_sequence() -> None:
-    """Where 50 digits (`tests/truth`) say that the sequence is lost, at the default tolerance.
+    """Where 50 digits (`tests/core/engine/truth`) say that the sequence is lost, at the default tolerance.
 
     Just above alpha_c an echo multiplies by 4e5: the second generation of micro-events, from row 24 645 on, is the first whose
     loads have been amplified twice. At alpha = 1 the round trips of events are lost from the 39th on, their order at the 57th.

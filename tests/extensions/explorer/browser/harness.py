@@ -13,7 +13,10 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-NO_BROWSER = "no chromium was found: tests/extensions/explorer/install_browser.sh installs one; until then the explorer is not tested in a browser"
+NO_BROWSER = (
+    "no chromium was found: tests/extensions/explorer/install_browser.sh installs one; until then the explorer is not tested in a"
+    " browser"
+)
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 """Commands under which a browser may be installed, as in install_browser.sh."""
 URL = re.compile(r"https?://\S+")

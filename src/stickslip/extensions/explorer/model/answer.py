@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.explorer.model.words import short
-from stickslip.extensions.inference.fit.model import OF_NO_ZERO, measured
-from stickslip.extensions.inference.fit.setup import SENSORS
-from stickslip.extensions.inference.record.record import SHEAR, SHEAR_IN, Record, is_of
-from stickslip.extensions.inference.record.resample import resampled
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError, nearest
-from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
+
+if TYPE_CHECKING:
+    from stickslip.extensions.inference import BesideRun
 
 CurveName = Literal["law", "steady state", "law at the state of the start"]
 """What the curve of a friction law is, for its legend."""
@@ -173,12 +170,6 @@ class Answer:
     measured: Measured | None = None
 
 
-MOST_SAMPLES = 20_000
-"""Of more samples than this, means are drawn and compared."""
-DRAWN_AS = dict.fromkeys(SHEAR, "traction") | {"slip": "slip", "slip_rate": "slip_rate"}
-"""Each quantity that is measured at the contact is drawn behind this curve of a motion."""
-
-
 @dataclass(frozen=True)
 class Measured:
     """Samples of a record (SI) against the time of a run, and the misfit of each measured quantity.
@@ -200,49 +191,14 @@ class Measured:
         return f"It differs from {self.name} by {', '.join(texts)} (root mean square)."
 
 
-@dataclass(frozen=True)
-class Backdrop:
-    """A record that is drawn behind all runs, and where its shear was measured: at the contact, or behind the spring of a block."""
+class RecordBehind(Protocol):
+    """A record that is drawn behind all runs: a `RecordBeside` of the extension for inference."""
 
-    record: Record
-    sensor: str = "contact"
+    def beside(self, run: Solution) -> BesideRun:
+        """Return the samples beside a run, as long as it lasts."""
 
-    @classmethod
-    def of(cls, record: Record, sensor: str, problem: Problem) -> Backdrop:
-        """Return the backdrop of a problem. Raises InputError if nothing of the record can be drawn behind its runs."""
-        if sensor not in SENSORS:
-            raise InputError(f"explore: sensor {ascii(sensor)[:40]} is unknown; {nearest(sensor, SENSORS)}")
-        found = cls(resampled(record, MOST_SAMPLES)[0], sensor)
-        if not found._names(problem):
-            shear = SHEAR_IN[problem.load_unit]
-            raise InputError(
-                f"{record.name}: nothing to draw behind a {problem.body.kind}; allowed: friction, {shear}, slip and slip_rate"
-            )
-        return found
 
-    def _names(self, problem: Problem) -> list[str]:
-        """Return the names of the quantities that are drawn, at most one of shear."""
-        moves = self.record.slips_in in ("", problem.unit_of("slip"))
-        here = [name for name in self.record.measured if name in DRAWN_AS]
-        names = [name for name in here if is_of(name, problem) and (moves or name in SHEAR)]
-        shear = [name for name in SHEAR if name in names]
-        return [name for name in names if name not in shear[1:]]
-
-    def behind(self, run: Solution) -> Measured:
-        """Return the samples behind a run, as long as it lasts."""
-        inside = self.record.clock <= run.history.span[1]
-        time, misfits = self.record.clock[inside], list[KeyNumber]()
-        curves, residuals = dict[str, Floats](), dict[str, Floats]()
-        for name in self._names(run.problem):
-            data = self.record.measured[name][inside]
-            model = measured(run, name, self.sensor, time)
-            known = np.isfinite(data)
-            zero = float(np.mean((data - model)[known])) if name in OF_NO_ZERO and known.any() else 0.0
-            away = (data - zero - model)[known]
-            size = float(np.sqrt(np.mean(away**2))) if known.any() else float("nan")
-            misfits.append(KeyNumber(f"misfit of {name.replace('_', ' ')}", size, run.problem.unit_of(name)))
-            shift = run.problem.initial_slip - zero if name == "slip" else 0.0
-            scale = run.problem.normal if name == "friction" else 1.0
-            curves[DRAWN_AS[name]] = data * scale + shift
-            residuals[DRAWN_AS[name]] = (data - zero - model) * scale
-        return Measured(time, curves, tuple(misfits), self.record.name, residuals)
+def measured_of(found: BesideRun) -> Measured:
+    """Return what is shown of a record beside a run."""
+    misfits = (KeyNumber(f"misfit of {name.replace('_', ' ')}", size, unit) for name, (size, unit) in found.misfits.items())
+    return Measured(found.time, found.curves, tuple(misfits), found.name, found.residuals)

@@ -11,6 +11,7 @@ from stickslip.extensions.explorer.model.ranges import SliderRange, range_of
 from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.planar.contact import Contact
 from stickslip.extensions.planar.run import FRAMES
+from stickslip.extensions.planar.table import CONTACT
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
@@ -23,8 +24,8 @@ from stickslip.problem.fields import HISTORIES_ONLY, STEADY
 from stickslip.problem.loading import HISTORIES
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.entries import describe, typed_number
-from stickslip.problem.scenarios.parameter_paths import WHOLE, YES_OR_NO, ParameterPath, parameter_paths
-from stickslip.problem.scenarios.schema import CONTACT, ONE_WAY, check_events, entries_in, kind_of
+from stickslip.problem.scenarios.parameter_paths import YES_OR_NO, ParameterPath, parameter_paths
+from stickslip.problem.scenarios.schema import ONE_WAY, check_events, entries_in, kind_of
 from stickslip.problem.selection_rule import SELECTION_RULES, names
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
@@ -122,7 +123,7 @@ class Control:
             number = typed_number(text)
             return check_events(int(number) if isinstance(number, float) and number.is_integer() else number, self.label, "number")
         number = self._number(text)
-        is_whole = self.path in WHOLE and isinstance(number, float) and number.is_integer()
+        is_whole = self.kind == "whole" and self.path.startswith(CONTACT) and isinstance(number, float) and number.is_integer()
         return int(number) if is_whole else number
 
     def _number(self, text: str) -> float | str:
@@ -230,7 +231,7 @@ class _Tables:
                 one.name, label, one.declared.meaning, "choice", text, choices=one.declared.allowed, declared=one.declared
             )
         control = self.number(one.name, label, one.declared, DEFAULTS_OF_CONTACT.get(inside), rare)
-        return replace(control, kind="whole") if one.name in WHOLE else control
+        return replace(control, kind="whole") if one.counts else control
 
     def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[ControlGroup]:
         content = self.setting.value(table)

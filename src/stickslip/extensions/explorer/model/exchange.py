@@ -24,7 +24,7 @@ from stickslip.problem.problem import written_out
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.entries import Source, to_table
 from stickslip.problem.scenarios.schema import KINDS, entries_in, kind_of, read_part
-from stickslip.run.templates import example_of
+from stickslip.problem.scenarios.templates import example_of
 
 RIGID_DRIVER = {
     "driver_impedance": math.inf,

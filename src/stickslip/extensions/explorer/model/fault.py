@@ -11,6 +11,7 @@ from stickslip.extensions.explorer.model.answer import BodyCurves, EnergyPicture
 from stickslip.extensions.explorer.model.words import short
 from stickslip.extensions.planar.run import FRAMES, memory_of, simulate_planar
 from stickslip.extensions.planar.solution import PlanarSolution
+from stickslip.extensions.planar.table import contact_of, planar_slab_of
 from stickslip.foundation.errors import InputError
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.scenarios.scenario import Scenario
@@ -49,8 +50,7 @@ def solve_fault(scenario: Scenario, told: Told) -> FaultAnswer:
 
     Raises InputError, in one line, if the run needs more memory than a page may take.
     """
-    assert scenario.contact is not None
-    slab, frames = scenario.planar_slab, scenario.contact.frames
+    slab, frames = planar_slab_of(scenario), contact_of(scenario).frames
     needed = memory_of(slab.alone_for(scenario.duration)[0], scenario.duration, frames or FRAMES)
     if needed > MOST_MEMORY:
         raise InputError(

@@ -1,7 +1,7 @@
 """The two waves in a slab, sampled finely in time: from them the pictures of slab and energy are read off by interpolation.
 
-The exact field and energies of `stickslip.solution.observables` take a millisecond for each time. A picture needs hundreds of times within
-some milliseconds, and no more digits than a screen shows.
+The exact field and energies of `stickslip.solution.observables` take a millisecond for each time. A picture needs hundreds of times
+within some milliseconds, and no more digits than a screen shows.
 
 Work and memory are bounded by what a screen shows, and not by the number of round trips. Over a time of so many that they cannot
 be told apart, a sample is a mean over a round trip. The means of waves and of their squares give those of velocity, stress and

@@ -20,13 +20,14 @@ from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import Any, Self
 
+from stickslip.extensions.planar.table import CONTACT
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.entries import Source, typed_number
 from stickslip.problem.scenarios.parameter_paths import place_of
 from stickslip.problem.scenarios.scenario import Scenario, scenario_of
-from stickslip.problem.scenarios.schema import CONTACT, TABLES, kind_of
+from stickslip.problem.scenarios.schema import TABLES, kind_of
 
 DEEPEST = 5
 """Largest number of parts in a path."""
@@ -163,7 +164,7 @@ class Setting:
         with gathered() as doubts:
             source = Source(self.name, None, MOST_NODES)
             scenario = replace(scenario_of(self.document, source), name=self.name, title=self.title)
-        if scenario.contact is not None and scenario.planar_slab.is_plane:
+        if scenario.table(CONTACT) is not None and scenario.to_solve.is_plane:
             raise InputError("explore: a fault in 3D is not shown: `stickslip run --figure` and `--animation` draw the run")
         return scenario, tuple(doubts)
 

@@ -9,15 +9,15 @@ from functools import partial
 from typing import Any
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.extensions.explorer.model.answer import Answer, Backdrop, BodyCurves, StateCurve
+from stickslip.extensions.explorer.model.answer import Answer, BodyCurves, RecordBehind, StateCurve, measured_of
 from stickslip.extensions.explorer.model.findings import Findings, key_numbers, marks_of, sentence
 from stickslip.extensions.explorer.model.layered import picture_of_layers
 from stickslip.extensions.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
-from stickslip.extensions.studies.analogy import block_for
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import ElasticSlab, OfLayers
+from stickslip.problem.equivalent_block import block_for
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario
@@ -95,7 +95,7 @@ LONG = 5_000
 
 
 @in_given_units
-def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = None) -> Answer:
+def solve(scenario: Scenario, told: Told = silent, behind: RecordBehind | None = None) -> Answer:
     """Run a scenario, with a record drawn behind it if there is one, and return all that the explorer shows of it, in SI units.
 
     `told` is called with a line on the progress of a long run. If it raises `Stopped` the run ends there, and the answer shows it
@@ -110,8 +110,8 @@ def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = Non
     return answer if behind is None else _with_record(answer, behind)
 
 
-def _with_record(answer: Answer, behind: Backdrop) -> Answer:
-    found = behind.behind(answer.solution)
+def _with_record(answer: Answer, behind: RecordBehind) -> Answer:
+    found = measured_of(behind.beside(answer.solution))
     return replace(
         answer, measured=found, sentence=f"{answer.sentence} {found.sentence}", numbers=(*answer.numbers, *found.misfits)
     )

@@ -1,6 +1,6 @@
 """A strip: what a few hundred runs of one setting give while a single parameter moves through a range.
 
-The runs are those of a sweep. Where the compiled batch can do them, two hundred take a few hundredths of a second; scenarios that
+The runs are those of a sweep, and a page has no strip where the extension for sweeps is not there. Where the compiled batch can do them, two hundred take a few hundredths of a second; scenarios that
 it cannot do are run one after the other, with a line on the progress.
 """
 
@@ -13,10 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.extension import is_there
 from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.explorer.model.solve import Stopped
-from stickslip.extensions.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.extensions.sweeps.execution.chunk import Work, run_chunk
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
@@ -66,6 +65,11 @@ class Strip:
         return int(np.argmin(np.abs(scaled(self.values) - scaled(value))))
 
 
+def has_strips() -> bool:
+    """Return True if strips can be made: their runs are made as a sweep makes them."""
+    return is_there("sweeps")
+
+
 def strip_of(scenario: Scenario, where: Axis, told: Told = lambda text: None) -> Strip:
     """Run a scenario for many values of one parameter.
 
@@ -73,34 +77,23 @@ def strip_of(scenario: Scenario, where: Axis, told: Told = lambda text: None) ->
     are the result. A run whose value makes no valid scenario, or that does not come to its end, has NaN and a reason. Raises
     InputError if there is no such parameter, or if it is a word and no number.
     """
-    found = numeric(scenario, where.parameter)
-    values = where.values
-    work = Work(scenario.to_toml(), (found,), quantities_named(KEPT))
-    results, refused = _run(work, found.name, values, told)
-    units = {name: scenario.problem.unit_of(QUANTITIES[name].unit) for name in KEPT}
-    here = present(scenario, found)
-    return Strip(found.name, found.declared.meaning, found.unit, values, here, where.log, results, units, refused)
+    from stickslip.extensions.sweeps import run_along
 
+    found, values = numeric(scenario, where.parameter), where.values
 
-def _run(work: Work, name: str, values: Floats, told: Told) -> tuple[dict[str, Floats], dict[int, str]]:
-    """Return the results of all members, and why some failed: together in the batch, or one after the other."""
-    count = len(values)
-    portion = 1 if work.why_one_by_one else count
-    results, refused = {one: np.full(count, np.nan) for one in KEPT}, dict[int, str]()
-    for start in range(0, count, portion):
+    def goes_on(done: int) -> bool:
         try:
-            if work.why_one_by_one:
-                told(f"strip: {start} of {count} runs")
+            told(f"strip: {done} of {len(values)} runs")
         except Stopped:
-            if not start:
+            if not done:
                 raise
-            return results, refused | dict.fromkeys(range(start, count), "it was stopped")
-        some = slice(start, start + portion)
-        done = run_chunk(work, {name: values[some]}, threads=1)
-        for one, column in done.results.items():
-            results[one][some] = column
-        refused.update({start + i: reason for i, reason in done.reasons.items()})
-    return results, refused
+            return False
+        return True
+
+    results, units, refused = run_along(scenario, found, values, KEPT, goes_on)
+    return Strip(
+        found.name, found.declared.meaning, found.unit, values, present(scenario, found), where.log, results, units, refused
+    )
 
 
 def present(scenario: Scenario, parameter: ParameterPath) -> float:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import panel as pn
 
+from stickslip.extensions.explorer.model.strip import has_strips
 from stickslip.extensions.explorer.page.components import Markup, PlayerBar, asset, style_sheet
 from stickslip.extensions.explorer.page.controls import Controls
 from stickslip.extensions.explorer.page.explorer import Explorer
@@ -36,7 +37,12 @@ class PageLayout(NamedTuple):
     plots: Callable[[Stage], dict[str, Any]]
     fields: tuple[tuple[str, str], ...]
     first_words: str
-    has_strip: bool = True
+    may_have_strip: bool = True
+
+    @property
+    def has_strip(self) -> bool:
+        """True if a strip is shown below the panels."""
+        return self.may_have_strip and has_strips()
 
 
 SLOTS = ("bar", "aside", "below", "above")
@@ -134,7 +140,7 @@ OF_A_FAULT = PageLayout(
     fault.plots,
     (("velocity", "slip rate"), ("displacement", "slip"), ("stress", "change of traction")),
     "All pictures show one run of a fault in 2D: a slab whose slip varies along its contact. First move a slider: they all follow.",
-    has_strip=False,
+    may_have_strip=False,
 )
 
 

@@ -217,7 +217,7 @@ class Warming:
     def _warm(self) -> None:
         try:
             from stickslip.engine.compile.cache import announce_by, tell
-            from stickslip.extensions.explorer.model.strip import strip_of
+            from stickslip.extensions.explorer.model.strip import has_strips, strip_of
             from stickslip.problem.scenarios.scenario import load_scenario
             from stickslip.run.simulate import simulate
 
@@ -225,7 +225,8 @@ class Warming:
             try:
                 for name, duration in FIRST_RUNS:
                     simulate(load_scenario(name), duration)
-                strip_of(load_scenario(FIRST_RUNS[0][0]), FIRST_STRIP)
+                if has_strips():
+                    strip_of(load_scenario(FIRST_RUNS[0][0]), FIRST_STRIP)
             finally:
                 announce_by(tell)
         except Exception as error:  # pages say what is wrong when they run into it themselves

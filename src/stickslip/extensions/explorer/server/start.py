@@ -18,7 +18,7 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.extensions.explorer.model.answer import Backdrop
+from stickslip.extensions.explorer.model.answer import RecordBehind
 from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.extensions.explorer.server.desk import ThreadDesk
@@ -46,7 +46,7 @@ def start(
     *,
     browser: bool,
     say: Callable[[str], object],
-    behind: Backdrop | None = None,
+    behind: RecordBehind | None = None,
 ) -> None:
     """Serve the explorer until Ctrl-C, with a setting that is shown first; `say` shows a line to the user.
 
@@ -66,7 +66,7 @@ def start(
         server.run()
 
 
-def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk, behind: Backdrop | None = None) -> Explorer:
+def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk, behind: RecordBehind | None = None) -> Explorer:
     """Return the explorer of a new page."""
     if setting.is_fault:
         from stickslip.extensions.explorer.model.fault import solve_fault
@@ -100,7 +100,7 @@ ENDED = (
 )
 
 
-def shown_in_notebook(scenario: Scenario, behind: Backdrop | None = None) -> Any:
+def shown_in_notebook(scenario: Scenario, behind: RecordBehind | None = None) -> Any:
     """Return the explorer of a scenario, with a record behind its runs, as an object that a notebook shows.
 
     Raises InputError where there is no notebook.

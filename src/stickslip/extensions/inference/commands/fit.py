@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import Changes, Columns, FigureFile, complete_fitted, complete_table, complete_template, option
+from stickslip.cli.options import Changes, Columns, FigureFile, complete_law, complete_table, complete_template, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, gathered
@@ -23,6 +23,21 @@ MOST_JOINED = 2000
 DataFile = Annotated[
     str, typer.Argument(help="A CSV file with columns friction and slip, slip_rate or both.", autocompletion=complete_table)
 ]
+
+
+def complete_fitted(incomplete: str) -> list[str]:
+    """Return the names of laws that can be fitted to points, as far as they begin with what is typed."""
+    from stickslip.extensions.inference.points.fit_search import template
+    from stickslip.friction import LAWS
+
+    found = []
+    for name in complete_law(incomplete):
+        try:
+            template(LAWS[name])
+        except InputError:
+            continue
+        found.append(name)
+    return found
 
 
 def fit(
@@ -89,7 +104,7 @@ def fit(
     points = Points.read(data, columns=typed_columns(column, "fit: --column"))
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
-        from stickslip.run.templates import with_law
+        from stickslip.problem.scenarios.templates import with_law
 
         before = friction.Coulomb(0.6, 0.5)
         points.of_contact(before)
@@ -143,7 +158,7 @@ def _strength(text: str) -> Any:
 
 def _scenario(result: Fit | Smooth, body: str, data: str, values: dict[str, Any]) -> str:
     """Return the text of a scenario with the law of a result, and with the result as comments at its head."""
-    from stickslip.run.templates import with_law
+    from stickslip.problem.scenarios.templates import with_law
 
     rows = [f"  {name} = {value} {meaning}" for name, value, meaning in result.rows]
     return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes], values)

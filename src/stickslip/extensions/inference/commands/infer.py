@@ -117,7 +117,7 @@ def infer(
     2 unusable input, 124 the time is over, 130 interrupted.
     """
     from stickslip.cli.overrides import load
-    from stickslip.extensions.studies.summary import show_inference, show_ranking
+    from stickslip.extensions.inference.summary import show_inference, show_ranking
 
     targets = Target("--out", out, (".nc", ".csv")), Target("--scenario-out", scenario_out, (".toml",))
     check_targets(*targets, Target("--figure", figure))
@@ -176,7 +176,7 @@ def _records(data: list[str], column: list[str] | None) -> list[Any]:
 
 def _inferred(scenario: Any, data: list[Any], free: str, options: dict[str, Any]) -> Inference:
     from stickslip.extensions.inference.infer import infer as study
-    from stickslip.extensions.studies.summary import as_options
+    from stickslip.extensions.inference.summary import as_options
     from stickslip.run.progress import progress_line
 
     with progress_line(f"{scenario.name}:") as report:

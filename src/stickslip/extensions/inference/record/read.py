@@ -130,9 +130,9 @@ def _there(passed: tuple[str, ...]) -> str:
     return f"; not understood: {_listed(passed)}" if passed else ""
 
 
-def _listed(headings: tuple[str, ...]) -> str:
-    more = f" and {len(headings) - FEW} more" if len(headings) > FEW else ""
-    return ", ".join(quoted(one) for one in headings[:FEW]) + more
+def _listed(unknown: tuple[str, ...]) -> str:
+    more = f" and {len(unknown) - FEW} more" if len(unknown) > FEW else ""
+    return ", ".join(quoted(one) for one in unknown[:FEW]) + more
 
 
 def _passed_over(read: _Columns) -> Iterator[str]:

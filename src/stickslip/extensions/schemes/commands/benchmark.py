@@ -85,7 +85,7 @@ def _judge(
     """Judge a series, show and write what comes out, and return True if it passes."""
     from stickslip.cli.overrides import typed_columns
     from stickslip.extensions.schemes.benchmarks import benchmark_of, judge_benchmark
-    from stickslip.extensions.studies.summary import show_schemes, tables_of
+    from stickslip.extensions.schemes.summary import show_schemes, tables_of
     from stickslip.run.progress import progress_line
 
     asked = benchmark_of(file.stem if name is None else name)

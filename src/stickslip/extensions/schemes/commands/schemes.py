@@ -25,7 +25,7 @@ def schemes(
     nx: Annotated[str | None, option("Cells in the thickness, separated by commas; 25,50,100,200 if not given.")] = None,
     search: Annotated[str | None, option(SEARCH)] = None,
     courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
-    files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
+    series: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
     column: Columns = None,
     out: Annotated[Path | None, option("Save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     figure: FigureFile = None,
@@ -53,16 +53,16 @@ def schemes(
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.overrides import load_with
-    from stickslip.extensions.studies.summary import show_schemes, tables_of
+    from stickslip.extensions.schemes.summary import show_schemes, tables_of
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
     chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)
-    if files:
+    if series:
         needless = {"--scheme": scheme, "--nx": nx, "--search": search, "--courant": courant}
         if given := [name for name, value in needless.items() if value is not None]:
             raise InputError(f"schemes: {given[0]} is for schemes of stickslip: leave it out with --series, which judges a file")
-        study = _judged(chosen, files, column)
+        study = _judged(chosen, series, column)
     elif column:
         raise InputError("schemes: --column says what the columns of a file of --series are")
     else:
@@ -93,11 +93,11 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
         return study(scenario, None, names, cells, courant=courant, progress=tell, **how)  # type: ignore[arg-type]
 
 
-def _judged(scenario: Scenario, files: list[Path], column: list[str] | None) -> Schemes:
+def _judged(scenario: Scenario, paths: list[Path], column: list[str] | None) -> Schemes:
     from stickslip.cli.overrides import typed_columns
     from stickslip.extensions.schemes.benchmarks import judge_series
     from stickslip.run.progress import progress_line
 
     columns = typed_columns(column, "schemes: --column")
     with progress_line("schemes") as tell:
-        return judge_series(files, scenario, rtol=scenario.rtol, columns=columns, progress=tell)
+        return judge_series(paths, scenario, rtol=scenario.rtol, columns=columns, progress=tell)

@@ -71,8 +71,8 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     bar.ax.yaxis.set_major_formatter(FixedFormatter([f"{tick:g}" for tick in TICKS]))
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
     lines = [
-        Line2D([], [], color=INK, linewidth=1.2, linestyle=style, label=text)
-        for column, (style, text) in NUMBERS.items()
+        Line2D([], [], color=INK, linewidth=1.2, linestyle=dashes, label=text)
+        for column, (dashes, text) in NUMBERS.items()
         if _crosses(dataset, column)
     ]
     if any(np.isnan(dataset[f"{one}_ratio"].values).any() for one in QUANTITIES):
@@ -114,9 +114,9 @@ def _middles(parameter: xr.DataArray) -> Floats:
 
 def _draw_numbers(axes: Axes, dataset: xr.Dataset) -> None:
     """Draw the lines on which each of the two weakening numbers is 1."""
-    for column, (style, _) in NUMBERS.items():
+    for column, (dashes, _) in NUMBERS.items():
         if _crosses(dataset, column):
-            look = {"colors": INK, "linewidths": 1.2, "linestyles": style}
+            look = {"colors": INK, "linewidths": 1.2, "linestyles": dashes}
             axes.contour(shown(dataset["x"]), shown(dataset["y"]), dataset[column].values, levels=[1.0], **look)
 
 

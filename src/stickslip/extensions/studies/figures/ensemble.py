@@ -62,11 +62,11 @@ def _marks(study: Ensemble) -> list[Artist]:
 
 
 def _draw_time_lines(axes: Axes, study: Ensemble, size: float) -> None:
-    style: Any = {"linestyle": "none", "marker": "|", "markersize": 7, "markeredgewidth": 0.8, "rasterized": True}
+    look: Any = {"linestyle": "none", "marker": "|", "markersize": 7, "markeredgewidth": 0.8, "rasterized": True}
     for member, (table, count) in enumerate(zip(study.catalogues, _shared(study), strict=True)):
         start = table.start.to_numpy(float) / size
         for starts, colour in ((start[:count], BLUE), (start[count:], VERMILLION)):
-            axes.plot(starts, np.full(len(starts), member), color=colour, **style)
+            axes.plot(starts, np.full(len(starts), member), color=colour, **look)
     _draw_horizons(axes, study, size)
     axes.set_ylim(len(study.runs) + 0.6, -0.6)
     count_ticks(axes, 6)

@@ -57,9 +57,9 @@ def run_members(
     """Run a scenario once for each set of parameters, in compiled code, and reduce each run to the given quantities.
 
     Values (SI) are arrays of shape (members,) by key, such as "friction.alpha", "body.thickness", "loading.pull_rate",
-    "initial.excess" or "run.duration"; quantities are names from `stickslip.extensions.sweeps.batch.QUANTITIES`. The results depend neither on the
-    number of threads nor on which members run together. A member whose parameters are invalid gets the status BAD_PARAMETERS and a
-    reason; it does not affect the others.
+    "initial.excess" or "run.duration"; quantities are names from `stickslip.extensions.sweeps.batch.QUANTITIES`. The results depend
+    neither on the number of threads nor on which members run together. A member whose parameters are invalid gets the status
+    BAD_PARAMETERS and a reason; it does not affect the others.
 
     With `defer`, members that must run by themselves are not run but listed in `later`: each may take as long as thousands of
     others. Without, they run after all others. Raises InputError if `why_not` gives a reason against running this scenario in a

@@ -22,7 +22,7 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.problem.scenarios.source import all_slips_alike
+from stickslip.problem.scenarios.source import solved_by_core
 from stickslip.solution.evaluation import CURVES
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
@@ -104,7 +104,7 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | s
     if not isinstance(given, Problem):
         if duration is not None:
             raise InputError("sweep: duration belongs to a Problem: a scenario has its own, which run.duration varies")
-        return all_slips_alike("sweep", given if isinstance(given, Scenario) else load_scenario(given))
+        return solved_by_core("sweep", given if isinstance(given, Scenario) else load_scenario(given))
     if duration is None:
         raise InputError("sweep: a Problem needs a duration (s)")
     return read_scenario(Scenario(given, DURATION.check("sweep", "duration", duration)).to_toml(), "problem")

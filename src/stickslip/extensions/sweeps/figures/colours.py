@@ -113,7 +113,7 @@ def prepare(axes: Axes, quantity: ShownQuantity) -> None:
 
 
 def explain(
-    panels: Sequence[Axes], colours: Colours, quantity: ShownQuantity, *more: Artist, own: bool = False, room: int = ROOM
+    all_axes: Sequence[Axes], colours: Colours, quantity: ShownQuantity, *more: Artist, own: bool = False, room: int = ROOM
 ) -> None:
     """Add the key or the scale with the name of the quantity, and entries for areas without a number and for `more` artists.
 
@@ -125,14 +125,14 @@ def explain(
     marks += more
     scale = not colours.key and quantity.known.size > 0
     if scale:
-        _add_scale(panels, colours, folded(quantity.title, room), quantity.ends)
-    add_legend(panels[0], marks, "" if scale else folded(quantity.title, 2 * ROOM), own=own)
+        _add_scale(all_axes, colours, folded(quantity.title, room), quantity.ends)
+    add_legend(all_axes[0], marks, "" if scale else folded(quantity.title, 2 * ROOM), own=own)
 
 
-def _add_scale(panels: Sequence[Axes], colours: Colours, title: str, ends: Sequence[str]) -> None:
-    figure: Any = panels[0].figure
+def _add_scale(all_axes: Sequence[Axes], colours: Colours, title: str, ends: Sequence[str]) -> None:
+    figure: Any = all_axes[0].figure
     beyond = "min" if ends else "neither"
-    bar = figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=title, pad=0.02, aspect=25, extend=beyond)
+    bar = figure.colorbar(ScalarMappable(**colours.options), ax=list(all_axes), label=title, pad=0.02, aspect=25, extend=beyond)
     if ends:
         bar.set_ticks([NOTHING, 0.25, 0.5, 0.75, 1.0], labels=[f"0: {ends[0]}", "0.25", "0.5", "0.75", f"1: {ends[1]}"])
         bar.minorticks_off()

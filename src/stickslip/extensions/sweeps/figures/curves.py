@@ -109,9 +109,9 @@ def mark_missing(axes: Axes, places: Floats, state: NDArray[Any], colour: str = 
             axes.plot(here, np.full(len(here), 0.02 + 0.03 * row), marker=marker, color=colour, label=text, **at)
 
 
-def missing_marks(*panels: Axes) -> list[Line2D]:
+def missing_marks(*all_axes: Axes) -> list[Line2D]:
     """Return an entry of the key for each reason why members have no number that is marked in these panels."""
-    found = {str(line.get_label()): line for axes in panels for line in axes.get_lines()}
+    found = {str(line.get_label()): line for axes in all_axes for line in axes.get_lines()}
     return [found[text] for _, text in MISSING.values() if text in found]
 
 

@@ -37,7 +37,7 @@ from stickslip.problem.scenarios.schema import (
     read_part,
 )
 from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.run.check.stability import loading_rate
+from stickslip.problem.start import loading_rate
 
 LOADINGS = 3
 """Number of loads from nothing to the strength in which a contact slips several times, as few events take all of the load."""

@@ -1,0 +1,195 @@
+"""Results as the command line shows them, fresh from a run or read from a file: a summary, pictures, and a table."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from typing_extensions import override
+
+from stickslip.cli.output.show import console, say
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import clean
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from stickslip.cli.output.pictures import Pictures
+    from stickslip.problem.problem import Problem
+    from stickslip.problem.run_status import Status
+    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.run.catalogue import Catalogue
+    from stickslip.solution.solution import Solution
+
+
+class Results(ABC):
+    """Results of one kind."""
+
+    @abstractmethod
+    def check(self, pictures: Pictures, where: str) -> None:
+        """Refuse pictures that these results do not have. Raises InputError, which begins with `where`."""
+
+    @abstractmethod
+    def summarise(self, *, everything: bool = False) -> None:
+        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
+
+    @abstractmethod
+    def draw(self, pictures: Pictures) -> list[Path]:
+        """Draw the pictures that are wanted, and return their files."""
+
+    @abstractmethod
+    def to_csv(self, path: Path) -> Path:
+        """Write the numbers as CSV, with a unit in each heading, and return the path."""
+
+    def of_quantity(self, name: str, path: Path) -> Results:
+        """Return the results with another quantity to draw. Raises InputError if there is no choice, or no such quantity."""
+        raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is not a sweep")
+
+
+class RunResults(Results):
+    """Results of a run, whose status says what ended it."""
+
+    @property
+    @abstractmethod
+    def status(self) -> Status:
+        """What ended the run."""
+
+
+@dataclass(frozen=True)
+class WholeRun(RunResults):
+    """A run with its whole history."""
+
+    scenario: Scenario
+    solution: Solution
+
+    @property
+    @override
+    def status(self) -> Status:
+        return self.solution.status
+
+    @override
+    def check(self, pictures: Pictures, where: str) -> None:
+        pictures.check_problem(self.solution.problem, where)
+
+    @override
+    def summarise(self, *, everything: bool = False) -> None:
+        from stickslip.cli.output.summary import show_solution
+
+        show_solution(self.scenario, self.solution, everything=everything)
+
+    @override
+    def draw(self, pictures: Pictures) -> list[Path]:
+        return pictures.draw(self.solution)
+
+    @override
+    def to_csv(self, path: Path) -> Path:
+        """Write the curves at evenly spaced times, and return the path."""
+        return self.solution.to_csv(path)
+
+
+@dataclass(frozen=True)
+class FoundEvents(RunResults):
+    """The slip events that a run has just written to a catalogue."""
+
+    scenario: Scenario
+    found: Catalogue
+
+    @property
+    @override
+    def status(self) -> Status:
+        return self.found.status
+
+    @override
+    def check(self, pictures: Pictures, where: str) -> None:
+        pictures.check_events(where)
+
+    @override
+    def summarise(self, *, everything: bool = False) -> None:
+        from stickslip.cli.output.summary import show_catalogue
+
+        show_catalogue(self.scenario, self.found, everything=everything)
+
+    @override
+    def draw(self, pictures: Pictures) -> list[Path]:
+        if not pictures.wanted:
+            return []
+        chosen = self.scenario
+        return pictures.draw_events(self.found.read(), chosen.title or chosen.name, chosen.problem.load_unit)
+
+    @override
+    def to_csv(self, path: Path) -> Path:
+        raise InputError("run: a catalogue keeps slip events only, no history: leave out --csv")
+
+
+@dataclass(frozen=True)
+class StoredEvents(Results):
+    """A table of slip events, with the attributes of its file."""
+
+    path: Path
+    about: Mapping[str, Any]
+    table: pd.DataFrame
+
+    @cached_property
+    def problem(self) -> Problem | None:
+        """The problem of the run; None if neither the catalogue nor a checkpoint beside it holds the scenario."""
+        from stickslip.problem.scenarios.scenario import read_scenario
+
+        return read_scenario(str(self.about["scenario"]), self.path.stem).problem if "scenario" in self.about else None
+
+    @override
+    def check(self, pictures: Pictures, where: str) -> None:
+        pictures.check_events(str(self.path))
+
+    @override
+    def summarise(self, *, everything: bool = False) -> None:
+        from stickslip.cli.output.summary import show_events
+
+        show_events(self.path.stem, dict(self.table.items()), self.about, self.problem)
+
+    @override
+    def draw(self, pictures: Pictures) -> list[Path]:
+        return pictures.draw_events(self.table, self.path.stem, "Pa" if self.problem is None else self.problem.load_unit)
+
+    @override
+    def to_csv(self, path: Path) -> Path:
+        """Write the slip events with the units of their columns, and return the path. Raises InputError if these are not known."""
+        from stickslip.foundation.atomic_write import write_table
+        from stickslip.solution.observables.event_table import with_units
+
+        if self.problem is None:
+            raise InputError(f"{self.path}: does not say of what body it is, so that its units are not known: leave out --csv")
+        return write_table(path, with_units(self.table, self.problem.load_unit), [made_by(self.about)])
+
+
+@dataclass(frozen=True)
+class Stored:
+    """The results in a file or folder, with its attributes, which say where they come from."""
+
+    path: Path
+    about: Mapping[str, Any]
+    results: Results
+    own_scenario: str | None = None
+    """The scenario as TOML text, where that is not simply the attribute."""
+
+    def scenario(self) -> str:
+        """Return the scenario as TOML text. Raises InputError if the file does not hold it."""
+        if self.own_scenario is not None:
+            return self.own_scenario
+        if "scenario" not in self.about:
+            raise InputError(f"{self.path}: does not hold its scenario: its checkpoint does, if it is beside it")
+        return str(self.about["scenario"])
+
+    def print_origin(self) -> None:
+        """Print which version made the results."""
+        if "source" in self.about:
+            made = clean(str(self.about["source"]))
+            say(console(), f"made by {made}; `stickslip show {self.path} --scenario` prints its scenario")
+
+
+def made_by(about: Mapping[str, Any]) -> str:
+    """Return the version that made results, as the comment of a file says it."""
+    return clean(str(about.get("source", "written by stickslip")))

@@ -1,0 +1,25 @@
+"""Write the motion of a contact of many nodes at its frames: the node in the middle as CSV, all of them as netCDF."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import stickslip
+from stickslip.solution.files.curves import checked_path, heading, write_columns
+
+if TYPE_CHECKING:
+    from stickslip.extensions.planar.solution import PlanarSolution
+
+
+def write_contact(run: PlanarSolution, path: Path) -> Path:
+    """Write the motion of a contact of many nodes at its frames, and return the path; see `PlanarSolution.to_csv`."""
+    if checked_path(path).suffix.lower() == ".nc":
+        from stickslip.foundation.netcdf_file import write
+
+        about = {"title": repr(run), "source": f"stickslip {stickslip.__version__}"}
+        return write(run.dataset().assign_attrs(about), path)
+    place = (slice(None), *(count // 2 for count in run.slab.shape))
+    units = {"slip": "m", "slip_rate": "m/s", "traction": "Pa", "heat": "J/m^2"}
+    curves = {heading(name, unit): getattr(run, name)[place] for name, unit in units.items()}
+    return write_columns(path, {heading("time", "s"): run.times} | curves)

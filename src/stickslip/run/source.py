@@ -1,0 +1,48 @@
+"""A run that is made, or read from a file, when it is asked for: what `compare` and `export` take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from stickslip.foundation.errors import InputError
+from stickslip.problem.scenarios import Scenario, load_scenario
+from stickslip.problem.scenarios.source import solved_by_core
+from stickslip.run.progress import Progress
+from stickslip.run.simulate import simulate
+from stickslip.run.study import uninterrupted
+from stickslip.solution.files.netcdf import read_solution
+from stickslip.solution.solution import Solution
+
+
+class RunSource(NamedTuple):
+    """A run to compare or to export: its name, and a function that runs or reads it, with a callback for its progress.
+
+    The function raises KeyboardInterrupt if Ctrl-C ends the run.
+    """
+
+    name: str
+    solution: Callable[[Progress | None], Solution]
+
+
+def read_source(
+    source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None, who: str = "compare"
+) -> RunSource:
+    """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
+
+    `duration` (s) and `rtol` replace those of a scenario; `who` begins messages. Raises InputError if `source` is none of these,
+    and if `duration` or `rtol` is given with a solution, which has been run already.
+    """
+    computed = isinstance(source, Solution)
+    if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
+        raise InputError(f"{'a solution' if computed else source}: has been run: leave out duration and rtol")
+    if isinstance(source, Solution):
+        return RunSource("run", lambda _: source)
+    if Path(str(source)).suffix == ".nc":
+        solution = read_solution(Path(str(source)))
+        return RunSource(Path(str(source)).stem, lambda _: solution)
+    scenario = solved_by_core(who, source if isinstance(source, Scenario) else load_scenario(source))
+    changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
+    return RunSource(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))

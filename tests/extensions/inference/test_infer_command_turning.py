@@ -1,0 +1,25 @@
+"""`infer` refuses slip in m of a contact that turns in one line."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.command_line import Command
+from tests.core.cli.turning import SCENARIOS, check_turning
+
+DOORS: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "infer": (
+        ("infer", "record.csv", "--free", "static"),
+        "record.csv: slip in m, where slip of a contact of TorsionalString is in rad",
+        "record.csv: slip in m, where slip of a contact of RotatingBlock is in rad",
+    ),
+}
+
+
+@pytest.mark.parametrize(("door", "body"), [*product(DOORS, SCENARIOS)])
+def test_every_command_takes_what_turns_with_its_units_or_refuses_it_by_name(command: Command, door: str, body: str) -> None:
+    words, of_string, of_disc = DOORS[door]
+    of_sections = of_string.replace("TorsionalString", "SectionedString")
+    check_turning(command, body, words, {"string": of_string, "sections": of_sections, "disc": of_disc}[body])
