@@ -12,7 +12,7 @@ from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
-from stickslip.engine.creep.stepper import CreepLeaps
+from stickslip.engine.creep.schedule import CreepLeaps
 from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.phase_index import standing_behind
 from stickslip.engine.history.status import Checkpoint, engine, merging_note, rounding_note, strips_note

@@ -14,7 +14,7 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.engine.creep.stepper import CreepLeaps
+from stickslip.engine.creep.schedule import CreepLeaps
 from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
 from stickslip.extensions.sweeps.batch import run_members
 from stickslip.foundation.units import to_si
