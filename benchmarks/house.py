@@ -202,12 +202,12 @@ class House:
     def circles(self, doors: Collection[str] = ()) -> dict[str, list[str]]:
         """Return for each folder names in it that import each other in a circle; a folder without a circle is left out.
 
-        At every depth within a room or an extension; names in annotations count. What `doors` import inside functions does not, and
-        between rooms their order decides.
+        At every depth within a room or an extension; names in annotations count. What `doors` import inside functions, or for type
+        checkers, does not, and between rooms their order decides.
         """
         beside: dict[str, dict[str, set[str]]] = {}
         for one, folder, own, other in self._beside:
-            if one.when != "later" or one.file not in doors:
+            if one.when == "eager" or one.file not in doors:
                 beside.setdefault(folder, {}).setdefault(own, set()).add(other)
         return {folder: circle for folder, imported in beside.items() if (circle := _circle_in(imported))}
 

@@ -1,4 +1,4 @@
-"""How the command line runs and shows each kind of run: with its whole history, as a catalogue of slip events, or by an extension."""
+"""How the command line runs and shows each kind of run: its whole history, a catalogue of slip events, or what an extension runs."""
 
 from __future__ import annotations
 

@@ -90,6 +90,7 @@ def run(
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.request import Request
+    from stickslip.cli.work import work_of
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
@@ -105,8 +106,11 @@ def run(
         energy=energy,
         pictures=pictures,
     )
-    request.check()
-    work, results = request.work, request.work.run(request)
+    request.check_source()
+    work = work_of(request)
+    request.check(work.suffix)
+    work.check(request)
+    results = work.run(request)
     results.summarise(everything=everything)
     announce(work.file(request), *write_files((csv, results.to_csv)), *results.draw(pictures))
     if line := work.how_to_go_on(request, results):

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 CONTACT = "contact"
 """The name of the table."""
-YES_OR_NO = Choice("true or false", ("true", "false"))
 
 
 class ContactTable(Table):
@@ -76,6 +75,7 @@ class ContactTable(Table):
         from stickslip.extensions.planar.contact import LOCKED
         from stickslip.extensions.planar.contact_table import PLACES, TAPER
         from stickslip.extensions.planar.nodes import varying
+        from stickslip.problem.scenarios.parameter_paths import YES_OR_NO
 
         yield from super().paths(value, problem)
         yield "replicas", YES_OR_NO

@@ -13,7 +13,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.planar.solution import PlanarSolution
-from stickslip.run.simulate import SOLVERS, SolverKind
+from stickslip.run.kinds import SolverKind, special_solver_of, special_solvers
+from stickslip.run.simulate import EXACT
 from tests.problems import SLAB
 
 WEAKENING = ss.friction.LinearSlipWeakening(0.6, 0.3, 2.0)
@@ -46,13 +47,15 @@ OBEYED: dict[str, tuple[Any, Callable[[Any], bool]]] = {
 
 
 def solver_of(problem: Any) -> SolverKind:
-    return next(one for one in SOLVERS if one.solves(problem))
+    return special_solver_of(problem) or EXACT
 
 
 def test_the_lists_above_are_complete() -> None:
-    assert {id(solver_of(one)) for one in SOLVED} == {id(one) for one in SOLVERS}
-    others = {"problem", "progress", "checkpoint", "checkpoint_every"}
-    assert set(OBEYED) == set(inspect.signature(ss.simulate).parameters) - others
+    solvers = (EXACT, *special_solvers())
+    assert {id(solver_of(one)) for one in SOLVED} == {id(one) for one in solvers}
+    others = {"problem", "progress", "checkpoint", "checkpoint_every", "of_solver"}
+    of_extensions = {name for one in special_solvers() for name in one.takes}
+    assert set(OBEYED) == {*inspect.signature(ss.simulate).parameters, *of_extensions} - others
 
 
 @pytest.mark.parametrize("option", OBEYED)
