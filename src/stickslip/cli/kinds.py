@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
-from stickslip.cli.results import EventsOfRun, RunResults, WholeRun
+from stickslip.cli.results import EventsOfRun, PlainRun, RunResults, WholeRun
 from stickslip.foundation.errors import InputError
 from stickslip.run.kinds import reader_of, special_solver_of
 from stickslip.run.progress import progress_line
@@ -54,9 +54,7 @@ def kind_of_run(request: Request) -> KindOfRun:
     solver = special_solver_of(request.chosen)
     if solver is None:
         return RunOfHistory() if request.catalogue is None else EventsOnly()
-    if solver.on_command_line is None:
-        raise InputError(f"run: {request.chosen.name}: is run by ss.simulate only")
-    return solver.on_command_line()
+    return PlainKindOfRun() if solver.on_command_line is None else solver.on_command_line()
 
 
 class RunOfHistory(KindOfRun):
@@ -139,6 +137,23 @@ class EventsOnly(KindOfRun):
     def how_to_go_on(self, request: Request, results: RunResults) -> str:
         assert isinstance(results, EventsOfRun)
         return _with_more_room(results.status, results.found.files[-1], request.most_pieces)
+
+
+class PlainKindOfRun(KindOfRun):
+    """A run of the solver of an extension that says no more: it is shown, and not kept."""
+
+    @override
+    def check(self, request: Request) -> None:
+        given = {"--out": request.out, "--energy": request.energy or None, **request.typed}
+        if needless := next((name for name, value in given.items() if value is not None), None):
+            raise InputError(f"run: {request.chosen.name}: a run of this kind has no {needless}: leave it out")
+        PlainRun(request.chosen, None).check(request.pictures, "run")
+
+    @override
+    def run(self, request: Request) -> PlainRun:
+        from stickslip.run.simulate import simulate
+
+        return PlainRun(request.chosen, simulate(request.chosen))
 
 
 def _with_more_room(status: Status, file: Path | None, pieces: int) -> str:

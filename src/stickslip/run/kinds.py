@@ -53,7 +53,7 @@ class SolverKind:
     refusal: str
     """The message for any other option; the first braces stand for its name, the second for what it is for."""
     on_command_line: Callable[[], KindOfRun] | None = None
-    """How the command line runs and shows it; None for one that it cannot run."""
+    """How the command line runs and shows it; None for the plain way: `PlainRun`."""
     examine: Callable[[Scenario], Examination] | None = None
     """What can be said of a scenario before it is run; None if nothing but what is given."""
 
