@@ -55,7 +55,7 @@ _OUTCOMES = (
 MEANINGS = {code: name for code, name, _ in _OUTCOMES}
 """Names of the codes."""
 CODES = {stop: code for code, _, stop in _OUTCOMES if stop is not None}
-"""The code of a member by the code that ended its run (`engine.state.layout`, `engine.history.status`)."""
+"""The code of a member by the code that ended its run (`engine.state.layout`, `trajectory.status`)."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
 PREFIX = "series_"
