@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.history.status import STATUSES
 from stickslip.extensions.sweeps.batch import run_members
+from stickslip.problem.run_status import STATUSES
 from tests.core.engine.creep_truth import printed
 
 DAYS = 3 * 86_400.0
