@@ -126,17 +126,25 @@ class House:
         return [one for one in self.imports if one.own not in self.extensions and one.room in self.extensions]
 
     def between_extensions(self) -> list[Import]:
-        """Return imports of an extension by another one that does not declare that it needs it."""
+        """Return imports of an extension by another one that it does not declare.
+
+        What an extension `needs` it may import. What it `uses` where it is there, it imports when it is used, and only from the
+        front, which is the package itself.
+        """
         there = self.extensions
         found = [one for one in self.imports if one.own in there and one.room in there]
-        return [one for one in found if one.room not in self.needs(one.own)]
+        return [one for one in found if one.room not in self.declared(one.own, "needs") and not self._is_used_lightly(one)]
 
-    def needs(self, extension: str) -> set[str]:
-        """Return the names of extensions that an extension declares as `needs`."""
+    def _is_used_lightly(self, one: Import) -> bool:
+        is_front = one.module == f"{self.package.name}.{EXTENSIONS}.{one.room}"
+        return one.room in self.declared(one.own, "uses") and one.when != "eager" and is_front
+
+    def declared(self, extension: str, kind: str) -> set[str]:
+        """Return the names of extensions that an extension declares as `needs`, or as `uses`."""
         found: set[str] = set()
         for node in ast.walk(self.trees.get(f"{EXTENSIONS}/{extension}/__init__.py", ast.Module([], []))):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-            if any(isinstance(one, ast.Name) and one.id == "needs" for one in targets):
+            if any(isinstance(one, ast.Name) and one.id == kind for one in targets):
                 found |= {one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)}
         return found
 
@@ -194,12 +202,12 @@ class House:
     def circles(self, doors: Collection[str] = ()) -> dict[str, list[str]]:
         """Return for each folder names in it that import each other in a circle; a folder without a circle is left out.
 
-        At every depth within a room or an extension; names in annotations count. What `doors` import inside functions does not, and
-        between rooms their order decides.
+        At every depth within a room or an extension; names in annotations count. What `doors` import inside functions, or for type
+        checkers, does not, and between rooms their order decides.
         """
         beside: dict[str, dict[str, set[str]]] = {}
         for one, folder, own, other in self._beside:
-            if one.when != "later" or one.file not in doors:
+            if one.when == "eager" or one.file not in doors:
                 beside.setdefault(folder, {}).setdefault(own, set()).add(other)
         return {folder: circle for folder, imported in beside.items() if (circle := _circle_in(imported))}
 

@@ -40,7 +40,7 @@ class Bounds:
 
     @property
     def doors(self) -> set[str]:
-        """Files whose imports inside functions may close a circle."""
+        """Files whose imports inside functions, or for type checkers, may close a circle."""
         return set(self.lists.get(DOORS, {}))
 
     def measured(self, house: House) -> dict[str, set[str]]:

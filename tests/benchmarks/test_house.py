@@ -97,6 +97,21 @@ def test_an_extension_that_takes_from_another_one_is_found_unless_it_declares_it
     assert len(other.lists()["between_extensions"]) == 1
 
 
+@pytest.mark.parametrize(
+    ("code", "is_fine"),
+    [
+        ("def f():\n    from stickslip.extensions.planar import solve", True),
+        ("from stickslip.extensions.planar import solve", False),
+        ("def f():\n    from stickslip.extensions.planar.solver import solve", False),
+        ("def f():\n    from stickslip.extensions.sweeps import sweep", False),
+    ],
+)
+def test_what_an_extension_only_uses_it_imports_from_the_front_and_when_it_is_used(make: Make, code: str, is_fine: bool) -> None:
+    uses = {"extensions/paper/__init__.py": 'class Paper:\n    uses = ("planar",)', "extensions/sweeps/__init__.py": ""}
+    house = make(uses | {"extensions/planar/__init__.py": "", "extensions/paper/report.py": code})
+    assert (house.lists()["between_extensions"] == set()) is is_fine
+
+
 def test_the_name_of_an_extension_in_a_text_is_found_and_in_a_docstring_is_none(make: Make) -> None:
     assert make({"run/simulate.py": '"""As stickslip.extensions.planar does."""'}).named_extensions() == []
     assert make({"run/simulate.py": 'HOME = "stickslip.extensions.planar"'}).named_extensions() == [

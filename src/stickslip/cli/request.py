@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import CATALOGUES, Target, check_targets
 from stickslip.cli.overrides import load_with, read
-from stickslip.cli.work import Work, work_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
 from stickslip.problem.scenarios.scenario import Scenario
@@ -40,33 +39,29 @@ class Request:
     energy: bool
     pictures: Pictures
 
-    def check(self) -> None:
-        """Refuse files that could not be written, options that exclude each other, and a size of memory that is none.
-
-        Raises InputError.
-        """
+    def check_source(self) -> None:
+        """Refuse a size of memory that is none, and nothing to run. Raises InputError."""
         chosen_memory()
         if self.scenario is None and self.resume is None:
             raise InputError("run: nothing to run: give a SCENARIO, or --resume FILE")
-        work = self.work
-        is_folder = work.suffix not in FILES_OF_CORE
+
+    def check(self, suffix: str) -> None:
+        """Refuse files that could not be written, that of --out must end in `suffix`, and options that exclude each other.
+
+        Raises InputError.
+        """
+        is_folder = suffix not in FILES_OF_CORE
         if is_folder and self.out is not None and self.out.exists():
             raise InputError(
                 f"--out {self.out}: exists: --resume {self.out} continues the run in it; choose another name, or remove it"
             )
         tables = Target("--catalogue", self.catalogue, CATALOGUES), Target("--csv", self.csv, (".csv",))
-        check_targets(Target("--out", self.out, (work.suffix,)), *tables, *self.pictures.targets())
+        check_targets(Target("--out", self.out, (suffix,)), *tables, *self.pictures.targets())
         self.pictures.check()
         as_begun = [self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")]
         if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
             options = "--set, --rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
             raise InputError(f"run: --resume goes on as the run began: leave out {options}")
-        work.check(self)
-
-    @cached_property
-    def work(self) -> Work:
-        """The kind of the run, which knows how it is done. Raises InputError."""
-        return work_of(self)
 
     @property
     def typed(self) -> dict[str, Any]:

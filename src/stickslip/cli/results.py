@@ -11,19 +11,25 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
-from stickslip.cli.output.show import console, say
+from stickslip.cli.output.files import drawing, write_files
+from stickslip.cli.output.show import console, say, titled
+from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import clean
+from stickslip.problem.run_status import Status
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.cli.output.pictures import Pictures
     from stickslip.problem.problem import Problem
-    from stickslip.problem.run_status import Status
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.run.catalogue import Catalogue
     from stickslip.solution.solution import Solution
+
+
+DONE = Status("finished", "the run is finished", ok=True)
+"""The status of a run that has none."""
 
 
 class Results(ABC):
@@ -92,7 +98,46 @@ class WholeRun(RunResults):
 
 
 @dataclass(frozen=True)
-class FoundEvents(RunResults):
+class PlainRun(RunResults):
+    """A run of the solver of an extension that says no more: its summary is its text; it may have `plot`, `to_csv` and `status`."""
+
+    scenario: Scenario
+    run: Any
+
+    @property
+    @override
+    def status(self) -> Status:
+        found: Status = getattr(self.run, "status", DONE)
+        return found
+
+    @override
+    def check(self, pictures: Pictures, where: str) -> None:
+        if others := [option for option in pictures.wanted if option != "--figure"]:
+            raise InputError(f"{where}: a run of this kind has --figure: leave out {', '.join(others)}")
+
+    @override
+    def summarise(self, *, everything: bool = False) -> None:
+        screen = titled(self.scenario)
+        for line in str(self.run).splitlines():
+            say(screen, clean(line))
+
+    @override
+    def draw(self, pictures: Pictures) -> list[Path]:
+        if pictures.figure is None:
+            return []
+        if not hasattr(self.run, "plot"):
+            raise InputError(f"run: {self.scenario.name}: a run of this kind has no figure: leave out --figure")
+        return write_files((pictures.figure, drawing(self.run.plot, pictures.look)))
+
+    @override
+    def to_csv(self, path: Path) -> Path:
+        if not hasattr(self.run, "to_csv"):
+            raise InputError(f"run: {self.scenario.name}: a run of this kind has no table: leave out --csv")
+        return write_atomically(path, self.run.to_csv)
+
+
+@dataclass(frozen=True)
+class EventsOfRun(RunResults):
     """The slip events that a run has just written to a catalogue."""
 
     scenario: Scenario

@@ -55,7 +55,7 @@ WORTH = 1.25
 """Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
 
 
-class Asked(Protocol):
+class AskedOfRun(Protocol):
     """Options of a run, of which a session needs only the numbers; `run.options.RunOptions` are such options."""
 
     @property
@@ -63,7 +63,7 @@ class Asked(Protocol):
         """How long and how accurately to run, and the largest number of pieces of history."""
 
 
-Options = TypeVar("Options", bound=Asked)
+Options = TypeVar("Options", bound=AskedOfRun)
 
 
 @dataclass(eq=False)

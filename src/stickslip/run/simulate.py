@@ -77,7 +77,7 @@ def simulate(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path, or a problem of an extension such as PlanarSlab
-        The problem itself, a scenario, the name of a bundled scenario (`stickslip.problem.scenarios` lists them), or a scenario file.
+        The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
         Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
         `duration`, `progress`, `checkpoint` and `checkpoint_every`, and `frames`.
     duration : float or str

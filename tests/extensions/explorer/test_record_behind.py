@@ -15,7 +15,7 @@ from stickslip.extensions.explorer.model.solve import solve
 from stickslip.extensions.explorer.model.strip import strip_range
 from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.extensions.explorer.page.panels import view_of
-from stickslip.extensions.inference.record.beside import RecordBeside
+from stickslip.extensions.inference.beside import RecordBeside
 from stickslip.extensions.inference.record.record import Record
 from stickslip.problem.scenarios.scenario import Scenario
 from tests.extensions.explorer.desk_at_once import DeskAtOnce

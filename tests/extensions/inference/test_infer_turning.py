@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.inference.record.beside import RecordBeside
+from stickslip.extensions.inference.beside import RecordBeside
 from stickslip.extensions.inference.record.record import Record
 
 RPM = math.pi / 30.0

@@ -89,6 +89,7 @@ def run(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
+    from stickslip.cli.kinds import kind_of_run
     from stickslip.cli.request import Request
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
@@ -105,11 +106,14 @@ def run(
         energy=energy,
         pictures=pictures,
     )
-    request.check()
-    work, results = request.work, request.work.run(request)
+    request.check_source()
+    kind = kind_of_run(request)
+    request.check(kind.suffix)
+    kind.check(request)
+    results = kind.run(request)
     results.summarise(everything=everything)
-    announce(work.file(request), *write_files((csv, results.to_csv)), *results.draw(pictures))
-    if line := work.how_to_go_on(request, results):
+    announce(kind.file(request), *write_files((csv, results.to_csv)), *results.draw(pictures))
+    if line := kind.how_to_go_on(request, results):
         typer.echo(line)
     _leave(results.status)
 

@@ -15,6 +15,7 @@ class ExplorerExtension(Extension):
     """The command `explore` and `ss.explore`."""
 
     name = "explorer"
+    uses = ("inference", "planar", "sweeps")
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `explore`."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
-    from stickslip.extensions.inference.record.beside import BesideRun as BesideRun
-    from stickslip.extensions.inference.record.beside import RecordBeside
+    from stickslip.extensions.inference.beside import BesideRun as BesideRun
+    from stickslip.extensions.inference.beside import RecordBeside
     from stickslip.problem.problem import Problem
 
 
@@ -50,7 +50,7 @@ def record_beside(source: Any, sensor: str, problem: Problem, who: str, **given:
 
     Raises InputError, which begins with `who` or with the name of the record.
     """
-    from stickslip.extensions.inference.record.beside import RecordBeside
+    from stickslip.extensions.inference.beside import RecordBeside
     from stickslip.extensions.inference.record.record import Record
 
     return RecordBeside.of(Record.read(source, **given), sensor, problem, who)

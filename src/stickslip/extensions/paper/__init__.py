@@ -11,6 +11,7 @@ class PaperExtension(Extension):
     """The command `paper`."""
 
     name = "paper"
+    uses = ("planar",)
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `paper`."""

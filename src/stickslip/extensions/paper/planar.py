@@ -18,10 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.extension import is_there
 from stickslip.extensions.paper.cases import Runs, problem, typed
-from stickslip.extensions.planar.pulses import pulses
-from stickslip.extensions.planar.slab import PROCESS_ZONE
-from stickslip.extensions.planar.solution import PlanarSolution
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, quantity, styled
 from stickslip.foundation.arrays import Floats
@@ -31,6 +29,8 @@ from stickslip.problem.problem import Problem
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from stickslip.extensions.planar import PlanarSolution
 
 PAPERS_EXCESS = 3430.0 / 0.5e8
 """The excess of the paper's slab (reconstructed) as a share of the amplitude of its friction: u0 = u_c + 1 mm."""
@@ -87,10 +87,12 @@ def problem_of(law: str, excess: float) -> Problem:
 
 def process_zone(like: Problem) -> float:
     """Return the length of the process zone of a slow front (m) for a problem of `pulsing` or `weakening`."""
+    from stickslip.extensions.planar import length_of_process_zone
+
     slab = as_slab(like.body)
     slip = like.law_slip + np.linspace(0.0, 20.0, 200_001)
     steepest = -float(np.min(np.diff(like.friction.coefficient(slip)))) / 1e-4 * slab.normal_stress
-    return PROCESS_ZONE * slab.shear_modulus / steepest
+    return length_of_process_zone(slab.shear_modulus, steepest)
 
 
 @dataclass(frozen=True)
@@ -133,7 +135,9 @@ def middle_rate(run: PlanarSolution) -> Floats:
 
 def pulses_of(rate: Floats) -> Any:
     """Return the number of pulses in slip rates (m/s), time first, that are maxima above LEAST_RATE."""
-    counted = pulses(rate.reshape(len(rate), -1), LEAST_RATE)
+    from stickslip.extensions.planar import count_pulses
+
+    counted = count_pulses(rate.reshape(len(rate), -1), LEAST_RATE)
     return counted if rate.ndim > 1 else int(counted[0])
 
 
@@ -185,6 +189,8 @@ def curve_of(shape: str) -> Floats:
 
 def curve_in_2d() -> tuple[Floats, str]:
     """Return time and slip rate in the middle of a line with L = 2 h, and where they are from: computed now, if JAX is there."""
+    if not is_there("planar"):
+        return curve_of("line"), "stored: the extension 'planar', which computes it, is not installed"
     fault = Fault(pulsing(LARGE), 2.0)
     try:
         run = ss.simulate(fault.slab, 2.0 * fault.problem.round_trip_time, frames=500)

@@ -8,12 +8,14 @@ step of time with these, and `solver.py` a run.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stickslip.extension import Extension
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.table import Table
+    from stickslip.extensions.planar.solution import PlanarSolution as PlanarSolution
+    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios.table import ScenarioTable
     from stickslip.run.kinds import Reader, SolverKind
 
 
@@ -28,7 +30,7 @@ class PlanarExtension(Extension):
 
         return (PLANAR,)
 
-    def tables(self) -> Mapping[str, Table]:
+    def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [contact]."""
         from stickslip.extensions.planar.table import ContactTable
 
@@ -46,3 +48,39 @@ class PlanarExtension(Extension):
 
 
 EXTENSION = PlanarExtension()
+
+
+# ---- what other extensions may use -----------------------------------------------------------------------------------------------
+
+
+def usual_frames() -> int:
+    """Return the number of frames in each two-way travel time that a run keeps if nobody says otherwise."""
+    from stickslip.extensions.planar.run import FRAMES
+
+    return FRAMES
+
+
+def memory_of_run(scenario: Scenario) -> float:
+    """Return the memory (bytes) that the run of a scenario with a [contact] needs, besides that of Python and its libraries."""
+    from stickslip.extensions.planar.run import memory_of
+    from stickslip.extensions.planar.table import contact_of, planar_slab_of
+
+    slab, frames = planar_slab_of(scenario), contact_of(scenario).frames
+    return memory_of(slab.alone_for(scenario.duration)[0], scenario.duration, frames or usual_frames())
+
+
+def count_pulses(rate: Any, threshold: float) -> Any:
+    """Return the number of slip pulses at each node, as `pulses.pulses` says."""
+    from stickslip.extensions.planar.pulses import pulses
+
+    return pulses(rate, threshold)
+
+
+def length_of_process_zone(modulus: float, fall: float) -> float:
+    """Return the length (m) over which friction falls behind a slow front.
+
+    `modulus` is the shear modulus (Pa), and `fall` the steepest fall of friction with slip (Pa/m).
+    """
+    from stickslip.extensions.planar.slab import PROCESS_ZONE
+
+    return PROCESS_ZONE * modulus / fall

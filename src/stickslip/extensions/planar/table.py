@@ -13,7 +13,7 @@ from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
-from stickslip.problem.scenarios.table import Table
+from stickslip.problem.scenarios.table import ScenarioTable
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.contact import Contact
@@ -25,10 +25,9 @@ if TYPE_CHECKING:
 
 CONTACT = "contact"
 """The name of the table."""
-YES_OR_NO = Choice("true or false", ("true", "false"))
 
 
-class ContactTable(Table):
+class ContactTable(ScenarioTable):
     """The table [contact]: a grid along the contact, and what varies along it."""
 
     name = CONTACT
@@ -76,6 +75,7 @@ class ContactTable(Table):
         from stickslip.extensions.planar.contact import LOCKED
         from stickslip.extensions.planar.contact_table import PLACES, TAPER
         from stickslip.extensions.planar.nodes import varying
+        from stickslip.problem.scenarios.parameter_paths import YES_OR_NO
 
         yield from super().paths(value, problem)
         yield "replicas", YES_OR_NO

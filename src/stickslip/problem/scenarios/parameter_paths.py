@@ -63,7 +63,7 @@ class ParameterPath:
         value = value.strip() if isinstance(value, str) else value
         if value == STEADY and self.name in MAY_BE_STEADY:
             return STEADY
-        value = str(value).lower() if isinstance(value, bool) and self.declared is YES_OR_NO else value
+        value = str(value).lower() if isinstance(value, bool) and self.declared == YES_OR_NO else value
         return self.declared.check(where, self.name, value)
 
     def put(self, document: dict[str, Any], value: float | str) -> None:
@@ -71,7 +71,7 @@ class ParameterPath:
         owner, key = place_of(self.name, document)
         if self.written:
             owner[key] = f"{value!r} {self.written}"
-        elif self.declared is YES_OR_NO:
+        elif self.declared == YES_OR_NO:
             owner[key] = value == "true"
         else:
             owner[key] = int(value) if self.counts and isinstance(value, float) and value.is_integer() else value

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
+from functools import cached_property
 from typing import Any, Literal
 
+from stickslip.extension import tables
 from stickslip.extensions.explorer.model.ranges import SliderRange, range_of
-from stickslip.extensions.explorer.model.setting import Setting
-from stickslip.extensions.planar.contact import Contact
-from stickslip.extensions.planar.run import FRAMES
-from stickslip.extensions.planar.table import CONTACT
+from stickslip.extensions.explorer.model.setting import CONTACT, Setting
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
@@ -45,7 +44,6 @@ PARTS_OF_PATCH = {"y[0]": "from y", "y[1]": "to y", "taper": "taper"}
 """Names of the numbers of a patch."""
 RARE_IN_CONTACT = ("frames", "courant", "taper")
 """Numbers of a contact and its patches that are seldom changed."""
-DEFAULTS_OF_CONTACT = {one.name: one.default for one in fields(Contact)} | {"taper": 0.0}
 FINITE_DRIVER = ("loading.far_stress", "loading.far_stress_rate", "body.driver_inertia", "body.driver_integral_gain")
 """Numbers that a rigid driver does not have."""
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
@@ -58,9 +56,19 @@ EMPTY = {
     "loading.far_stress": "the initial load",
     "run.creep_rtol": "automatic",
     "run.shortest_event": "automatic",
-    "contact.frames": f"{FRAMES}",
 }
 """What an empty field of a number stands for that has neither a default nor need be given."""
+
+
+def empty_of(path: str) -> str:
+    """Return what an empty field of an optional number stands for."""
+    if path == f"{CONTACT}.frames":
+        from stickslip.extensions.planar import usual_frames
+
+        return str(usual_frames())
+    return EMPTY.get(path, "none")
+
+
 PARTLESS = tuple(kind for kind, law in LAWS.items() if not any(isinstance(entry, LawField) for entry, _ in fields_of(law).values()))
 """Kinds of laws that may be a part of another law."""
 
@@ -220,17 +228,22 @@ class _Tables:
         run = self.of("run", body, ())
         yield replace(run, controls=tuple(one for one in run.controls if one.path == "run.duration"))
 
+    @cached_property
+    def usual_contact(self) -> Mapping[str, Any]:
+        """The numbers of a contact and its patches that need not be given, as the table declares them."""
+        return {one.name: one.default for one in fields(tables()[CONTACT].kind())} | {"taper": 0.0}
+
     def of_contact(self, one: ParameterPath) -> Control:
         """Return the control of a number of the contact or of one of its patches."""
         inside = one.name.rpartition("].")[2].removeprefix(f"{CONTACT}.")
         label = PARTS_OF_PATCH.get(inside, inside.replace(".", " ").replace("_", " "))
         rare, value = inside in RARE_IN_CONTACT, self.setting.value(one.name)
         if isinstance(one.declared, Choice):
-            text = str(DEFAULTS_OF_CONTACT.get(inside) if value is None else value).lower()
+            text = str(self.usual_contact.get(inside) if value is None else value).lower()
             return Control(
                 one.name, label, one.declared.meaning, "choice", text, choices=one.declared.allowed, declared=one.declared
             )
-        control = self.number(one.name, label, one.declared, DEFAULTS_OF_CONTACT.get(inside), rare)
+        control = self.number(one.name, label, one.declared, self.usual_contact.get(inside), rare)
         return replace(control, kind="whole") if one.counts else control
 
     def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[ControlGroup]:
@@ -318,7 +331,7 @@ class _Tables:
         if path == "initial.rate" and self.problem.friction.sticks:
             return "rest"
         if default is None:
-            return EMPTY.get(path, "none")
+            return empty_of(path)
         return entry.word if math.isinf(default) else f"{default:g}"
 
     def named(self, path: str, name: str) -> Control:

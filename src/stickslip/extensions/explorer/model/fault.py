@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stickslip.extensions.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
 from stickslip.extensions.explorer.model.words import short
-from stickslip.extensions.planar.run import FRAMES, memory_of, simulate_planar
-from stickslip.extensions.planar.solution import PlanarSolution
-from stickslip.extensions.planar.table import contact_of, planar_slab_of
 from stickslip.foundation.errors import InputError
 from stickslip.problem.given_units import in_given_units
 from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.run.options import options_of
+from stickslip.run.simulate import simulate
+
+if TYPE_CHECKING:
+    from stickslip.extensions.planar import PlanarSolution
 
 MOST_MEMORY = 1e9
 """Memory (bytes) that the run of a page may take: several pages are open at once."""
@@ -50,14 +51,15 @@ def solve_fault(scenario: Scenario, told: Told) -> FaultAnswer:
 
     Raises InputError, in one line, if the run needs more memory than a page may take.
     """
-    slab, frames = planar_slab_of(scenario), contact_of(scenario).frames
-    needed = memory_of(slab.alone_for(scenario.duration)[0], scenario.duration, frames or FRAMES)
+    from stickslip.extensions.planar import memory_of_run
+
+    needed = memory_of_run(scenario)
     if needed > MOST_MEMORY:
         raise InputError(
             f"{scenario.name}: this run needs {needed / 1e9:.3g} GB, and a page has {MOST_MEMORY / 1e9:g} GB: take fewer nodes, a"
             " shorter duration, or `stickslip run`"
         )
-    run = simulate_planar(scenario, options_of(scenario, progress=lambda report: told(str(report))))
+    run: Any = simulate(scenario, progress=lambda report: told(str(report)))
     sentences = run.sentences
     return FaultAnswer(
         scenario=scenario,

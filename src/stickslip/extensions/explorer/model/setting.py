@@ -20,7 +20,6 @@ from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import Any, Self
 
-from stickslip.extensions.planar.table import CONTACT
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.problem.scenarios import library
@@ -29,6 +28,8 @@ from stickslip.problem.scenarios.parameter_paths import place_of
 from stickslip.problem.scenarios.scenario import Scenario, scenario_of
 from stickslip.problem.scenarios.schema import TABLES, kind_of
 
+CONTACT = "contact"
+"""The table of scenario files that tells of a fault, which an extension adds: where it is not there, there are no faults."""
 DEEPEST = 5
 """Largest number of parts in a path."""
 

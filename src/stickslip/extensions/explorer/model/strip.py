@@ -1,7 +1,8 @@
 """A strip: what a few hundred runs of one setting give while a single parameter moves through a range.
 
-The runs are those of a sweep, and a page has no strip where the extension for sweeps is not there. Where the compiled batch can do them, two hundred take a few hundredths of a second; scenarios that
-it cannot do are run one after the other, with a line on the progress.
+The runs are those of a sweep, and a page has no strip where the extension for sweeps is not there. Where the compiled batch can do
+them, two hundred take a few hundredths of a second; scenarios that it cannot do are run one after the other, with a line on the
+progress.
 """
 
 from __future__ import annotations

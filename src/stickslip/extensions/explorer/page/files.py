@@ -207,9 +207,11 @@ def _written(suffix: str, write: Callable[[Path], object]) -> bytes:
 
 
 def _figure(answer: Any, kind: str) -> bytes:
-    from stickslip.extensions.planar import figure as planar
     from stickslip.figures.runs import run
+    from stickslip.figures.sheet import StickslipFigure
     from stickslip.figures.style import image
 
     with _DRAWING:
-        return image(planar.draw(answer.run) if isinstance(answer, FaultAnswer) else run.draw(answer.solution), kind)
+        if isinstance(answer, FaultAnswer):
+            return image(answer.run.plot(figure=StickslipFigure()), kind)
+        return image(run.draw(answer.solution), kind)

@@ -38,9 +38,9 @@ class BatchResult(NamedTuple):
 
     `results` has one number for each member, by the name of the quantity; NaN for a member whose parameters are invalid, and
     `reason` says in one line why, by its index. `status` says what ended each run, in codes of
-    `stickslip.problem.run_status.STATUSES`. `seconds` is the processor time of all members, and `alone` that of each member that ran
-    by itself, because its history is long or because it creeps for long (s). Members that must run by themselves and have been left
-    for `later` (see `defer`) have the status INTERRUPTED.
+    `stickslip.problem.run_status.STATUSES`. `seconds` is the processor time of all members, and `alone` that of each member that
+    ran by itself, because its history is long or because it creeps for long (s). Members that must run by themselves and have been
+    left for `later` (see `defer`) have the status INTERRUPTED.
     """
 
     results: dict[str, Floats]
