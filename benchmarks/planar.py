@@ -17,7 +17,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
-from tests.core.run.reference.convolution import convolution
+from tests.extensions.planar.convolution import convolution
 from tests.extensions.planar.planar_methods import PlanarCase, SlipWeakeningAtNodes, volume
 
 import stickslip as ss

@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 import stickslip as ss
-from stickslip.engine.on_demand import PARTS, part_at
+from stickslip.engine.on_demand import PARTS, function_of, part_at
 from stickslip.run.check.examine import examine
 
 SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block", "stress-pulse-slab", "second-event-perfect-delay")
@@ -15,8 +15,8 @@ SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block",
 
 def main() -> None:
     """Run and check, and do what the tests of extensions need; the machine code stays in the cache on disk."""
-    for part in PARTS.values():
-        part_at(part)
+    for part in PARTS:
+        part_at(function_of(part))
     for name in SCENARIOS:
         scenario = ss.load_scenario(name)
         repr(ss.simulate(scenario))  # with events and all else that a summary compiles

@@ -12,6 +12,7 @@ from benchmarks.house import CORE, EXTENSIONS, House
 from benchmarks.rooms import BOUNDS, Bounds
 
 import stickslip
+from stickslip.engine.history.status import DECIDE
 
 PACKAGE = Path(stickslip.__file__).parent
 HOUSE = House(PACKAGE)
@@ -128,6 +129,11 @@ def _home(module: str, name: str) -> str:
 def _file(module: str) -> Path | None:
     path = PACKAGE.joinpath(*module.split(".")[1:])
     return next((one for one in (path.with_suffix(".py"), path / "__init__.py") if one.is_file()), None)
+
+
+def test_every_room_that_decides_a_run_is_in_the_key_of_a_checkpoint() -> None:
+    """What stands below friction serves all, and figures and the command line decide nothing."""
+    assert set(DECIDE) == set(CORE) - {"foundation", "figures", "cli"}
 
 
 def test_importing_the_package_is_light() -> None:

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.table import Table
+    from stickslip.problem.scenarios.table import ScenarioTable
     from stickslip.run.kinds import Reader, SolverKind
 
 GROUP = "stickslip.extensions"
@@ -50,7 +50,7 @@ class Extension:
         """Return solvers for kinds of problems that the core cannot run, each with the options that it takes."""
         return ()
 
-    def tables(self) -> Mapping[str, Table]:
+    def tables(self) -> Mapping[str, ScenarioTable]:
         """Return tables of scenario files, such as [contact], by their names."""
         return {}
 
@@ -215,7 +215,7 @@ def _gathered(ask: Callable[[Extension], Mapping[str, T]], what: str) -> dict[st
 
 
 @cache
-def tables() -> Mapping[str, Table]:
+def tables() -> Mapping[str, ScenarioTable]:
     """Return the tables that extensions add to scenario files, by their names."""
     return _gathered(lambda one: one.tables(), "table")
 

@@ -13,7 +13,10 @@ import pytest
 from tests.docs.pages import PAGES, ROOT
 
 SRC = ROOT / "src" / "stickslip"
-OF_CODE = [ROOT / "docs" / name for name in ("architecture.md", "glossary.md", "guarantees.md", "numerics.md", "adding-a-law.md")]
+OF_CODE = [
+    ROOT / "docs" / f"{name}.md"
+    for name in ("architecture", "inside-the-engine", "glossary", "guarantees", "numerics", "adding-a-law")
+]
 """The pages that are about the code."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 CODE = re.compile(r"`([^`\n]+)`")

@@ -114,17 +114,18 @@ def engine() -> Iterator[Finding]:
 
     from stickslip.engine.compile.numba_privates import WHY_PLAIN
     from stickslip.engine.compile.uncompiled import UNCOMPILED
+    from stickslip.foundation.sealed_files import cache_root
 
     way = f", plainly ({WHY_PLAIN}): first starts take some three times as long" if WHY_PLAIN else ""
     shown = f"llvmlite {version} for {get_host_cpu_name()}{way}"
     slow = "STICKSLIP_UNCOMPILED is set, so that runs take a hundred times longer or more: unset it"
     yield Finding("compiler", "not used" if UNCOMPILED else shown, slow if UNCOMPILED else "")
-    yield compiled_code(cache.cache_root(), f"compiled-{cache.SOURCES}")
+    yield compiled_code(cache_root(), f"compiled-{cache.SOURCES}")
 
 
 def compiled_code(root: Path, name: str) -> Finding:
     """Return how much compiled code is kept in a folder of the cache; a folder that cannot be written is a fault."""
-    from stickslip.engine.compile.private_folder import private_folder
+    from stickslip.foundation.private_folder import private_folder
 
     try:
         folder = private_folder(root / name)

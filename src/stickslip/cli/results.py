@@ -137,7 +137,7 @@ class PlainRun(RunResults):
 
 
 @dataclass(frozen=True)
-class FoundEvents(RunResults):
+class EventsOfRun(RunResults):
     """The slip events that a run has just written to a catalogue."""
 
     scenario: Scenario

@@ -12,7 +12,7 @@ from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
-from stickslip.engine.creep.stepper import CreepLeaps
+from stickslip.engine.creep.schedule import CreepLeaps
 from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.phase_index import standing_behind
 from stickslip.engine.history.status import Checkpoint, engine, merging_note, rounding_note, strips_note
@@ -55,7 +55,7 @@ WORTH = 1.25
 """Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
 
 
-class Asked(Protocol):
+class AskedOfRun(Protocol):
     """Options of a run, of which a session needs only the numbers; `run.options.RunOptions` are such options."""
 
     @property
@@ -63,7 +63,7 @@ class Asked(Protocol):
         """How long and how accurately to run, and the largest number of pieces of history."""
 
 
-Options = TypeVar("Options", bound=Asked)
+Options = TypeVar("Options", bound=AskedOfRun)
 
 
 @dataclass(eq=False)

@@ -33,9 +33,11 @@ def lazy_names(package: str, file: str) -> tuple[Get, Callable[[], list[str]]]:
             return listed()
         if name in of_core:
             module, inside = of_core[name]
-            found = import_module(f"{package}.{name}") if module == package else _inside(module, inside)
+            found = import_module(f"{package}.{inside}") if module == package else _inside(module, inside)
             setattr(sys.modules[package], name, found)
             return found
+        if "." in package and _is_module(Path(file).parent, name):  # `from stickslip.figures import style` asks for it here first
+            return import_module(f"{package}.{name}")
         if name in homes and name not in public_names(package):
             raise _missing(package, name, homes[name][0])
         return others(name)
@@ -58,6 +60,10 @@ def _inside(module: str, name: str) -> Any:
     """Return what a module has under a name; a module of a package may be it, too."""
     home = import_module(module)
     return getattr(home, name) if hasattr(home, name) else import_module(f"{module}.{name}")
+
+
+def _is_module(folder: Path, name: str) -> bool:
+    return (folder / f"{name}.py").is_file() or (folder / name / "__init__.py").is_file()
 
 
 def _missing(package: str, name: str, home: str) -> AttributeError:

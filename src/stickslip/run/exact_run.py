@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from typing_extensions import override
@@ -16,24 +18,30 @@ from stickslip.problem.run_quantities import default_event_rate
 from stickslip.problem.run_status import STATUSES, Crowd, Status
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Doing, Pace, Report
-from stickslip.solution.observables.event_stream import EventStream, Look
 from stickslip.solution.solution import Solution
+
+if TYPE_CHECKING:
+    from stickslip.solution.observables.event_stream import EventStream, Look
 
 
 @dataclass(eq=False)
 class ExactRun(Session[RunOptions]):
     """A session with its slip events, an implementation of `run.solver.Solver`."""
 
-    stream: EventStream = field(init=False)
-    """The slip events, each reported once."""
     keeps_events_only: bool = False
     """True if the history is discarded on the way, for a catalogue."""
     looked: Checkpoint | None = None
     """State before the first step since events were counted or forgotten; None if the run never has to return there."""
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.stream = EventStream(default_event_rate(self.problem))
+    @cached_property
+    def stream(self) -> EventStream:
+        """The slip events, each reported once; many runs never ask for them."""
+        return self._new_stream()
+
+    def _new_stream(self) -> EventStream:
+        from stickslip.solution.observables.event_stream import EventStream
+
+        return EventStream(default_event_rate(self.problem))
 
     @override
     def advance(self, budget: int) -> int:
@@ -117,7 +125,7 @@ class ExactRun(Session[RunOptions]):
     def _full(self) -> Status:
         """Return the status of a run whose history is full, with remedies; measures that begin after its end would not help."""
         options, history = self.options, self.history()
-        trips, cures, stream = history.store.trip, [], EventStream(default_event_rate(self.problem))
+        trips, cures, stream = history.store.trip, [], self._new_stream()
         stream.look(history).tell()
         if not self.keeps_events_only and 2 * stream.needed(history) > self.length:
             cures.append("a catalogue, which keeps events only")

@@ -19,7 +19,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
-    from stickslip.cli.work import Work
+    from stickslip.cli.kinds import KindOfRun
     from stickslip.run.check.examine import Examination
     from stickslip.run.options import RunOptions
 
@@ -52,7 +52,7 @@ class SolverKind:
     """Names of fields of `RunOptions`, of options of its own, and "selection", which replaces the problem's."""
     refusal: str
     """The message for any other option; the first braces stand for its name, the second for what it is for."""
-    work: Callable[[], Work] | None = None
+    on_command_line: Callable[[], KindOfRun] | None = None
     """How the command line runs and shows it; None for the plain way: `PlainRun`."""
     examine: Callable[[Scenario], Examination] | None = None
     """What can be said of a scenario before it is run; None if nothing but what is given."""
@@ -89,7 +89,7 @@ class Reader:
         """Return a `stickslip.cli.results.Stored`, which `stickslip show` shows. Raises InputError if it is damaged."""
         raise InputError(f"{path}: holds {self.what}, which is not shown")
 
-    def work(self) -> Work:
+    def on_command_line(self) -> KindOfRun:
         """Return how the command line continues and shows a run. Raises InputError if it cannot."""
         raise InputError(f"run: --resume continues a run, not {self.what}")
 

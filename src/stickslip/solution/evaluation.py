@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.history.history import History, Positions, Side
-from stickslip.engine.history.tables import shocks_table
 from stickslip.foundation.arguments import NamesAttributes, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
@@ -18,11 +16,12 @@ from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
-from stickslip.solution.observables.at_driver import AtDriver, at_driver, fronts_at_driver
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from stickslip.engine.history.history import History, Positions, Side
+    from stickslip.solution.observables.at_driver import AtDriver
     from stickslip.solution.observables.field import Field
 
 Curve = Literal[
@@ -134,6 +133,8 @@ class Readings(NamesAttributes):
         return self.drive_traction(t, side)
 
     def _at_driver(self, t: ArrayLike | None, side: Side) -> tuple[AtDriver, tuple[int, ...]]:
+        from stickslip.solution.observables.at_driver import at_driver
+
         time = self._times(t)
         return at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
 
@@ -185,6 +186,8 @@ class Readings(NamesAttributes):
         Columns: time (s); cause (start, fold, echo, loading, healing); rate_before and rate_after (m/s); traction_before and
         traction_after (Pa); rule (the selection rule; empty if the slip rate is unique without one).
         """
+        from stickslip.engine.history.tables import shocks_table
+
         return shocks_table(self.history)
 
     @property
@@ -225,6 +228,8 @@ class Readings(NamesAttributes):
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points))
         if set(names) <= set(AT_DRIVE):
+            from stickslip.solution.observables.at_driver import fronts_at_driver
+
             fronts = fronts_at_driver(self.history)
             breaks = fronts[(fronts >= start) & (fronts <= end)]
             if not self.problem.body.is_uniform:  # each time takes a replay of all waves

@@ -10,10 +10,6 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.engine.history.history import History
-from stickslip.engine.history.reach import Reach, reach_of
-from stickslip.engine.history.status import Checkpoint
-from stickslip.engine.history.tables import creep_note, creep_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, exactly, how_long, html_table
@@ -23,9 +19,6 @@ from stickslip.problem.run_quantities import check_event_rate, default_event_rat
 from stickslip.problem.run_status import Status
 from stickslip.problem.scenarios.scenario import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
-from stickslip.solution.observables.event_table import events_table
-from stickslip.solution.observables.proof_of_run import ProofOfRun, proof_of_run
-from stickslip.solution.window import Window, window_around
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,9 +26,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from stickslip.engine.history.history import History
+    from stickslip.engine.history.reach import Reach
+    from stickslip.engine.history.status import Checkpoint
     from stickslip.foundation.place import Place
     from stickslip.solution.observables.predictability import Predictability
+    from stickslip.solution.observables.proof_of_run import ProofOfRun
     from stickslip.solution.observables.rule_influence import RuleInfluence
+    from stickslip.solution.window import Window
 
 
 class SolutionPlots(Plots["Solution"]):
@@ -115,6 +113,8 @@ class Solution(Exports):
         longer to compute. Columns and units are those of EVENT_COLUMNS and ENERGY_COLUMNS in
         `stickslip.solution.observables.event_table`.
         """
+        from stickslip.solution.observables.event_table import events_table
+
         return events_table(self.history, self._rate(event_rate), energy)
 
     def _rate(self, event_rate: float | str | WithUnit | None) -> float:
@@ -155,11 +155,15 @@ class Solution(Exports):
         Within a leap the slip is an average over round trips. It is right to within the error; the true slip oscillates around it
         by half of its growth in one round trip. Slip rate, traction and load are averages too.
         """
+        from stickslip.engine.history.tables import creep_table
+
         return creep_table(self.history)
 
     @property
     def creep_note(self) -> str:
         """One line on the leaps over creep; empty if there are none."""
+        from stickslip.engine.history.tables import creep_note
+
         return creep_note(self.history)
 
     def window(
@@ -175,6 +179,8 @@ class Solution(Exports):
         other times (s, or texts with a unit). Local times are exact to their own rounding, however late in the run the event is.
         Raises InputError if there is no such event, and if `before` or `after` is not a finite time of the right sign.
         """
+        from stickslip.solution.window import window_around
+
         return window_around(self, self._row(event), before, after)
 
     def _row(self, event: int | pd.Series) -> pd.Series:
@@ -254,6 +260,8 @@ class Solution(Exports):
     @cached_property
     def reach(self) -> Reach:
         """How far the contact has gone: its displacement at the end (m, or rad), and the largest one with its time (s)."""
+        from stickslip.engine.history.reach import reach_of
+
         return reach_of(self.history)
 
     @property
@@ -271,6 +279,8 @@ class Solution(Exports):
     @cached_property
     def proven(self) -> ProofOfRun:
         """What is proven of the run: how far it misses the contact equation at any moment, and its other equations."""
+        from stickslip.solution.observables.proof_of_run import proof_of_run
+
         return proof_of_run(self.history)
 
     @cached_property

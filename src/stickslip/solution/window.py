@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from stickslip.engine.history.history import Epoch, History
-from stickslip.engine.history.tables import shocks_table
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.quantities import Quantity
@@ -71,6 +70,8 @@ class Window(Exports):
     @cached_property
     def shocks(self) -> pd.DataFrame:
         """The shocks within the time that is shown: the table of `Solution.shocks`, in local time."""
+        from stickslip.engine.history.tables import shocks_table
+
         return shocks_table(self.history, *self.shown)
 
     def event_slip(self, t: ArrayLike | None = None) -> Floats:

@@ -120,7 +120,7 @@ def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.Monkey
     monkeypatch.setattr("stickslip.run.run_loop.LARGEST_BUDGET", 100)  # so that it does not end before anybody can interrupt
     monkeypatch.setattr("stickslip.run.run_loop.FIRST_BUDGET", 100)
     with monkeypatch.context() as patch:
-        patch.setattr("stickslip.cli.work.progress_line", interrupting)
+        patch.setattr("stickslip.cli.kinds.progress_line", interrupting)
         shown = command("run", "cycles-block", *option)
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "interrupted: stopped by the user" in shown.out

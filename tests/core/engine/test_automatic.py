@@ -14,9 +14,8 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.engine.creep.stepper import CreepLeaps
+from stickslip.engine.creep.schedule import CreepLeaps
 from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
-from stickslip.extensions.sweeps.batch import run_members
 from stickslip.foundation.units import to_si
 from stickslip.problem.limits import AUTOMATIC_SHARE, creep_tolerance
 from stickslip.problem.run_codes import Stop
@@ -143,22 +142,6 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
     assert creep_tolerance(printed(1), 0.0, rtol) == 0.0
 
 
-@pytest.mark.slow
-def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
-    """Members that creep for long are run alone, the others are not changed by that."""
-    scenario = replace(ss.load_scenario("fig5-slab-printed"), duration=DAYS)
-    pulls = np.array([0.0, 1.0]) * scenario.problem.pull_rate
-    found = run_members(scenario, {"loading.pull_rate": pulls}, ("events", "slip", "peak_time"))
-    for n, pull in enumerate(pulls):
-        run = creeping(float(pull))
-        assert STATUSES[int(found.status[n])] == run.status
-        assert found.results["events"][n] == len(run.events)
-        peak = run.events.peak_time[run.events.peak_rate.idxmax()]
-        assert found.results["peak_time"][n] == pytest.approx(peak, rel=1e-14, abs=0.0)
-        slip = float(run.slip(run.duration)) - run.problem.initial_slip
-        assert found.results["slip"][n] == pytest.approx(slip, rel=2e-14, abs=1e-14)
-
-
 # ---- ever shorter events ------------------------------------------------------------------------------------------------------
 
 
@@ -193,7 +176,7 @@ def test_runs_below_the_critical_value_finish() -> None:
     assert np.bincount(run.history.store.trip).max() < 3 * MOST_PIECES
 
 
-def test_lumped_runs_can_be_resumed_streamed_and_batched(tmp_path: Path) -> None:
+def test_lumped_runs_can_be_resumed_and_streamed(tmp_path: Path) -> None:
     problem, end = weakening(0.15, thickness=1e3), 9.0
     whole = ss.simulate(problem, end)
     for stop in (7.0, 8.9):
@@ -203,11 +186,6 @@ def test_lumped_runs_can_be_resumed_streamed_and_batched(tmp_path: Path) -> None
     table = ss.catalogue(problem, end)
     pd.testing.assert_frame_equal(table, whole.catalogue(), check_exact=True)
     assert table.attrs["lumping"] == whole.lumping_note
-    scenario = replace(ss.load_scenario("fig6-slab"), problem=problem, duration=end)
-    found = run_members(scenario, {"friction.alpha": np.array([1.0, 0.15])}, ("events", "slip"))
-    slip = float(whole.slip(end)) - problem.initial_slip
-    assert found.results["slip"][1] == pytest.approx(slip, rel=1e-12, abs=0.0)
-    assert found.results["events"][1] == len(whole.events)
 
 
 def test_laws_of_slip_lump_nothing() -> None:

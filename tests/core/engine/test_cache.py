@@ -16,10 +16,11 @@ from unittest.mock import Mock
 import pytest
 
 from stickslip.engine.compile import one_module
-from stickslip.engine.compile.cache import read_sealed, write_sealed
 from stickslip.engine.compile.kernels import _checksum_of
-from stickslip.engine.compile.private_folder import NotPrivateError, private_folder
+from stickslip.foundation import sealed_files
 from stickslip.foundation.atomic_write import DRAFT
+from stickslip.foundation.private_folder import NotPrivateError, private_folder
+from stickslip.foundation.sealed_files import read_sealed, write_sealed
 
 SCRIPT = """
 import stickslip as ss
@@ -208,8 +209,8 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
     def full(path: Path, write: Callable[[Path], object]) -> Path:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
-    monkeypatch.setattr(cache, "write_atomically", full)
-    cache.tell.cache_clear()
+    monkeypatch.setattr(sealed_files, "write_atomically", full)
+    sealed_files.tell.cache_clear()
     assert kernel(lambda x: 2.0 * x)(21.0) == 42.0
     assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
 
@@ -237,6 +238,13 @@ def test_what_is_no_file_of_the_cache_is_not_read(stands: str, tmp_path: Path) -
     reader.start()
     reader.join(20.0)
     assert found == [b"", None, False]
+
+
+def test_what_is_larger_than_any_file_of_the_cache_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sealed_files, "LARGEST_FILE", 100)
+    for size, there in ((10, True), (100, False)):  # the seal is part of the file
+        write_sealed(tmp_path / str(size), bytes(size))
+        assert (tmp_path / str(size)).exists() == there
 
 
 def test_a_file_of_another_user_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

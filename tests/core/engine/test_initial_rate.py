@@ -12,11 +12,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.extensions.studies.separation import disturbed
-from stickslip.extensions.sweeps.batch import why_not
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import FrictionLaw
-from stickslip.problem.scenarios import Scenario
 from stickslip.run.check.stability import start_of
 from tests.messages import refused
 
@@ -298,14 +295,11 @@ def test_scenario_and_file_keep_the_initial_rate_bit_for_bit(initial: str, rate:
     assert np.array_equal(ss.resume(tmp_path / "half.nc", 0.2).slip_rate(times), run.slip_rate(times))
 
 
-def test_the_initial_rate_can_be_swept_and_set(tmp_path: Path) -> None:
+def test_the_initial_rate_can_be_set(tmp_path: Path) -> None:
     path = tmp_path / "start.toml"
     path.write_text(SCENARIO.replace("INITIAL", 'load = "60 MN"\nstate = "0.2 s"'))
     scenario = ss.load_scenario(path)
     assert scenario.with_values({"initial.rate": "2 mm/s"}).problem.rate == 2e-3
-    swept = ss.sweep(scenario, {"initial.rate": [-1e-3, 1e-2]}, quantities=["slip"])
-    alone = [float(ss.simulate(scenario.with_values({"initial.rate": rate})).slip(0.2)) for rate in (-1e-3, 1e-2)]
-    assert swept["slip"].to_numpy().tolist() == alone
     assert scenario.with_values({"initial.rate": 2e-3}).problem.parameters["initial.rate"].put(1e-5).rate == 1e-5
 
 
@@ -328,25 +322,10 @@ class Smooth(FrictionLaw):
         return 0.0, self.top
 
 
-def test_a_law_without_state_starts_so_too_and_is_no_case_for_a_batch() -> None:
+def test_a_law_without_state_starts_so_too() -> None:
     """S top v / (v + rate) = load at v = rate load / (S top - load)."""
     block = ss.SpringBlock(1.0, 100.0, 10.0)
     problem = ss.Problem(block, Smooth(0.6, 1e-3), initial_load=-1.0)
     assert problem.rate == pytest.approx(-1e-3 / 5.0, rel=1e-15)
     steady = ss.Problem(block, Smooth(0.6, 1e-3), pull_rate=1e-2)
     assert ss.simulate(steady, 5.0).slip_rate(np.linspace(0.0, 5.0, 50)) == pytest.approx(1e-2, rel=1e-12)
-    assert "starts at a slip rate of its own" in why_not(Scenario(steady, 5.0), ["friction.top"], ["slip"])
-    sticks = ss.Problem(block, STICKING, pull_rate=1e-2, initial_rate="steady")
-    assert "a batch starts from rest" in why_not(Scenario(sticks, 5.0), [], ["slip"])
-    light = Scenario(ss.Problem(replace(SLAB, contact_mass=0.0), Smooth(0.6, 1e-3), pull_rate=1e-2, initial_load=1e7), 5.0)
-    assert "starts at a slip rate of its own" in why_not(light, ["body.contact_mass"], ["slip"])
-    assert why_not(light, ["friction.top"], ["slip"]) == ""
-
-
-def test_a_disturbed_start_has_the_state_of_the_undisturbed_one() -> None:
-    for body in (BLOCK, BODIES["slab, half-space"]):
-        steady = ss.Problem(body, LAW, pull_rate=SPEED)
-        pushed = disturbed(steady, 1.0)
-        assert pushed.load == steady.load + 1.0
-        assert pushed.states == pytest.approx(steady.states, rel=1e-14)
-        assert pushed.rate == pytest.approx(steady.rate * (1.0 + 1.0 / (NORMAL * LAW.a)), rel=1e-9)

@@ -244,10 +244,6 @@ def test_what_is_too_quick_or_stands_on_moving_ground_is_refused() -> None:
 
 def test_what_does_not_follow_a_machine_says_so() -> None:
     problem = ss.Problem(slab(0.5, 0.6, 0.2), COULOMB, pull_rate=0.03, initial_excess=-2e4)
-    with pytest.raises(InputError, match="mass or an integral gain is followed in 1D only"):
-        ss.PlanarSlab(problem, nodes=32, length=1e3)
-    with pytest.raises(InputError, match="mass or an integral gain is not in the schemes"):
-        ss.studies.schemes(problem, 10.0 * T)
     with pytest.raises(InputError, match="mass or an integral gain is not in it"):
         StuckSlab(problem.body, 1e5, 0.1)
     with pytest.raises(InputError, match="masses or an integral gain"):

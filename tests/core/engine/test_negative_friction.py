@@ -12,7 +12,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.extensions.sweeps.execution.chunk import MEANINGS
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 WITH_MASS = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e4)
@@ -74,14 +73,6 @@ def test_leaps_over_creep_do_not_pass_over_a_dip(depth: float) -> None:
     assert run.creep["round_trips"].sum() > 7000
     assert run.status.name == "negative friction"
     assert path_of(run) == pytest.approx(20.0 * math.acos(-(1.0 - depth)), abs=1e-5)
-
-
-def test_a_sweep_tells_which_members_friction_would_drive() -> None:
-    law, _ = dipping(0.3, 5.0, 1e-3)
-    means = np.array([0.3 * (1.0 - 1e-3), 0.3 * (1.0 + 1e-3)])
-    problem = ss.Problem(SLAB, law, initial_excess=1e8)
-    found = ss.sweep(problem, {"m": means}, duration=60.0)
-    assert [MEANINGS[code] for code in found["status"].values.tolist()] == ["negative_friction", "locked_for_ever"]
 
 
 def test_a_law_that_is_known_to_stay_above_zero_is_not_watched() -> None:

@@ -125,8 +125,6 @@ for run in (ss.simulate("fig6-slab"), ss.simulate(slab, 8.0), ss.simulate("rate-
     print(*(f"{one:.12g}" for one in (bounds.sum(), bounds.max())))
     bounds[:] = 0.0
     print(hashlib.sha256(run.history.store.pieces.tobytes()).hexdigest())
-found = ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0, 2.0]})
-print(found.slip.values.tobytes().hex())
 """
 
 
@@ -143,10 +141,10 @@ def test_folds_are_the_same_bit_for_bit(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_runs_and_batches_are_the_same_bit_for_bit(tmp_path: Path) -> None:
+def test_runs_are_the_same_bit_for_bit(tmp_path: Path) -> None:
     """But for the bounds of residuals, to 12 digits: LLVM may join a product and a sum in one of them and not in the other."""
     ours, plain, said = both_ways(RUNS, tmp_path)
     assert ours == plain
-    assert ours.count("\n") == 7
+    assert ours.count("\n") == 6
     assert "is used plainly (STICKSLIP_PLAIN_NUMBA is set)" in said
     assert list((tmp_path).rglob("plain/**/*.nbc"))

@@ -13,7 +13,6 @@ import pytest
 import stickslip as ss
 from stickslip.engine.history.turning_points import TURNS, Spare, descend
 from stickslip.run import catalogue as module
-from tests.extensions.sweeps.batch.cases import CASES as MEMBERS
 from tests.problems import IMPEDANCE, NORMAL, ROUND, SLAB
 
 F = ss.friction
@@ -134,7 +133,8 @@ def test_a_thousand_events_keep_their_onsets_while_their_history_is_forgotten(mo
 
 def test_slips_that_touch_are_events_of_their_own_at_every_rate() -> None:
     """The rounding of the slip rate where it touches zero no longer decides whether two slips are one."""
-    run = ss.simulate(MEMBERS["parabolic"].scenario.problem, 60.0)
+    law = ss.friction.ParabolicSlipWeakening(0.6, 0.4, 0.4)
+    run = ss.simulate(ss.Problem(SLAB, law, pull_rate=0.01, initial_excess=0.0), 60.0)
     every, fast = run.catalogue(0.0), run.events
     touching = int(
         ((run.history.store.rate[1:, 0] == 0.0) & (np.diff(run.history.store.mode) == 0))[run.history.store.mode[1:] != 0].sum()

@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine import on_demand
-from stickslip.engine.on_demand import PARTS
+from stickslip.engine.on_demand import PARTS, function_of
 from stickslip.engine.session import Session
 from stickslip.engine.state.layout import EnginePart, NearFold
 from stickslip.engine.state.workspace import Run
@@ -39,6 +39,11 @@ def test_a_run_gets_the_parts_that_it_needs(what: str, monkeypatch: pytest.Monke
     assert {part for part, address in zip(PARTS, on_demand._at_hand, strict=True) if address} - {EnginePart.ECHO_QUEUE} == parts
     if problem is DIPPING:
         assert run.slip(run.history.duration) == pytest.approx(3.0 * math.asin(60.0 / 61.0), rel=1e-6)
+
+
+def test_each_part_is_a_kernel_in_its_module() -> None:
+    assert set(PARTS) == set(EnginePart) - {EnginePart.NONE}
+    assert {part: function_of(part).__name__ for part in PARTS} == {part: part.name.lower() for part in PARTS}
 
 
 def passed(takes_part_away: bool) -> tuple[int, np.ndarray]:

@@ -6,8 +6,6 @@ Each case runs in a process of its own, with laws that no process has compiled: 
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
@@ -16,34 +14,8 @@ from uuid import uuid4
 import pytest
 
 from stickslip.engine.compile.lock import LOCK, made_once
+from tests.core.engine.at_once import SETTING, python
 
-SETTING = """
-import hashlib, sys, threading
-import stickslip as ss
-
-def law(n):
-    new = int(hashlib.sha256(f"{sys.argv[1]} {n}".encode()).hexdigest()[:12], 16) / 16**12
-    return f"0.6 + {0.1 + 0.01*new!r}/(1 + v) + 0.02*exp(-u/3)"
-
-def problem(n):
-    slab = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
-    return ss.Problem(slab, law(n), pull_rate=1e-9, initial_excess=0.0)
-
-def slip(one):
-    return float(ss.simulate(one, 20.0).slip(20.0))
-
-def at_once(work, count):
-    found, gate = [None] * count, threading.Barrier(count)
-    def begin(n):
-        gate.wait()
-        found[n] = work(n)
-    threads = [threading.Thread(target=begin, args=(n,)) for n in range(count)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return found
-"""
 CASES = {
     "one problem": """
 one = problem(0)
@@ -64,44 +36,18 @@ one = problem(0)
 found = dask.compute(*[dask.delayed(slip)(one) for _ in range(16)], scheduler="threads", num_workers=8)
 assert len(set(found)) == 1, found
 """,
-    "runs, sweeps and checks": """
+    "runs and checks": """
 from stickslip.run.check.examine import examine
 scenario = ss.load_scenario("fig6-slab")
 kinds = (
     lambda: slip(problem(0)),
-    lambda: float(ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]}, quantities=["slip"]).slip[0]),
     lambda: str(examine(scenario)),
     lambda: float(ss.simulate("fig6-slab").events.slip.iloc[0]),
 )
-found = at_once(lambda n: kinds[n % 4](), 8)
-assert found[:4] == found[4:], found
-""",
-    "eight pages of the explorer": """
-from queue import Queue
-from stickslip.extensions.explorer.model.solve import solve
-from stickslip.extensions.explorer.server.desk import ThreadDesk
-from stickslip.problem.scenarios.scenario import Scenario
-calls, found, faults, scenario = Queue(), [], [], Scenario(problem(0), 20.0)
-desks = [ThreadDesk(calls.put) for _ in range(8)]
-for desk in desks:
-    desk.ask(lambda told: solve(scenario, told).sentence, found.append, faults.append)
-while len(found) + len(faults) < 8:
-    calls.get(timeout=600)()
-assert len(set(found)) == 1 and not faults, (found, faults)
+found = at_once(lambda n: kinds[n % 3](), 9)
+assert found[:3] == found[3:6] == found[6:], found
 """,
 }
-
-
-ANNOUNCED = "stickslip: compiling", "stickslip: numba"
-"""How lines begin that say why one has to wait."""
-
-
-def python(code: str, *arguments: str, **environment: str) -> None:
-    """Run a script in another process, which must end well and say nothing of its own accord."""
-    settings = os.environ | {"OPENBLAS_NUM_THREADS": "1"} | environment
-    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False, env=settings)
-    said = [line for line in done.stderr.splitlines() if not line.startswith(ANNOUNCED)]
-    assert (done.returncode, said) == (0, [])
 
 
 @pytest.mark.sampled(every=6)

@@ -1,4 +1,4 @@
-"""How the engine is compiled: the lean compiler, the key of machine code, and the engine as plain Python."""
+"""How the engine is compiled: the lean compiler, and the engine as plain Python."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import os
 import re
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,61 +16,12 @@ from numba import njit, types
 from numba.core.compiler import run_frontend
 from numba.core.errors import TypingError
 
-from stickslip.engine.compile.cache import compiled_sources, key_of, read_sealed, remembered_key, write_sealed
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.compile.numba_privates import LLVM_LOCK
 from stickslip.engine.compile.one_module import LeanCompiler
 from stickslip.engine.compile.shortcuts import _variables_in
 from stickslip.engine.history.turning_points import search_history
 from tests.core.engine.uncompiled_runs import RUNS, results
-
-TEXT = b'''"""Say what this is."""
-
-WIDTH = 2.0
-"""Width, m."""
-
-
-def twice(x):
-    """Return twice x."""
-    return WIDTH * x
-'''
-
-
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [(b"Return twice x.", b"Double x."), (b"Width, m.", b"Width."), (b"is.", b"was."), (b"* x", b"* x  # why"), (b"\n\n\n", b"\n")],
-)
-def test_texts_and_layout_leave_the_key(before: bytes, after: bytes) -> None:
-    changed = TEXT.replace(before, after)
-    assert changed != TEXT
-    assert key_of([changed]) == key_of([TEXT])
-
-
-@pytest.mark.parametrize(("before", "after"), [(b"2.0", b"2.5"), (b"WIDTH * x", b"x * WIDTH"), (b"twice(x)", b"thrice(x)")])
-def test_every_change_of_code_changes_the_key(before: bytes, after: bytes) -> None:
-    changed = TEXT.replace(before, after)
-    assert changed != TEXT
-    assert key_of([changed]) != key_of([TEXT])
-
-
-def test_code_that_moves_to_another_file_changes_the_key() -> None:
-    assert key_of([TEXT, b""]) != key_of([b"", TEXT])
-
-
-def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    few = compiled_sources()[:3]  # a key of all of them takes a second
-    monkeypatch.setattr("stickslip.engine.compile.cache.compiled_sources", lambda: few)
-    key = key_of(path.read_bytes() for path in few)
-    assert remembered_key(tmp_path) == key
-    (kept,) = tmp_path.iterdir()
-    write_sealed(kept, b"0" * len(key))
-    assert remembered_key(tmp_path) == "0" * len(key)  # what is read is used
-    write_sealed(tmp_path / "another", b"1" * len(key))
-    for damaged in (b"\xff damaged", b"1" * len(key), (tmp_path / "another").read_bytes()):
-        kept.write_bytes(damaged)
-        assert remembered_key(tmp_path) == key
-        assert read_sealed(kept) == key.encode()
-    assert remembered_key(tmp_path / "missing") == key
 
 
 def steps(x: float, n: int) -> float:

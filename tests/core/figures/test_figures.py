@@ -17,7 +17,7 @@ from stickslip.contact.steady import steady_traction
 from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
-from stickslip.figures.style import BLUE, INK, image
+from stickslip.figures.style import INK, image
 from stickslip.foundation.axis import Axis
 from tests.core.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, illegible, labels, size_of
 
@@ -219,8 +219,7 @@ def test_systems_are_compared_over_the_same_time_in_the_same_units(side_by_side:
 
 
 def test_figures_are_legible_and_name_their_units(side_by_side: xr.Dataset) -> None:
-    study = ss.studies.schemes("fig4-loop", scheme=["contact-mass", "lag"], cells=[100, 400])
-    for figure, shown in ((comparison.draw(side_by_side), 8), (study.plot(), 6), (draw(ss.simulate(SLAB_PROBLEM, 7.0)), 4)):
+    for figure, shown in ((comparison.draw(side_by_side), 8), (draw(ss.simulate(SLAB_PROBLEM, 7.0)), 4)):
         assert len(labels(figure)) == shown
         assert all(has_unit(text) for text in labels(figure))
         assert illegible(figure) == []
@@ -230,35 +229,6 @@ def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: 
     side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
     again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
     assert image(comparison.draw(side_by_side), "png", 50.0) == image(comparison.draw(again), "png", 50.0)
-
-
-def test_an_ensemble_draws_what_members_share_and_how_they_separate() -> None:
-    study = ss.studies.ensemble(
-        ss.Problem(SLAB, LAW, pull_rate=0.1, initial_excess=1.0), 700 * SLAB.two_way_time, members=3, size=1e-4
-    )
-    figure = study.plot()
-    lines, growth = figure.axes
-    blue = [line for line in lines.lines if line.get_color() == BLUE]
-    assert [len(line.get_xdata()) for line in blue] == [len(study.table), *study.has.sum(axis=1)]
-    assert sum(len(line.get_xdata()) for line in lines.lines if line.get_marker() == "|") == sum(map(len, study.catalogues))
-    assert growth.get_yscale() == "log"
-    measured = next(line for line in growth.lines if line.get_label() == "measured")
-    assert list(measured.get_ydata()) == [1.0, *study.growth.growth]
-    assert lines.get_xlim() == growth.get_xlim()
-    for axes in figure.axes:
-        assert axes.get_title(loc="left")
-        assert axes.has_data()
-    key = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert {"(b) measured, median", "(b) measured, least to most", "(b) running maximum of the prediction"} <= set(key)
-    assert ("events not shared" in key) == (study.table.members.min() < 3)
-
-
-@pytest.mark.slow
-def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:
-    for excess, duration in ((-1e6, 100.0), (-1e6, 1.0), (0.0, 1.0)):
-        study = ss.studies.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=excess), duration, members=2)
-        assert image(study.plot(), "png", 50.0)
-    assert study.catalogues[0].empty
 
 
 def test_years_are_shown_as_years() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import re
 from collections.abc import Callable
 from functools import cache
@@ -14,7 +13,6 @@ import stickslip as ss
 from stickslip.cli.app import COMMANDS
 from stickslip.cli.main import main
 from stickslip.foundation.errors import MOST_NAMED, InputError, meant, nearest
-from stickslip.foundation.synonyms import last, plain, rows
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.parameter_paths import find_parameter, parameter_paths
 from stickslip.problem.scenarios.scenario import read_scenario
@@ -96,11 +94,7 @@ WORDS = [
     (["RUN", "fig6-slab"], "did you mean 'run'?"),
     (["find", "fig6-slab", "--what", "stuck"], "did you mean 'sticking'?"),
     (["simulate"], "did you mean 'run'?"),
-    (["gui"], "did you mean 'explore'?"),
-    (["calibrate"], "did you mean 'infer'?"),
-    (["scan"], "did you mean 'sweep'?"),
     (["run.nc"], "did you mean `stickslip show run.nc`?"),
-    (["data.csv"], "did you mean `stickslip fit data.csv` or `stickslip infer SCENARIO data.csv --free NAMES`?"),
     (["run", "fig6-slab", "--rule", "maxwell"], "did you mean '--selection'?"),
     (["run", "fig6-slab", "--output", "a.nc"], "did you mean '--out'?"),
     (["run", "fig6-slab", "--plot", "a.png"], "did you mean '--figure'?"),
@@ -108,46 +102,14 @@ WORDS = [
     (["run", "fig6-slab", "--tol", "3"], "did you mean '--rtol'?"),
     (["run", "fig6-slab", "--params", "a=3"], "did you mean '--set'?"),
     (["run", "fig6-slab", "--max_events", "3"], "did you mean '--events'?"),
-    (["run", "fig6-slab", "--law", "coulomb"], "there is no option --law; it is an option of fit; `"),
-    (["run", "fig6-slab", "--quantity", "slip"], "there is no option --quantity; it is an option of show and sweep; `"),
-    (["run", "fig6-slab", "--vary", "a=1,2"], "it is an option of sweep; did you mean '--set'?"),
-    (["check", "fig6-slab", "--dry-run"], "it is an option of sweep; `"),
-    (["check", "fig6-slab", "-q", "slip"], "there is no option -q; it is an option of show and sweep; `"),
     (["new", "slab", "--law", "coulomb"], "did you mean '--friction'?"),
     (["new", "slab", "--loading", "steps"], "did you mean '--pull'?"),
-    (["sweep", "fig6-slab", "--param", "a=1,2"], "did you mean '--set' or '--vary'?"),
-    (["find", "drill-string", "--vary", "rpm"], "it is an option of sweep; did you mean '--set' or '--along'?"),
-    (["infer", "a.toml", "a.csv", "--parameters", "a,b"], "it is an option of check; did you mean '--set' or '--free'?"),
-    (["infer", "a.toml", "a.csv", "--bounds", "a,b"], "did you mean '--bound'?"),
-    (["--duration", "3"], "there is no option --duration; it is an option of run, export, compare, find, sweep and others; `"),
-    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "displacement"], "did you mean 'slip'?"),
-    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "vmax"], "did you mean 'peak_rate'?"),
-    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "stress_drop"], "did you mean 'first_traction_drop' or 'first_static_drop'?"),
-    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "n_events"], "did you mean 'events'?"),
     (["run", "newmark"], "did you mean 'sliding-block-shaken'?"),
     (["run", "block"], "`stickslip new block > block.toml` writes one to start from"),
     (["new", "axis"], "did you mean 'reversing-axis'"),
     (["new", "slab", "--friction", "rsf"], "did you mean 'rate-and-state'?"),
     (["new", "slab", "--friction", "stribeck"], "did you mean 'exponential-stribeck' or 'power-stribeck'?"),
     (["new", "slab", "--pull", "sine"], "did you mean 'sinusoidal'?"),
-    (
-        ["infer", "data.csv", "--free", "a"],
-        "infer: the scenario comes first, and then the data: `stickslip infer SCENARIO data.csv ...`",
-    ),
-    (["infer", "data.lvm"], "infer: the scenario comes first, and then the data: `stickslip infer SCENARIO data.lvm ...`"),
-    (
-        ["infer", "a.csv", "b.csv", "--free", "a"],
-        "and then the data: `stickslip infer SCENARIO a.csv b.csv --free",
-    ),
-    (
-        ["infer", "a.csv", "mine.toml", "--free", "a"],
-        "and then the data: `stickslip infer mine.toml a.csv --free",
-    ),
-    (["infer", "mine.toml"], "infer: DATA is missing, after the scenario: `stickslip infer mine.toml DATA ...`"),
-    (["fit", "mine.toml"], "fit: mine.toml is a scenario, and points come first here: `stickslip fit DATA`;"),
-    (["fit", "fig6-slab"], "fit: fig6-slab is a scenario, and points come first here: `stickslip fit DATA`;"),
-    (["fit", "mine.toml", "a.csv"], "'a.csv' is not expected; to follow a record: `stickslip infer mine.toml a.csv --free NAMES`"),
-    (["find", "mine.toml", "a.csv"], "'a.csv' is not expected; to follow a record: `stickslip infer mine.toml a.csv --free NAMES`"),
 ]
 
 
@@ -272,53 +234,3 @@ def test_the_list_that_answers_point_at_has_every_name(capsys: pytest.CaptureFix
         main(["check", "drill-string", "--parameters"])
     shown = {line.split()[0] for line in capsys.readouterr().out.splitlines() if line.split()}
     assert {one.name for one in parameter_paths(scenario("drill-string"))} <= shown
-
-
-@cache
-def every_name() -> set[str]:
-    """Return, in their plain form, the names that the package has at its doors."""
-    from stickslip.cli.app import _built
-    from stickslip.extensions.inference.fit.free import known_numbers
-    from stickslip.extensions.inference.fit.setup import SENSORS
-    from stickslip.extensions.sweeps.design.quantities import QUANTITIES as OF_SWEEPS
-    from stickslip.figures.sheet import KEYWORDS
-    from stickslip.foundation.headings import COLUMNS
-    from stickslip.foundation.names import QUANTITIES
-    from stickslip.problem.bodies import BODIES
-    from stickslip.problem.loading import HISTORIES
-    from stickslip.problem.scenarios.schema import TABLES, keys_of
-    from stickslip.problem.selection_rule import SELECTION_RULES
-    from stickslip.run.find import WHAT
-
-    registered = (
-        BODIES,
-        ss.friction.LAWS,
-        HISTORIES,
-        WHAT,
-        OF_SWEEPS,
-        QUANTITIES,
-        COLUMNS,
-        SELECTION_RULES,
-        KEYWORDS,
-        SENSORS,
-        TABLES,
-        ("contact",),
-    )
-    found = {name for table in registered for name in table} | set(COMMANDS) | set(library.STARTERS) | set(library.names())
-    kinds = [*BODIES.values(), *ss.friction.LAWS.values(), *HISTORIES.values()]
-    found |= {key for table in TABLES for kind in kinds for key in keys_of(table, kind)}
-    found |= {option for command in COMMANDS for one in _built(command).params for option in one.opts}
-    found |= {name for module in (ss, ss.friction, ss.studies, ss.loading) for name in module.__all__}
-    found |= set(known_numbers(scenario("rate-and-state-block").problem, {})) | {
-        one.name for one in parameter_paths(scenario("fig6-slab"))
-    }
-    found |= {*dir(run()), *run().events.columns, *dir(scenario("fig6-slab").problem), *dir(ss.studies.compare(run(), run()))}
-    for call in (ss.simulate, ss.catalogue, ss.sweep, ss.studies.infer, ss.friction.fit):
-        found |= set(inspect.signature(call).parameters)
-    return {plain(name) for name in found}
-
-
-def test_each_name_that_a_word_leads_to_is_one_of_ours_and_each_word_is_none_of_its_own() -> None:
-    ours = every_name()
-    assert [name for name, _ in rows() if ours.isdisjoint({plain(name), plain(last(name))})] == []
-    assert [(name, word) for name, words in rows() for word in words if plain(name) == plain(word)] == []

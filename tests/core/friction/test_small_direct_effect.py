@@ -86,10 +86,3 @@ def test_flash_heating_that_would_lose_its_friction_at_high_rates_is_refused() -
         ss.InputError, match=r"^FlashHeating: a must be at least 0\.00015 with this reference, b and rate, got 0\.0001$"
     ):
         F.FlashHeating(0.2, 1e-4, 0.03, 0.4, 0.1, 0.1)
-
-
-def test_a_fault_whose_a_crosses_the_limit_is_refused_by_name() -> None:
-    slab = ss.ElasticSlab(2800.0, 3500.0, 1e3, 5e7)
-    problem = ss.Problem(slab, F.RateAndState(0.6, 0.01, 0.015, 1e-3), initial_load=3e7, initial_state=1e3)
-    with pytest.raises(ss.InputError, match="the formula of friction would differ from node to node"):
-        ss.PlanarSlab(problem, nodes=8, length=1e4, along={"friction.a": np.full(8, 1e-4)})

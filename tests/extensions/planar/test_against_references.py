@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.planar.solver import PlanarSolver
-from tests.core.run.reference.convolution import convolution
+from tests.extensions.planar.convolution import convolution
 from tests.extensions.planar.planar_cases import weakening_patch, weakening_plane
 from tests.extensions.planar.planar_methods import PlanarCase, volume
 

@@ -19,7 +19,7 @@ from stickslip.extensions.planar.reference import (
     linear_fracture_energy,
 )
 from stickslip.run.reference.slab import growth_rate
-from tests.core.run.reference.convolution import convolution
+from tests.extensions.planar.convolution import convolution
 from tests.extensions.planar.planar_cases import slip_difference, weakening_patch, weakening_plane
 from tests.extensions.planar.planar_methods import (
     FrictionalVolume,

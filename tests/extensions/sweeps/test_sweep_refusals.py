@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
+import stickslip as ss
 from tests.command_line import Command, check_refusal
 
 FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
@@ -39,3 +43,16 @@ CASES = [
 @pytest.mark.parametrize(("arguments", "message"), CASES)
 def test_bad_input_gives_one_line_and_writes_nothing(command: Command, arguments: list[str], message: str) -> None:
     check_refusal(command, arguments, message)
+
+
+@pytest.mark.parametrize("path", ["pipe.png", "/dev/zero"])
+def test_a_list_that_is_no_ordinary_file_is_not_waited_for(command: Command, path: str) -> None:
+    check_refusal(command, ["sweep", "fig6-slab", "--list", path], f"--list {path}: not an ordinary file")
+
+
+def test_the_store_of_a_sweep_is_told_from_a_scenario(tmp_path: Path) -> None:
+    store = tmp_path / "map.zarr"
+    ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]}, out=store)
+    said = f"{store}: a folder of results, not a scenario: `stickslip show {store}` summarises them"
+    with pytest.raises(ss.InputError, match=f"^{re.escape(said)}$"):
+        ss.load_scenario(store)

@@ -89,8 +89,8 @@ def run(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
+    from stickslip.cli.kinds import kind_of_run
     from stickslip.cli.request import Request
-    from stickslip.cli.work import work_of
 
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
@@ -107,13 +107,13 @@ def run(
         pictures=pictures,
     )
     request.check_source()
-    work = work_of(request)
-    request.check(work.suffix)
-    work.check(request)
-    results = work.run(request)
+    kind = kind_of_run(request)
+    request.check(kind.suffix)
+    kind.check(request)
+    results = kind.run(request)
     results.summarise(everything=everything)
-    announce(work.file(request), *write_files((csv, results.to_csv)), *results.draw(pictures))
-    if line := work.how_to_go_on(request, results):
+    announce(kind.file(request), *write_files((csv, results.to_csv)), *results.draw(pictures))
+    if line := kind.how_to_go_on(request, results):
         typer.echo(line)
     _leave(results.status)
 

@@ -3,12 +3,11 @@
 Machine code and pickles from the cache folder are executed. The folder must therefore belong to this user alone (see
 `private_folder`). If there is no such folder, each process compiles for itself.
 
-Every file carries a checksum, because LLVM does not check what it loads: of 300 machine codes with one wrong bit 30 ended the
-process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is compiled again.
+Every file carries a checksum (`sealed_files`), because LLVM does not check what it loads: of 300 machine codes with one wrong bit 30
+ended the process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is compiled again.
 
-The name of the folder contains a hash of all code that is compiled, so that an edited kernel never meets its old machine code. It
-is made from Python's bytecode: an edited comment, docstring or line break leaves it as it is. To make the bytecode takes a tenth of
-a second, so the hash is kept on disk, too, under a hash of the files themselves.
+The name of the folder contains the key of all code that is compiled (`code_key`), so that an edited kernel never meets its old
+machine code, and an edited comment, docstring or line break leaves it as it is.
 
 The cache has a largest size. The files that have not been used for longest are removed, whichever version of the code they belong
 to; a process that still needs one compiles it again.
@@ -18,33 +17,24 @@ from __future__ import annotations
 
 import hashlib
 import os
-import shutil
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
-from types import CodeType
 
 import numba
-import platformdirs
 
-from stickslip.engine.compile.private_folder import private_folder
 from stickslip.engine.compile.uncompiled import UNCOMPILED
-from stickslip.foundation.atomic_write import read_bounded, write_atomically
+from stickslip.foundation.code_key import key_of_files
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.private_folder import private_folder
+from stickslip.foundation.sealed_files import cache_root, read_sealed, tell, write_sealed
 
 LARGEST_CACHE = 500_000_000
 """Largest size (bytes) of the cache; beyond it, the least recently used files are removed."""
-LARGEST_FILE = 50_000_000
-"""Largest size (bytes) of a file of the cache, far more than any machine code takes; what is larger is neither written nor read."""
 LOOK_AFTER = 10_000_000
 """The size of the cache is looked at again after a process has written this many bytes, so that a long one keeps the bound."""
-SEAL = b"stickslip cache 1\n"
-"""First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
-OF_SEAL = len(SEAL) + hashlib.sha256().digest_size
-"""Number of bytes before the content of a file."""
-NOT_COMPILED = ("cache.py", "lock.py", "private_folder.py")
+NOT_COMPILED = ("cache.py", "lock.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 COMPILED_FOLDERS = (
     *(
@@ -79,8 +69,6 @@ COMPILED_FILES = (
 """Other files that hold compiled functions, or constants that compiled functions use; tests/test_rooms.py checks the list."""
 VERSIONS = f"{numba.__version__} {sys.version}"
 """The versions of numba and Python, because machine code depends on them, too."""
-DIGITS = 16
-"""Number of hexadecimal digits of a key."""
 
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
@@ -88,59 +76,7 @@ elif numba.config.DISABLE_JIT:
     raise InputError("NUMBA_DISABLE_JIT is set, and the engine needs the compiler: unset it, or set STICKSLIP_UNCOMPILED=1, too")
 
 
-@cache
-def tell(message: str) -> None:
-    """Write a message to standard error on one line, once for each distinct message."""
-    sys.stderr.write(f"stickslip: {' '.join(message.split())}\n")
-
-
-def cache_root() -> Path:
-    """Return the folder of all caches: STICKSLIP_CACHE_DIR if that is set, otherwise one in the user's cache folder."""
-    chosen = os.environ.get("STICKSLIP_CACHE_DIR")
-    return Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
-
-
-# ---- files with a checksum -------------------------------------------------------------------------------------------------
-
-
-def write_sealed(path: Path, content: bytes) -> None:
-    """Write content to a file, after the mark SEAL and the checksum."""
-    sealed = SEAL + _checksum(path, content) + content
-    write_atomically(path, lambda draft: draft.write_bytes(sealed))
-
-
-def read_sealed(path: Path) -> bytes | None:
-    """Return the content of a file, or None if it is missing or damaged; remove it in the second case.
-
-    Whatever else has the name of the file counts as damage and is not read: a pipe or a device, which might never end, a link, a
-    file of another user, and one that is larger than any of the cache.
-    """
-    with suppress(OSError, InputError):  # it cannot be read, or may not be
-        sealed = read_bounded(path, LARGEST_FILE, own=True)
-        content = sealed[OF_SEAL:]
-        if sealed[:OF_SEAL] == SEAL + _checksum(path, content):
-            return content
-    if os.path.lexists(path):
-        tell(f"the cache of compiled code in {path.parent} is damaged: what is damaged is compiled again")
-        remove(path)
-    return None
-
-
-def _checksum(path: Path, content: bytes) -> bytes:
-    """Return the SHA-256 digest of a file's name and content; with the name, a file copied over another one does not pass."""
-    return hashlib.sha256(path.name.encode() + b"\n" + content).digest()
-
-
-def remove(path: Path) -> None:
-    """Remove what stands in place of a sound file of the cache."""
-    with suppress(OSError):
-        if not path.is_symlink() and path.is_dir():
-            shutil.rmtree(path)
-        else:
-            path.unlink()
-
-
-# ---- the key of all code ---------------------------------------------------------------------------------------------------
+# ---- the key of all that is compiled, and the folder of machine code -------------------------------------------------------
 
 
 def compiled_sources() -> list[Path]:
@@ -151,56 +87,8 @@ def compiled_sources() -> list[Path]:
     return sorted([*inside, *(package / name for name in COMPILED_FILES)])
 
 
-def key_of(texts: Iterable[bytes]) -> str:
-    """Return the hash of the code in some source files, without comments, docstrings, assertions and the layout of lines."""
-    digest = hashlib.sha256(VERSIONS.encode())
-    for text in texts:
-        digest.update(_bytecode(compile(text, "", "exec", dont_inherit=True, optimize=2)).encode())
-    return digest.hexdigest()[:DIGITS]
-
-
-def _bytecode(code: CodeType) -> str:
-    """Return all that a code object does, with the functions in it, as a text: without numbers of lines."""
-    parts = [code.co_name, code.co_argcount, code.co_kwonlyargcount, code.co_posonlyargcount, code.co_flags, code.co_code]
-    parts += [code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars, code.co_exceptiontable]
-    for one in code.co_consts:
-        parts.append(_bytecode(one) if isinstance(one, CodeType) else sorted(map(repr, one)) if isinstance(one, frozenset) else one)
-    return repr(parts)
-
-
-def remembered_key(folder: Path) -> str:
-    """Return the key of all compiled sources.
-
-    It is kept in `folder`, in a file that is named for the hash of the unchanged files. The folder must be private: a wrong key
-    would lead to other machine code. Where it cannot be written, the key is made anew.
-    """
-    texts = [path.read_bytes() for path in compiled_sources()]
-    digest = hashlib.sha256(VERSIONS.encode())
-    for text in texts:
-        digest.update(text)
-    kept = folder / digest.hexdigest()
-    found = read_sealed(kept)
-    if found is not None:
-        return found.decode()
-    key = key_of(texts)
-    with suppress(OSError):  # the folder of machine code will meet the same fault, and says so
-        write_sealed(kept, key.encode())
-    return key
-
-
-def sources_key() -> str:
-    """Return the key of the code that is compiled, kept in the cache if there is a private folder for it."""
-    try:
-        return remembered_key(private_folder(cache_root() / "keys"))
-    except OSError:
-        return key_of(path.read_bytes() for path in compiled_sources())
-
-
-SOURCES = sources_key()
+SOURCES = key_of_files(compiled_sources(), VERSIONS)
 """Hash that identifies the code that is compiled, together with the versions of numba and Python that compile it."""
-
-
-# ---- the folder of machine code --------------------------------------------------------------------------------------------
 
 
 def cache_folder(name: str) -> Path | None:
@@ -238,7 +126,7 @@ class Kept:
 
     def write(self, code: bytes) -> None:
         """Keep machine code for later starts, or say that it cannot be written."""
-        if self.path is None or len(code) > LARGEST_FILE - OF_SEAL:
+        if self.path is None:
             return
         try:
             write_sealed(self.path, code)

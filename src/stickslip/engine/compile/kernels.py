@@ -17,12 +17,13 @@ import numba
 from numba import types
 from numba.extending import models, register_model, typeof_impl
 
-from stickslip.engine.compile.cache import CACHE, LARGEST_FILE, cache_folder, read_sealed, remove, tell, write_sealed
+from stickslip.engine.compile.cache import CACHE, cache_folder
 from stickslip.engine.compile.lock import LOCK
 from stickslip.engine.compile.numba_privates import WHY_PLAIN
 from stickslip.engine.compile.uncompiled import UNCOMPILED, as_python
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.sealed_files import LARGEST_FILE, read_sealed, remove, tell, write_sealed
 
 F = TypeVar("F", bound=Callable[..., Any])
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}

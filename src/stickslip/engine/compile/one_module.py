@@ -18,7 +18,7 @@ import llvmlite.binding as llvm
 from numba import njit
 
 from stickslip.engine.compile import cache
-from stickslip.engine.compile.cache import CACHE, NOTICED, OTHERS, SLOW, Kept, tell
+from stickslip.engine.compile.cache import CACHE, NOTICED, OTHERS, SLOW, Kept
 from stickslip.engine.compile.numba_privates import (
     Compiler,
     CompileResult,
@@ -36,6 +36,7 @@ from stickslip.engine.compile.numba_privates import (
     rtsys,
 )
 from stickslip.engine.compile.shortcuts import at_speed, is_counted
+from stickslip.foundation.sealed_files import tell
 
 PASSES = tuple(
     one()

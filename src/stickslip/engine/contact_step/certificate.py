@@ -12,8 +12,8 @@ an overflow, makes M large or infinite, wherever in the disc it lies.
 A bound is expressed as a share: the slip rate that the residual makes, in units of the tolerance times the slip rate of the step.
 The proof relies on the series for the vanishing of the first coefficients of g. As a check, g is measured at the end of the step
 and added to the bound: if a coefficient does not vanish, by rounding or by a fault, g is largest there. A value above the tolerance
-is noted. `observables.proof` proves finished steps without the series. Bounds are calculated in floats: the rounding of a few
-hundred operations is far below MARGIN.
+is noted. `solution.observables.proof` proves finished steps without the series. Bounds are calculated in floats: the rounding of a
+few hundred operations is far below MARGIN.
 """
 
 from __future__ import annotations

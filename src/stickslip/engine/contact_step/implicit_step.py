@@ -23,8 +23,8 @@ from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, StepEvent
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.layout import Floats, StepEvent, Task
+from stickslip.engine.state.workspace import Run, borrow
 from stickslip.problem.run_codes import Stop
 
 STILL = 1e-3
@@ -133,3 +133,12 @@ def stick_with_state(run: Run, xi_to: float) -> bool:
     if onset < NONE:
         run.counts.mode, run.counts.leaving_rest = direction, direction
     return True
+
+
+@kernel
+def implicit_steps(memory: int, task: int, xi_to: float) -> float:
+    """Take an implicit step up to the place xi_to at most; return 0 if a contact at rest needs none."""
+    if task == Task.SLIP_IMPLICITLY:
+        slip_implicitly(borrow(memory), xi_to)
+        return 1.0
+    return 1.0 if stick_with_state(borrow(memory), xi_to) else 0.0

@@ -12,7 +12,7 @@ from stickslip.engine.contact_step.certificate import NEGLIGIBLE, rough
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
 from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.workspace import Run, borrow
 
 PARTS_OF_STEP = 16
 """A step is divided into this many parts to look for minima of friction. It covers at most about one oscillation of a law, because
@@ -116,3 +116,10 @@ def friction_in_step(run: Run, rate: Floats, length: float, place: float) -> flo
     slip = run.state.law_slip + run.k.chi * growth(run, rate, length, place)
     contact_at(run, slip, max(evaluate(rate, place), 0.0), states_in_step(run, place * length))
     return run.params.reference / run.params.normal + run.value.mu
+
+
+@kernel
+def negative_friction(memory: int, task: int, length: float) -> float:
+    """Return 1 if friction falls below zero in the explicit step of the given length (in units) that is being made, else 0."""
+    run = borrow(memory)
+    return 1.0 if goes_below_zero(run, run.history[run.counts.length].rate, length) else 0.0

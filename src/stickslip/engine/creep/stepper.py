@@ -1,8 +1,8 @@
-"""Decide when to leap over creep: at ends of round trips, from the exact engine into it, with a check where the leap lands."""
+"""Leap over creep: at ends of round trips, from the exact engine into it, with a check where the leap lands."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,9 +19,7 @@ from stickslip.engine.creep.steady import SHORTEST_LEAP, SteadyLeaps
 from stickslip.engine.creep.steady_landing import SteadyLanding
 from stickslip.engine.creep.swing_landing import SwingLanding
 from stickslip.engine.creep.swing_leaps import SwingLeaps
-from stickslip.engine.history.history import NO_LEAPS
-from stickslip.engine.input.limits import PATIENCE
-from stickslip.engine.state.layout import NEVER, Counts, Floats, Incoming
+from stickslip.engine.state.layout import NEVER, Counts, Floats
 from stickslip.problem.limits import leaps_over
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_codes import Stop
@@ -49,44 +47,19 @@ STEPS = 10_000
 
 
 @dataclass
-class CreepLeaps:
-    """Leaps of one run, with an error of slip of at most `tolerance` times the slip since the start.
-
-    Whatever changes during a run is stored in its counts, and is restored with them: when to try next, and how many leaps there
-    were.
-    """
+class LeapStepper:
+    """The leaps of one run from the ends of its round trips, which `schedule.CreepLeaps` hands on when the engine has paused."""
 
     problem: Problem
     tolerance: float
-    patient: bool = False
-    """If true, leap only after PATIENCE round trips with slip, so that a run that never creeps for long stays exact."""
-    taken: list[tuple[float, ...]] = field(default_factory=list)
-    """The rows of `History.creep`, one for each leap."""
+    patient: bool
+    taken: list[tuple[float, ...]]
+    """The rows of `History.creep`, one for each leap: those of `CreepLeaps`, which also restores and shows them."""
 
     def __post_init__(self) -> None:
         self.impedance, self.speed = self.problem.body.impedance, abs(self.problem.first_pull_rate)
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
         self.over, self.steady = leaps_over(self.problem), SteadyLeaps(self.problem, self.tolerance)
-
-    def begin(self, count: Counts) -> None:
-        """Have the engine pause after the first round trip, or when slip has lasted."""
-        if self.patient or self.over != "creep":
-            count.creep_in, count.pause_for = PATIENCE if self.patient else 1, 1
-            return
-        count.pause_at = count.pause_for = 1
-
-    def table(self, count: Counts) -> Floats:
-        """Return the leaps so far, as in `History.creep`."""
-        return np.array(self.taken[: count.creep_leaps]) if count.creep_leaps else NO_LEAPS.copy()
-
-    def take_up(self, table: Floats) -> None:
-        """Set the leaps of a run that is resumed."""
-        self.taken = [tuple(leap) for leap in table.tolist()]
-
-    def are_due(self, count: Counts, last_trip: int) -> bool:
-        """Return True if the engine has paused for an attempt to leap."""
-        begins = count.source == 0 or (count.sparse == 1 and count.trip_from == count.length)
-        return bool(count.pause_at <= count.trip <= last_trip and begins and count.ready == Incoming.NONE)
 
     def at_row_end(self, run: LeapingRun) -> None:
         """Leap if there is creep, and set when to try again.

@@ -13,7 +13,7 @@ from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats, NearFold, Task
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.workspace import Run, borrow
 
 SHORTEST_FOLD = 1e-9
 """A way to a fold shorter than this (in xi) needs no side piece: the square root makes no difference."""
@@ -247,3 +247,20 @@ def leave_moving_branch(run: Run) -> None:
     end_branch(run)
     if run.counts.at_fold != NearFold.NONE:
         run.counts.at_fold = NearFold.PASSING
+
+
+@kernel
+def folds(memory: int, task: int, way: float) -> float:
+    """Lead slip over the given way (in xi) to a fold or away from one: see `Task`."""
+    run = borrow(memory)
+    if task == Task.APPROACH_FOLD:
+        return approach_fold(run, way)
+    if task == Task.DEPART_FROM_FOLD:
+        depart_from_fold(run, way)
+    elif task == Task.STRAIGHT_TO_FOLD:
+        straight_to_fold(run)
+    elif task == Task.STRAIGHT_FROM_FOLD:
+        straight_from_fold(run)
+    else:
+        leave_fold_piece(run)
+    return 0.0

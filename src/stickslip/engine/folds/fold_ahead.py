@@ -13,7 +13,7 @@ import numpy as np
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.series.polynomial import NONE
 from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.workspace import Run, borrow
 
 REVERSED = 14
 """Order of the reversed series (1): rounding grows with it, to 1e-13 here."""
@@ -108,3 +108,9 @@ def way_to_fold(run: Run, unit: float) -> float:
             return NONE
     run.state.fold_rate = rate
     return eta * unit
+
+
+@kernel
+def moving_folds(memory: int, task: int, unit: float) -> float:
+    """Return the way (in xi) to the moving fold that the present series, in units of `unit` (in xi), runs into."""
+    return way_to_fold(borrow(memory), unit)

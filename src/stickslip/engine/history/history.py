@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.history.machine_motion import MachineMotion, machine_motion
 from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.history.series import integrals_at, values_at
 from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
@@ -19,6 +18,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from stickslip.engine.history.machine_motion import MachineMotion
 
 Side = Literal["left", "right"]
 
@@ -297,6 +299,8 @@ class History:
     @cached_property
     def machine(self) -> MachineMotion:
         """The motion of the driver, if it is a machine."""
+        from stickslip.engine.history.machine_motion import machine_motion  # of few runs
+
         return machine_motion(self.problem, self.store, self.duration)
 
     # ---- values at positions ------------------------------------------------------------------------------------------------

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field, fields
 from functools import cache
-from pathlib import Path
 
 from stickslip.engine.compile.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers
 from stickslip.engine.state.workspace import NO_WAVES
+from stickslip.foundation.code_key import key_of_folders
 
 DECIDE = ("contact", "engine", "friction", "problem", "run", "solution")
-"""Folders and files of the package whose code decides the result of a run."""
+"""Folders of the package whose code decides the result of a run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +37,13 @@ ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engi
 
 
 @cache
-def engine(folders: tuple[str, ...] = DECIDE) -> str:
-    """Return a hash of the code that decides the result of a run; a run that continues with other code may differ in its digits."""
-    package, digest = Path(__file__).parents[2], hashlib.sha256(SOURCES.encode())
-    files = [path for name in folders for path in (*package.glob(f"{name}.py"), *(package / name).rglob("*.py"))]
-    for path in sorted(files):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+def engine(*beside: str) -> str:
+    """Return the key of the code that decides the result of a run; a run that continues with other code may differ in its digits.
+
+    `beside` are folders of an extension whose code decides its results, too. Comments, docstrings and the layout of lines leave the
+    key as it is (`code_key`).
+    """
+    return key_of_folders((*DECIDE, *beside), SOURCES)
 
 
 def rounding_note(steps: int, share: float) -> str:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.waves.varying_forcing import dirichlet
+from stickslip.engine.waves.tone import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers

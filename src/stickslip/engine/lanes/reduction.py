@@ -1,8 +1,8 @@
 """Reduce the history of a run to the numbers that a batch keeps, which equal those in the tables of a `Solution`.
 
-The kernels of `trajectory.slip_events` find the slip events. The functions here do in compiled code, for one event or run, what
-`trajectory.tables` does for all. Functions on a history take its first piece, and the number of pieces as `length`. A place in it
-is a pair of a piece and xi from 0 to 1; `round_trip_time` is the length of a round trip (of a block: of a period), in s.
+The kernels of `engine.history.slip_events` find the slip events. The functions here do in compiled code, for one event or run, what
+`engine.history.tables` does for all. Functions on a history take its first piece, and the number of pieces as `length`. A place in
+it is a pair of a piece and xi from 0 to 1; `round_trip_time` is the length of a round trip (of a block: of a period), in s.
 """
 
 from __future__ import annotations

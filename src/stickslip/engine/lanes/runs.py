@@ -1,7 +1,7 @@
 """Run many members in compiled code: the engine on each of them, and the reduction of its history to a few numbers.
 
 Each thread has one workspace with a lane for each of WIDTH members, and starts further members as lanes become free. Members take
-their explicit steps of slip side by side, unless their law demands steps taken alone (`batch.setups.steps_alone`): such members run
+their explicit steps of slip side by side, unless their law demands steps taken alone (`steps_alone` of the batch): such members run
 to their end one after the other, all in the first lane. No Python code runs in between, so threads run in parallel. References to
 arrays are counted only when a run has ended.
 """

@@ -23,7 +23,7 @@ from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Initial and largest room of a lane in pieces of history; a member that needs more is run by itself."""
 TURNS_PER_PIECE = 8
-"""Initial room for points of the slip rate (`trajectory.turning_points`), for each piece of history."""
+"""Initial room for points of the slip rate (`engine.history.turning_points`), for each piece of history."""
 LINE = 16
 """Numbers (of 8 bytes) in two cache lines, which processors fetch together. Addresses of lanes must be multiples of one line."""
 
@@ -68,10 +68,10 @@ class Workspace(NamedTuple):
 
     store: Store
     echoes: Integers
-    known: Integers  # tables of `trajectory.turning_points.Known`
-    turns: Integers  # table of `trajectory.turning_points.Turn`
-    events: Integers  # table of `trajectory.slip_events.EventTurns`
-    spare: Floats  # a `trajectory.turning_points.Spare`
+    known: Integers  # tables of `engine.history.turning_points.Known`
+    turns: Integers  # table of `engine.history.turning_points.Turn`
+    events: Integers  # table of `engine.history.slip_events.EventTurns`
+    spare: Floats  # a `engine.history.turning_points.Spare`
     numbers: Floats  # room for the block of `kernels.lanes`
     block: Integers  # the address of this block
     stage: Integers  # (WIDTH,): codes of `tables.Stage`

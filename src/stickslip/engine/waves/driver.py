@@ -21,7 +21,7 @@ from stickslip.engine.contact.pieces import phase_at
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
 from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import settled_rate
 from stickslip.engine.waves.tone import tone_series
 from stickslip.engine.waves.varying_forcing import cut
@@ -146,3 +146,9 @@ def move_machine(run: Run, pace: float) -> bool:
     for k in range(1, TERMS):
         changes += abs(met[k]) + 2.0 * before * abs(rate[k])
     return 2.0 * before * next_term <= (1.0 - along) * params.tolerance * changes
+
+
+@kernel
+def driver(memory: int, task: int, number: float) -> float:
+    """Add what a machine sends to the piece of load; return the share of the piece that is kept."""
+    return drive(borrow(memory))

@@ -19,7 +19,7 @@ from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.contact.far_end import is_rigid
 from stickslip.engine.memory.addresses import bits_of
 from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, restrict
-from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
+from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.merged_creep import plan_group
 
@@ -392,3 +392,15 @@ def write_ahead(table: Integers, out: Integers) -> int:
     """Write the pieces whose echoes are yet to be met, in order of phase, and return their number. `table` is as above."""
     run = borrow(table)
     return in_order(run.echoes, run.counts.ahead, out, 0)
+
+
+@kernel
+def echo_queue(memory: int, task: int, number: float) -> float:
+    """Return the next piece whose echo must be met, close a round trip, or build the queue."""
+    if task == Task.NEXT_ECHO:
+        return float(next_echo(borrow(memory)))
+    if task == Task.END_TRIP:
+        end_trip(borrow(memory))
+    else:
+        build_queue(borrow(memory))
+    return 0.0

@@ -24,7 +24,7 @@ from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, fill, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats, Task
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import ramp_of_machine
 from stickslip.engine.waves.ladder_rows import (
     AIR,
@@ -275,3 +275,9 @@ def is_settled(run: Run) -> bool:
             if change > STILL * largest:
                 return False
     return True
+
+
+@kernel
+def ladder(memory: int, task: int, number: float) -> float:
+    """Serve a body of layers: see `Task`."""
+    return serve(borrow(memory), task, number)

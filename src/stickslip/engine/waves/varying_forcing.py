@@ -13,13 +13,13 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import span_of_load, xi_at
-from stickslip.engine.contact.pressing import couple, is_pressing, press, pressing_at
+from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
-from stickslip.engine.waves.tone import tone_series
+from stickslip.engine.waves.tone import dirichlet, tone_series
 
 AT_EDGE = 1e-13
 """A break of the loading lies on the edge of a piece if it is closer to it than this share of a round trip (1), by rounding."""
@@ -154,15 +154,6 @@ def add_curve(run: Run, curve: float, since: float) -> None:
 
 
 @kernel
-def dirichlet(count: float, step: float) -> float:
-    """Return the sum of `count` unit phasors that are `step` (rad) apart, along their mean: sin(count step/2) / sin(step/2)."""
-    turns = math.floor(step / (2.0 * math.pi) + 0.5)
-    rest = 0.5 * step - turns * math.pi  # in [-pi/2, pi/2]
-    value = count if rest == 0.0 else math.sin(count * rest) / math.sin(rest)
-    return -value if (turns * (count - 1.0)) % 2.0 == 1.0 else value
-
-
-@kernel
 def pull_block(run: Run) -> None:
     """Set a block's load: its value at the end of the history, plus what pull and ground have added to it since."""
     n = run.counts.length - 1
@@ -292,3 +283,21 @@ def largest_sine_up(begin: float, end: float) -> float:
     """Return the largest value of sin(x) for x between two angles (rad)."""
     peak = (math.floor((begin - 0.5 * math.pi) / (2.0 * math.pi)) + 1.0) * 2.0 * math.pi + 0.5 * math.pi
     return 1.0 if peak <= end else max(math.sin(begin), math.sin(end))
+
+
+@kernel
+def loading_history(memory: int, task: int, number: float) -> float:
+    """Serve a loading that varies: see `Task`.
+
+    Round trips at rest count as long as the load stays below `number` (Pa or N); a normal load is written in units of `number` (in
+    xi).
+    """
+    if task == Task.ENTER_SEGMENT:
+        return 1.0 if enter_segment(borrow(memory)) else 0.0
+    if task == Task.COUNT_TRIPS_AT_REST:
+        return float(trips_withstood(borrow(memory), number))
+    if task == Task.TAKE_LOADING:
+        take_loading(borrow(memory))
+    else:
+        press_ahead(borrow(memory), number)
+    return 0.0

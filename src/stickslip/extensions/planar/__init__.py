@@ -15,7 +15,7 @@ from stickslip.extension import Extension
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution as PlanarSolution
     from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.problem.scenarios.table import Table
+    from stickslip.problem.scenarios.table import ScenarioTable
     from stickslip.run.kinds import Reader, SolverKind
 
 
@@ -30,7 +30,7 @@ class PlanarExtension(Extension):
 
         return (PLANAR,)
 
-    def tables(self) -> Mapping[str, Table]:
+    def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [contact]."""
         from stickslip.extensions.planar.table import ContactTable
 

@@ -11,8 +11,8 @@ from stickslip.foundation.errors import InputError
 from stickslip.run.kinds import ALL_TAKE, Reader, SolverKind
 
 if TYPE_CHECKING:
+    from stickslip.cli.kinds import KindOfRun
     from stickslip.cli.results import Stored
-    from stickslip.cli.work import Work
     from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.run.check.examine import Examination
@@ -31,10 +31,10 @@ def _run(source: Any, options: RunOptions) -> PlanarSolution:
     return simulate_planar(source, options)
 
 
-def _work() -> Work:
-    from stickslip.extensions.planar.work import PlanarWork
+def _on_command_line() -> KindOfRun:
+    from stickslip.extensions.planar.command_line import PlanarKindOfRun
 
-    return PlanarWork()
+    return PlanarKindOfRun()
 
 
 def _examine(scenario: Scenario) -> Examination:
@@ -48,7 +48,7 @@ PLANAR = SolverKind(
     _run,
     ALL_TAKE | {"frames"},
     "a PlanarSlab has no {}: its nodes and its courant set the accuracy, and its scenario has the title",
-    _work,
+    _on_command_line,
     _examine,
     what="a PlanarSlab",
 )
@@ -86,12 +86,12 @@ class PlanarReader(Reader):
     @override
     def stored(self, path: Path) -> Stored:
         from stickslip.cli.results import Stored
+        from stickslip.extensions.planar.command_line import PlanarResults
         from stickslip.extensions.planar.store_layout import open_planar, opened, scenario_in
-        from stickslip.extensions.planar.work import PlanarResults
 
         about, scenario = opened(path).attrs, scenario_in(path)
         return Stored(path, about, PlanarResults(scenario, open_planar(path)), scenario.to_toml())
 
     @override
-    def work(self) -> Work:
-        return _work()
+    def on_command_line(self) -> KindOfRun:
+        return _on_command_line()

@@ -8,17 +8,17 @@ What the folder holds beyond it, or half of it, is written again by the run that
 from __future__ import annotations
 
 import shutil
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from typing_extensions import override
 
-from stickslip.engine.history.status import engine
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.extensions.planar.solution import FIELDS, Frames, PlanarSolution
 from stickslip.extensions.planar.store_layout import (
@@ -36,6 +36,7 @@ from stickslip.extensions.planar.store_layout import (
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import sync
+from stickslip.foundation.code_key import key_of_folders
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.netcdf_file import Variable
@@ -52,8 +53,8 @@ if TYPE_CHECKING:
 STATE = "state.nc"
 """File of the checkpoint."""
 BUSY = "another run is writing into it"
-DECIDE = ("extensions/planar", "friction", "problem")
-"""Folders of the package whose code decides the result of a planar run."""
+DECIDE = ("extensions/planar", "foundation/constants.py", "friction", "problem")
+"""Folders and files of the package whose code decides the result of a planar run."""
 
 
 @dataclass(eq=False)
@@ -236,7 +237,8 @@ def _is_unbegun(path: Path) -> bool:
         return not any(group[name].shape[0] for name in ("time", *FIELDS, SENT))
 
 
+@cache
 def _engine() -> str:
     import jax
 
-    return f"{engine(DECIDE)}, JAX {jax.__version__}"
+    return f"{key_of_folders(DECIDE, sys.version)}, JAX {jax.__version__}"

@@ -13,7 +13,7 @@ from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
-from stickslip.problem.scenarios.table import Table
+from stickslip.problem.scenarios.table import ScenarioTable
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.contact import Contact
@@ -27,7 +27,7 @@ CONTACT = "contact"
 """The name of the table."""
 
 
-class ContactTable(Table):
+class ContactTable(ScenarioTable):
     """The table [contact]: a grid along the contact, and what varies along it."""
 
     name = CONTACT

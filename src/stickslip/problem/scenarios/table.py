@@ -1,7 +1,7 @@
 """A table that an extension adds to scenario files, such as [contact].
 
 A scenario that has one keeps what it says in `Scenario.tables`. A table may say that the scenario is of another kind than those of
-the core: what is solved is then what `Table.problem` returns, and a solver of the extension solves it.
+the core: what is solved is then what `ScenarioTable.problem` returns, and a solver of the extension solves it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from stickslip.problem.scenarios.schema import Key
 
 
-class Table:
+class ScenarioTable:
     """What a table of an extension holds, and what it means. The default is a dataclass whose declared fields are the keys."""
 
     name: str

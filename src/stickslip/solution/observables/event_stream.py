@@ -14,7 +14,6 @@ import numpy as np
 from stickslip.engine.history.history import History
 from stickslip.engine.history.slip_events import NOT_YET, SlipEvents
 from stickslip.engine.state.layout import Integers
-from stickslip.solution.observables.event_table import with_energies
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -91,6 +90,8 @@ class Look:
 
     def table(self, *, unknown: bool = False) -> pd.DataFrame:
         """Return the rows of the new events; with `unknown`, also of those that are not final at the end of the history."""
+        from stickslip.solution.observables.event_table import with_energies
+
         before = min(self.old, 1)  # the recurrence time of the first new event counts from its start
         wanted = slice(self.old - before, None if unknown else self.old + len(self.known_by))
         events = self.events.some(wanted)

@@ -1,6 +1,6 @@
 """What drivers and moving ground do at given times, from the fields of a problem alone.
 
-The engine works on tables that `engine_input` makes of these fields. A comparison that read the tables would agree with whatever
+The engine works on tables that `engine.input` makes of these fields. A comparison that read the tables would agree with whatever
 stands in them.
 """
 

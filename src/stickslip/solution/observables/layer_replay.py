@@ -2,7 +2,7 @@
 
 The cells, the times T and 2 T, and the way of the waves are those of `engine.waves.ladder`. E(s) is the wave in each cell that
 leaves its even place at time s, a load minus that of the reference strength; where sides are joined, each bears its share of that
-(`engine_input.ladder`). A step of 2 T follows from the slip rate alone. The integral of E from the start of a round trip obeys the
+(`engine.input.ladder`). A step of 2 T follows from the slip rate alone. The integral of E from the start of a round trip obeys the
 same recursion, and gives displacements without a quadrature.
 """
 

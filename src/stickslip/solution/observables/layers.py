@@ -2,7 +2,7 @@
 
 The cells, the times T and 2 T, and the way of the waves are those of `engine.waves.ladder`. E(s) is the wave in each cell that
 leaves its even place at time s, O(s) the one that leaves its odd place, which follows from E(s - T). All are loads minus those of
-the reference strength; where sides are joined, each bears its share of that (`engine_input.ladder`). A step of 2 T follows from
+the reference strength; where sides are joined, each bears its share of that (`engine.input.ladder`). A step of 2 T follows from
 the slip rate alone, so that the loads of the history are not used: they can be compared.
 
 The kernels are in `layer_replay`. A replay takes a time in proportion to the pieces of the history, to the cells, and to the phases

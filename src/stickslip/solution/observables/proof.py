@@ -81,7 +81,7 @@ class Proof:
     unit: str
     """Unit of the residual: Pa, N or N m."""
 
-    units: ClassVar = {"relative": "1", "unproven_share": "1"}
+    units: ClassVar[dict[str, str]] = {"relative": "1", "unproven_share": "1"}
     __repr__ = brief_repr
 
     @property

@@ -44,7 +44,7 @@ class ProofOfRun(Proof):
     rate: float = 0.0
     """Largest jump (m/s, or rad/s) of the slip rate of a contact with mass."""
 
-    units: ClassVar = Proof.units | {"states": "1"}
+    units: ClassVar[dict[str, str]] = Proof.units | {"states": "1"}
     __repr__ = brief_repr
 
     @property

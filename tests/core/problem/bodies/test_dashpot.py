@@ -9,29 +9,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.schemes.run import SCHEMES
-from stickslip.extensions.sweeps.batch.run import run_members
 from stickslip.problem.bodies import BODIES, has_dashpot
 from stickslip.problem.limits import leaps_over
-from stickslip.problem.scenarios.scenario import Scenario
-
-DROP = 0.3e8
-"""Stress drop (Pa) of the Coulomb contact below."""
-
-
-class SlabWithDashpot(ss.ElasticSlab):
-    """A slab whose contact has a dashpot beside friction."""
-
-    @property
-    def damping(self) -> float:
-        """Z + Z/2, Pa s/m."""
-        return 1.5 * self.impedance
-
-
-SLAB = SlabWithDashpot(2800, 3500, 1e4, 1e8)
-LAW = ss.friction.Coulomb(0.8, 0.5)
-PROBLEM = ss.Problem(SLAB, LAW, initial_excess=1e6)
-WEAKENING = ss.friction.LinearSlipWeakening(0.8, 0.5, 2.0)
+from tests.core.problem.bodies.dashpot import DROP, PROBLEM, SLAB, WEAKENING
 
 
 def test_no_body_of_the_package_has_one_beside_its_waves() -> None:
@@ -76,30 +56,10 @@ def test_waves_keep_the_impedance_and_the_contact_equation_has_both(law: ss.fric
     assert float(run.energy(times[-1:]).balance[0]) == pytest.approx(lacks, rel=1e-4)
 
 
-def test_members_of_a_batch_are_single_runs() -> None:
-    batch = run_members(Scenario(PROBLEM, 5.0), {"friction.dynamic": np.array([0.4, 0.5])}, ["slip"]).results
-    runs = [ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, mu), initial_excess=1e6), 5.0) for mu in (0.4, 0.5)]
-    assert batch["slip"] == pytest.approx([float(run.slip(5.0)) for run in runs], rel=1e-12, abs=0.0)
-
-
-def test_sweeps_and_files_do_not_take_it_for_the_body_whose_kind_it_has(tmp_path: Path) -> None:
-    with pytest.raises(ss.InputError, match=r"\[body\] kind 'SlabWithDashpot' is unknown"):
-        ss.sweep(PROBLEM, {"friction.dynamic": [0.4, 0.5]}, duration=5.0)
+def test_files_do_not_take_it_for_the_body_whose_kind_it_has(tmp_path: Path) -> None:
     ss.simulate(PROBLEM, 1.0).to_netcdf(tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"\[body\] kind 'SlabWithDashpot' is unknown"):
         ss.open_solution(tmp_path / "run.nc")
-
-
-@pytest.mark.parametrize("scheme", SCHEMES)
-def test_schemes_refuse_it_by_name(scheme: str) -> None:
-    with pytest.raises(ss.InputError, match="schemes: the damping of this SlabWithDashpot is not its impedance"):
-        ss.studies.schemes(PROBLEM, 4.0, scheme=scheme, cells=20)
-
-
-def test_a_planar_slab_refuses_it_by_name() -> None:
-    problem = ss.Problem(SLAB, WEAKENING, initial_excess=1e6)
-    with pytest.raises(ss.InputError, match="PlanarSlab: the damping of this SlabWithDashpot is not its impedance"):
-        ss.PlanarSlab(problem, nodes=16, length=1e4)
 
 
 def test_runs_do_not_leap_by_sums_that_hold_for_waves_alone() -> None:

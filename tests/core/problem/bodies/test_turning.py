@@ -180,18 +180,6 @@ def test_files_of_a_scenario_hold_rpm_for_what_turns_and_not_for_what_slides(tmp
 BUNDLED = "drill-string"
 
 
-@pytest.mark.parametrize(
-    ("door", "message"),
-    [
-        (lambda: ss.PlanarSlab(ss.load_scenario(BUNDLED).problem, 16, 100.0), "PlanarSlab: body must be .*: a string is a line"),
-        (lambda: ss.studies.schemes(BUNDLED, 1.0), "schemes: a TorsionalString has no grid: they are of an ElasticSlab"),
-    ],
-)
-def test_doors_that_take_slabs_alone_refuse_a_string_by_name(door: Callable[[], object], message: str) -> None:
-    with pytest.raises(ss.InputError, match=rf"^{message}$"):
-        door()
-
-
 def test_sentences_on_steady_sliding_speak_of_rates_of_rotation() -> None:
     found = ss.studies.steady(BUNDLED, from_rest=False)
     assert str(found).startswith("At 60 rpm, traction 7.9023 kN m: stable")

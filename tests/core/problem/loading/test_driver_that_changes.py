@@ -303,12 +303,6 @@ def test_a_string_may_be_let_go() -> None:
     assert ss.simulate(problem, 4.0).status.ok
 
 
-def test_faults_in_two_dimensions_refuse_it() -> None:
-    problem = ss.Problem(SLAB, LAW, initial_load=5e7, **FREED)
-    with pytest.raises(ss.InputError, match=r"^PlanarSlab: a driver that changes is followed in 1D only: leave driver_reflection"):
-        ss.PlanarSlab(problem, nodes=16, length=1e4)
-
-
 def test_leaps_over_creep_need_a_driver_that_stays() -> None:
     weakens = ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1)
     problem = ss.Problem(SLAB, weakens, pull_rate=1e-6, initial_load=5e7, **FREED)

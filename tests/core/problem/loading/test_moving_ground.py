@@ -290,15 +290,6 @@ SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
             "Problem: initial_rate is backwards, where a contact that slips one way only does not go",
         ),
         (
-            lambda: ss.PlanarSlab(SHAKEN, length=1e3, nodes=16),
-            "PlanarSlab: ground that moves is followed at one place only: leave it out",
-        ),
-        (
-            lambda: ss.studies.schemes(SHAKEN, 0.5),
-            "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones, and"
-            " ground at rest",
-        ),
-        (
             lambda: ss.simulate(SHAKEN, 1.0, creep_rtol=1e-3),
             "simulate: creep_rtol must be 0 here: leaps over creep need a rigid driver (no driver_impedance)",
         ),

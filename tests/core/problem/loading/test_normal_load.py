@@ -148,15 +148,6 @@ def test_scenario_file_and_resumed_run_are_the_same_to_the_bit(tmp_path: Path) -
     assert np.array_equal(ss.resume(tmp_path / "part.nc", 3.0).history.store.rate, whole.history.store.rate)
 
 
-def test_a_number_of_the_history_can_be_swept() -> None:
-    problem = block(Sinusoidal(10.0, 3.0, 0.37))
-    wanted = ["first_start", "first_slip"]
-    found = ss.sweep(problem, {"loading.normal_load.amplitude": [1.0, 3.0]}, duration=1.0, quantities=wanted)
-    for n, amplitude in enumerate((1.0, 3.0)):
-        start, _, slip = first_event(amplitude, 0.37)
-        assert [float(found[name][n]) for name in wanted] == pytest.approx([start, slip], rel=1e-9)
-
-
 def test_pressing_a_problem_scales_its_history() -> None:
     from stickslip.problem.parameters import pressed
 
@@ -291,8 +282,6 @@ def test_check_tells_under_which_load_and_at_which_rate_steady_sliding_is_examin
         (lambda: block(Sinusoidal("10 N", "11 N", "1 s")), r"must stay above 0 N, but may fall to -1: the contact would open$"),
         (lambda: block(Sinusoidal("10 Pa", "1 Pa", "1 s")), r"^Problem: normal_load must be in N, got a history of values in Pa$"),
         (lambda: ss.simulate(GRADUAL, 2.0), r"^selection 'maxwell': under 11 MPa several slip rates.*changes by steps alone"),
-        (lambda: ss.studies.schemes(replace(IRREGULAR, normal_load=HELD), 2.0), r"^schemes: .*normal load that varies"),
-        (lambda: ss.PlanarSlab(replace(PLANAR, normal_load=HELD), length=9e3, nodes=8), r"^PlanarSlab: .*normal_load"),
         (lambda: ss.simulate(block(HELD_FORCE), 1.0, shortest_event=1e-9), r"shortest_event must be 0 here"),
         (lambda: ss.simulate(replace(PLANAR, normal_load=HELD), 1.0, creep_rtol=1e-3), r"creep_rtol must be 0 .* and normal load"),
         (lambda: replace(BODY, normal_force=HELD_FORCE), r"^SpringBlock: normal_force is one number.* normal_load of the Problem"),
@@ -311,19 +300,6 @@ def test_what_cannot_be_followed_is_refused_in_one_line(make: object, message: s
 def test_what_is_set_aside_beside_a_fold_has_room() -> None:
     """A state longer than its room in the scratch space would overwrite what lies behind it."""
     assert Run.places["saved"].size >= SET_ASIDE
-
-
-def test_the_explorer_offers_its_numbers_and_no_number_in_its_place() -> None:
-    from stickslip.extensions.explorer.model.controls import controls_of
-    from stickslip.extensions.explorer.model.setting import Setting
-    from stickslip.problem.scenarios.scenario import Scenario
-
-    shown = {
-        constant: {one.path for group in controls_of(Setting.of(Scenario(problem, 3.0))) for one in group.controls}
-        for constant, problem in ((True, block(None)), (False, block(Sinusoidal(10.0, 3.0, 0.37))))
-    }
-    assert not any("normal_load" in path for path in shown[True])
-    assert {path.rpartition(".")[2] for path in shown[False] if "normal_load" in path} == {"mean", "amplitude", "period", "phase"}
 
 
 def test_check_tells_the_history_and_calls_a_constant_pull_rate_constant(

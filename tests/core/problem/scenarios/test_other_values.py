@@ -60,14 +60,6 @@ def test_each_parameter_can_be_given_the_value_that_it_has(name: str) -> None:
             assert found.to_toml().partition("[body]")[2] == scenario.to_toml().partition("[body]")[2]
 
 
-def test_pressing_changes_all_loads_along_a_contact_too() -> None:
-    scenario = ss.scenarios["planar-patch"].with_values({"pressing": "50 MPa"})
-    before, after = ss.scenarios["planar-patch"].to_solve, scenario.to_solve
-    assert (after.values.normal == 0.5 * before.values.normal).all()
-    assert (after.values.load == 0.5 * before.values.load).all()
-    assert len(set(after.values.load)) > 1
-
-
 def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -> None:
     found = ss.scenarios["fig6-slab"].with_values({"friction.alpha": 0.1, "body.thickness": "5 km"})
     assert found.title == "Fig. 6, slab, rate law, alpha = 1: friction.alpha = 0.1, body.thickness = 5 km"

@@ -4,7 +4,6 @@ import os
 import tomllib
 from pathlib import Path
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -92,13 +91,11 @@ def test_a_folder_tells_its_scenarios(tmp_path: Path):
 
 
 def test_results_are_told_from_scenarios(tmp_path: Path):
-    run, sweep, table = tmp_path / "run.nc", tmp_path / "map.zarr", tmp_path / "points.csv"
+    run, table = tmp_path / "run.nc", tmp_path / "points.csv"
     ss.simulate("fig6-slab").to_netcdf(run)
     assert refusal(run).startswith("a file of results, not a scenario: `stickslip show` summarises it, and")
     renamed = run.rename(tmp_path / "run.toml")
     assert refusal(renamed).startswith("a file of results, not a scenario")
-    ss.sweep("fig6-slab", {"friction.alpha": np.array([0.5, 1.0])}, out=sweep)
-    assert refusal(sweep) == f"a folder of results, not a scenario: `stickslip show {sweep}` summarises them"
     table.write_text("slip,friction\n0,0.8\n")
     assert refusal(table).startswith("a table, not a scenario: a scenario names it, as [friction] file")
     picture = tmp_path / "a.png"

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import signal
-import sys
-from collections.abc import Callable
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import pytest
@@ -15,47 +12,9 @@ import stickslip as ss
 from stickslip.engine.session import Session
 from stickslip.problem.run_codes import Stop
 from stickslip.run import run_loop
-from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts
 from tests.core.run.long_runs.problems import bundled
-
-PHASES = 12
-"""Number of moments of a run at which a signal comes."""
-
-
-def with_signal_at(call: int, act: Callable[[], Any]) -> tuple[Any, int]:
-    """Return what `act` returns, or KeyboardInterrupt if it raises that, with a Ctrl-C at one of its calls of our functions.
-
-    The calls are numbered; at -1 there is none. The second number returned is how many there were. In a library's own functions a
-    signal might leave a lock closed, on which other tests would wait for ever.
-    """
-    seen, ours = 0, str(Path(ss.__file__).parent)
-
-    def count(frame: FrameType, event: str, _: Any) -> None:
-        nonlocal seen
-        seen += event == "call" and frame.f_code.co_filename.startswith(ours)
-        if seen == call:
-            signal.raise_signal(signal.SIGINT)
-
-    sys.setprofile(count)
-    try:
-        return act(), seen
-    except KeyboardInterrupt:
-        return KeyboardInterrupt, seen
-    finally:
-        sys.setprofile(None)
-
-
-def lost(act: Callable[[], Any], is_heard: Callable[[Any], bool]) -> list[int]:
-    """Return the phases, of PHASES that are spread over all that `act` does, at which a signal has no consequence."""
-    act()  # compiles
-    count = with_signal_at(-1, act)[1]
-    phases = sorted({1 + i * (count - 1) // PHASES for i in range(PHASES)})
-    return [phase for phase in phases if not is_heard(with_signal_at(phase, act)[0])]
-
-
-def heard(found: Any) -> bool:
-    return found is KeyboardInterrupt or found.status.name == "interrupted"
+from tests.core.run.long_runs.signals import heard, lost
 
 
 @pytest.mark.parametrize("steps", [5_000, 20], ids=["one call of the solver", "many"])
@@ -126,33 +85,3 @@ def test_a_second_signal_is_raised_at_once() -> None:
     with pytest.raises(KeyboardInterrupt):
         press_twice()
     assert pressed == 1
-
-
-def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
-    """In one frame a round trip, so that all but two of its calls of the solver end between frames."""
-    pytest.importorskip("jax")
-    from tests.extensions.planar.patches import patch
-
-    slab = patch(nodes=32, length=2e4)
-    monkeypatch = pytest.MonkeyPatch()
-    with monkeypatch.context() as changed:
-        changed.setattr("stickslip.run.run_loop.FIRST_BUDGET", 4)
-        changed.setattr("stickslip.run.run_loop.next_budget", lambda *_: 4)
-        changed.setattr("stickslip.extensions.planar.run.NODES", 32)
-        assert not lost(lambda: ss.simulate(slab, 6.0, frames=1), heard)
-
-
-@pytest.mark.slow
-def test_the_budget_of_slow_steps_falls_to_a_single_one() -> None:
-    """Under a contact of so many nodes that a step of all of them takes a call."""
-    pytest.importorskip("jax")
-    from stickslip.extensions.planar.run import PlanarRun
-    from stickslip.extensions.planar.solution import Frames
-    from stickslip.extensions.planar.solver import PlanarSolver
-    from tests.extensions.planar.patches import patch
-
-    assert run_loop.next_budget(8, 8.0) == run_loop.SMALLEST_BUDGET
-    slab = patch(nodes=30_000, length=2e7)
-    run = PlanarRun(RunOptions(1.0), PlanarSolver(slab, 1e-3), (slice(None),), 0.0, Frames(slab, slab.steps_per_round_trip))
-    run.advance(run_loop.SMALLEST_BUDGET)
-    assert run.length == 1

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Iterator
-from dataclasses import replace
-from functools import cache
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -15,48 +13,11 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.extensions.sweeps.results.layout import table_of
 from stickslip.foundation.text_columns import read_file
-from stickslip.problem.bodies import SpringBlock
 from stickslip.solution.files.scec import write_scec
 from stickslip.solution.observables.event_table import with_units
 from stickslip.solution.solution import Solution
-
-SIZES = {"MPa": ("Pa", 1e6), "m s-1": ("m/s", 1.0), "rad s-1": ("rad/s", 1.0)}
-"""Units of files that are spelled or sized unlike SI: their SI unit, and the factor to it. Others are SI already."""
-AREA = 0.75
-
-
-def in_si(unit: str) -> tuple[str, float]:
-    return SIZES.get(unit, (unit, 1.0))
-
-
-def pressed() -> ss.Problem:
-    """A block on which the normal force is halved after 2 s, so that it slips."""
-    falls = ss.loading.Steps(times=[0.0, 2.0], values=[1e6, 5e5])
-    return ss.Problem(
-        SpringBlock(1e5, 1e7, 1e6), ss.friction.Coulomb(0.6, 0.4), initial_load=4e5, pull_rate=1e-3, normal_load=falls
-    )
-
-
-RUNS: dict[str, Callable[[], Solution]] = {
-    "block": lambda: ss.simulate("direct-shear-block", 5.0),
-    "block, pressed": lambda: ss.simulate(pressed(), 4.0),
-    "block to and fro": lambda: ss.simulate("reversing-axis", 0.15),
-    "slab": lambda: ss.simulate("fig6-slab"),
-    "slab, slip law": lambda: ss.simulate("fig5-slab-reconstructed", 3.0),
-    "slab with a state": lambda: ss.simulate("rate-and-state-slab", 0.3),
-    "layers": lambda: ss.simulate("low-velocity-zone", 12.0),
-    "string": lambda: ss.simulate("drill-string", 12.0),
-    "string of sections": lambda: ss.simulate("pipe-and-collar", 8.0),
-}
-"""Runs of every kind of body, short ones."""
-KINDS = list(RUNS)
-
-
-@cache
-def run_of(kind: str) -> Solution:
-    return RUNS[kind]()
+from tests.core.solution.exports.every_kind import AREA, KINDS, in_si, parts, run_of
 
 
 def read_at(run: Solution, name: str, time: np.ndarray) -> tuple[np.ndarray, str]:
@@ -67,13 +28,6 @@ def read_at(run: Solution, name: str, time: np.ndarray) -> tuple[np.ndarray, str
         number = ("state", "second state").index(name)
         return getattr(run, name.replace(" ", "_"))(time), run.problem.friction.states[number].unit
     return getattr(run, name.replace(" ", "_"))(time), run.problem.unit_of(name.replace(" ", "_"))
-
-
-def parts(heading: str) -> tuple[str, str]:
-    """Name and unit of a heading such as "slip rate (m/s)"."""
-    found = re.fullmatch(r"(.*?)(?: \((.*)\))?", heading)
-    assert found is not None
-    return found[1], found[2] or "1"
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -185,59 +139,6 @@ def test_events_to_and_fro_have_signs() -> None:
     assert (events.slip > 0.0).any()
     assert events.slip.sum() == pytest.approx(float(run.slip()), rel=1e-9, abs=1e-15)
     assert events.slip.abs().sum() > 2.0 * abs(float(run.slip()))
-
-
-@pytest.mark.sampled(every=3)
-@pytest.mark.parametrize("kind", KINDS)
-def test_table_of_a_comparison(kind: str, tmp_path: Path) -> None:
-    run, other = run_of(kind), run_of("slab")
-    found = ss.studies.compare(run, other, names=["it", "slab"])
-    file = found.to_csv(tmp_path / "a.csv")
-    said = dict(
-        parts(line[2:].split(":")[0]) for line in file.read_text(encoding="utf-8").splitlines() if re.match(r"# \w+ \(.*\): ", line)
-    )
-    row = pd.read_csv(file, comment="#").iloc[0]
-    slip = run.problem.unit_of("slip")
-    time = np.linspace(0.0, run.duration, 4001)
-    moved = run.slip(time) - run.problem.initial_slip
-    for name, expected, si in (
-        ("end_slip", float(run.slip(run.duration)), slip),
-        ("displacement", moved[np.abs(moved).argmax()], slip),
-    ):
-        assert si in said[name].split(" or ")
-        assert row[name] == pytest.approx(expected, rel=1e-4, abs=0.0), name
-    assert abs(row.displacement) >= np.abs(moved).max() * (1.0 - 1e-12)
-    assert row.load_unit == run.problem.load_unit
-
-
-@pytest.mark.parametrize("kind", ["block", "string"])
-def test_table_and_store_of_a_sweep(kind: str) -> None:
-    run = run_of(kind)
-    wanted = ("slip", "peak_rate", "first_slip", "first_static_drop")
-    found = ss.sweep(run.scenario(), {"friction.dynamic": [run.problem.friction.dynamic]}, quantities=wanted)
-    table = table_of(found)
-    expected = {
-        f"slip ({run.problem.unit_of('slip')})": float(run.slip()) - run.problem.initial_slip,
-        f"peak_rate ({run.problem.unit_of('slip')}/s)": run.events.peak_rate.max(),
-        f"first_slip ({run.problem.unit_of('slip')})": run.events.slip[0],
-        f"first_static_drop ({run.problem.load_unit})": run.events.static_drop[0],
-    }
-    for heading, value in expected.items():
-        assert table[heading][0] == pytest.approx(value, rel=1e-6, abs=0.0), heading
-
-
-@pytest.mark.slow
-def test_curves_of_a_contact_of_many_nodes(tmp_path: Path) -> None:
-    scenario = ss.load_scenario("planar-patch")
-    slab = replace(scenario.to_solve, nodes=64)
-    run = ss.simulate(slab, 1.0)
-    table = pd.read_csv(run.to_csv(tmp_path / "a.csv"))
-    units = {"time": "s", "slip": "m", "slip rate": "m/s", "traction": "Pa", "heat": "J/m^2"}
-    assert [parts(heading) for heading in table] == list(units.items())
-    assert float(table["slip (m)"].iloc[-1]) == run.slip[-1, 32]
-    with xr.open_dataset(run.to_csv(tmp_path / "a.nc")) as found:
-        np.testing.assert_array_equal(found["slip"].to_numpy(), run.slip)
-        assert found["heat"].attrs["units"] == "J m-2"
 
 
 @pytest.mark.parametrize("kind", ["block", "slab", "string"])

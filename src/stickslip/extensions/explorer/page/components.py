@@ -21,10 +21,11 @@ from stickslip.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE
 
 LIGHT = {
     "slip": BLUE, "rate": GREEN, "traction": VERMILLION, "load": INK,
-    "stick": INK, "stable": BLUE, "unstable": VERMILLION, "continuum": PURPLE, "path": ORANGE, "law": PURPLE,
+    "stick": INK, "stable": BLUE, "unstable": VERMILLION,
+    "continuum": PURPLE, "path": ORANGE, "law": PURPLE,
     "elastic": BLUE, "kinetic": GREEN, "radiated": SKY, "damped": PURPLE, "heat": VERMILLION,
-    "ink": INK, "muted": "#5A626C", "faint": "#C9CED5", "grid": "#E9ECF0", "card": "#FFFFFF", "ground": PALE, "grey": GREY,
-    "cursor": INK, "front": "#00000050", "pin": GREY,
+    "ink": INK, "muted": "#5A626C", "faint": "#C9CED5", "grid": "#E9ECF0", "card": "#FFFFFF",
+    "ground": PALE, "grey": GREY, "cursor": INK, "front": "#00000050", "pin": GREY,
 }  # fmt: skip
 """Colours by role on a light ground: those of `stickslip.figures.style`."""
 DARK = LIGHT | {

@@ -216,8 +216,9 @@ class Warming:
 
     def _warm(self) -> None:
         try:
-            from stickslip.engine.compile.cache import announce_by, tell
+            from stickslip.engine.compile.cache import announce_by
             from stickslip.extensions.explorer.model.strip import has_strips, strip_of
+            from stickslip.foundation.sealed_files import tell
             from stickslip.problem.scenarios.scenario import load_scenario
             from stickslip.run.simulate import simulate
 

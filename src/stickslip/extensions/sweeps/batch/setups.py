@@ -1,4 +1,4 @@
-"""The input of the engine for many members at once: the counterpart of `engine_input.prepare` with one row for each member."""
+"""The input of the engine for many members at once: the counterpart of `engine.input.prepare` with one row for each member."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def split_times(time: Floats, round_trip: Floats) -> tuple[Integers, Floats]:
 
 
 def formulas(problem: Problem, group: Alike) -> tuple[Floats, Integers]:
-    """Return the constants of the law's functions and the pieces of the law, as `engine_input.prepare.law_tables` does.
+    """Return the constants of the law's functions and the pieces of the law, as `engine.input.prepare.law_tables` does.
 
     Both have a first axis of members, of length 1 if these do not differ.
     """

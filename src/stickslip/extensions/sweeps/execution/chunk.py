@@ -26,6 +26,8 @@ from stickslip.problem.scenarios.scenario import Scenario, read_scenario, scenar
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 
+DECIDE = ("extensions/sweeps/batch", "extensions/sweeps/execution/chunk.py")
+"""Folders and files of the package whose code decides the results of a member, beside that of its run."""
 END = "end_time"
 """The quantity that the message on a failed member needs: the time (s) at the end of its run."""
 MAX_PIECES = 200_000

@@ -20,7 +20,7 @@ from zarr.storage import MemoryStore
 import stickslip
 from stickslip.engine.history.status import engine
 from stickslip.extensions.sweeps.design.design import GRID, IN_WORDS
-from stickslip.extensions.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
+from stickslip.extensions.sweeps.execution.chunk import DECIDE, MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.extensions.sweeps.execution.plan import Plan
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
@@ -115,7 +115,7 @@ def attributes(plan: Plan) -> dict[str, Any]:
         "Conventions": "CF-1.11",
         "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
-        "engine": engine(),
+        "engine": engine(*DECIDE),
         "references": PAPER,
         "scenario": plan.work.text,
         "selection_rule": scenario.problem.rule,

@@ -79,8 +79,8 @@ def _numbers_of(body: OfLayers) -> list[int]:
 def event_energies(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
     """Return the energies of slip events from their first to their last positions.
 
-    The keys are the columns of `observables.event_table.ENERGY_COLUMNS`. The energies are integrated over each event alone, so
-    their digits do not depend on the run before it.
+    The keys are the columns of `solution.observables.event_table.ENERGY_COLUMNS`. The energies are integrated over each event
+    alone, so their digits do not depend on the run before it.
     """
     body = history.problem.body
     if isinstance(body, OfLayers):

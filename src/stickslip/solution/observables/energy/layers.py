@@ -1,4 +1,4 @@
-"""Energy of a body of layers, from its replayed waves (`observables.layers`).
+"""Energy of a body of layers, from its replayed waves (`solution.observables.layers`).
 
 In a cell of impedance Z the waves f and g store (f^2 + g^2) / (4 Z) for each second of travel time. Those that are in the cells at
 a moment left the two ends within the time T of a cell before it, so that all cells have their fronts at the same places. The power

@@ -112,7 +112,7 @@ def pulses_table(history: History, threshold: float) -> pd.DataFrame:
 def _starts(rate: Floats, begin: int, past: int) -> list[int]:
     """Return the first index of each pulse of an event among the turning points of |v|.
 
-    The pulses are those that `trajectory.slip_events.group_turns` counts.
+    The pulses are those that `engine.history.slip_events.group_turns` counts.
     """
     found: list[int] = []
     peak, low = 0.0, begin

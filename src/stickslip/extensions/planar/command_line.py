@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from typing_extensions import override
 
+from stickslip.cli.kinds import KindOfRun, check_same
 from stickslip.cli.output.files import drawing, write_files
 from stickslip.cli.output.pictures import Pictures, animated
 from stickslip.cli.results import RunResults
-from stickslip.cli.work import Work, check_same
 from stickslip.extensions.planar.summary import announce_run, show_run
 from stickslip.extensions.planar.table import planar_slab_of
 from stickslip.foundation.errors import InputError
@@ -69,7 +69,7 @@ def check_pictures(pictures: Pictures, where: str) -> None:
         raise InputError(f"{where}: a [contact] of many nodes has --figure and --animation: leave out {', '.join(others)}")
 
 
-class PlanarWork(Work):
+class PlanarKindOfRun(KindOfRun):
     """The run of a contact of many nodes, in a folder if it is kept."""
 
     suffix = ".zarr"

@@ -1,4 +1,4 @@
-"""How the command line runs and shows each kind of run: its whole history, a catalogue of slip events, or what an extension runs."""
+"""How the command line runs and shows each kind of run: its whole history, a catalogue of slip events, or an extension's run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
-from stickslip.cli.results import FoundEvents, PlainRun, RunResults, WholeRun
+from stickslip.cli.results import EventsOfRun, PlainRun, RunResults, WholeRun
 from stickslip.foundation.errors import InputError
 from stickslip.run.kinds import reader_of, special_solver_of
 from stickslip.run.progress import progress_line
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from stickslip.problem.run_status import Status
 
 
-class Work(ABC):
+class KindOfRun(ABC):
     """A kind of run, as `stickslip run` does it."""
 
     suffix = ".nc"
@@ -43,21 +43,21 @@ class Work(ABC):
         return ""
 
 
-def work_of(request: Request) -> Work:
+def kind_of_run(request: Request) -> KindOfRun:
     """Return the kind of a run, by its scenario or by the file from which it continues. Raises InputError."""
     if request.resume is not None:
         if (reader := reader_of(request.resume)) is not None:
-            return reader.work()
+            return reader.on_command_line()
         from stickslip.solution.files.netcdf import is_catalogue
 
-        return EventsOnly() if is_catalogue(request.resume) else WholeHistory()
+        return EventsOnly() if is_catalogue(request.resume) else RunOfHistory()
     solver = special_solver_of(request.chosen)
     if solver is None:
-        return WholeHistory() if request.catalogue is None else EventsOnly()
-    return PlainWork() if solver.work is None else solver.work()
+        return RunOfHistory() if request.catalogue is None else EventsOnly()
+    return PlainKindOfRun() if solver.on_command_line is None else solver.on_command_line()
 
 
-class WholeHistory(Work):
+class RunOfHistory(KindOfRun):
     """A run of the exact solver with its whole history."""
 
     @override
@@ -93,7 +93,7 @@ class WholeHistory(Work):
         return _with_more_room(results.status, self.file(request), len(results.solution.history))
 
 
-class EventsOnly(Work):
+class EventsOnly(KindOfRun):
     """A run of the exact solver that keeps slip events only, in bounded memory."""
 
     @override
@@ -110,7 +110,7 @@ class EventsOnly(Work):
             check_catalogue(request.catalogue, "--catalogue")
 
     @override
-    def run(self, request: Request) -> FoundEvents:
+    def run(self, request: Request) -> EventsOfRun:
         from stickslip.run.catalogue import catalogue_of, check_energy
         from stickslip.run.options import RunOptions
         from stickslip.run.resume import PausedCatalogue
@@ -120,14 +120,14 @@ class EventsOnly(Work):
             check_energy(chosen.creep_rtol, request.energy, "run", "--energy and --creep-rtol")
             with progress_line(f"{chosen.name}:") as report:
                 options = RunOptions.of(chosen, progress=report, max_pieces=request.max_pieces)
-                return FoundEvents(chosen, catalogue_of(chosen.problem, options, request.catalogue, energy=request.energy))
+                return EventsOfRun(chosen, catalogue_of(chosen.problem, options, request.catalogue, energy=request.energy))
         paused = PausedCatalogue.read(request.resume)
         check_same(request, paused.stopped.problem)
         with progress_line(f"{request.resume.stem}:") as report:
             others = {"progress": report, "max_pieces": request.max_pieces}
             options = RunOptions.to_continue(paused.stopped, request.duration, request.events, **others)
             found = paused.resume(options)
-        return FoundEvents(replace(paused.stopped.scenario(request.resume.stem), duration=options.duration), found)
+        return EventsOfRun(replace(paused.stopped.scenario(request.resume.stem), duration=options.duration), found)
 
     @override
     def file(self, request: Request) -> None:
@@ -135,11 +135,11 @@ class EventsOnly(Work):
 
     @override
     def how_to_go_on(self, request: Request, results: RunResults) -> str:
-        assert isinstance(results, FoundEvents)
+        assert isinstance(results, EventsOfRun)
         return _with_more_room(results.status, results.found.files[-1], request.most_pieces)
 
 
-class PlainWork(Work):
+class PlainKindOfRun(KindOfRun):
     """A run of the solver of an extension that says no more: it is shown, and not kept."""
 
     @override

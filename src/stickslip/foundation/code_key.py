@@ -1,0 +1,82 @@
+"""The key of code: a hash of what is executed, which comments, docstrings, assertions and the layout of lines leave as it is.
+
+It is made from Python's bytecode. The compiler chooses a few instructions by where lines end, so that everything is put on one line
+first. That takes up to 2 s for a hundred files; the key is therefore kept in the cache, under a hash of the files themselves.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from types import CodeType
+
+from stickslip.foundation.private_folder import private_folder
+from stickslip.foundation.sealed_files import cache_root, read_sealed, write_sealed
+
+PACKAGE = Path(__file__).parents[1]
+DIGITS = 16
+"""Number of hexadecimal digits of a key."""
+
+
+def key_of_folders(names: Iterable[str], versions: str, package: Path = PACKAGE) -> str:
+    """Return the key of the code in folders and files of the package, together with the versions of what runs it."""
+    found: list[str] = []
+    for path in (str(package / name) for name in names):
+        inside = [f"{top}/{file}" for top, _, files in os.walk(path) for file in files if file.endswith(".py")]
+        found += inside or [path]  # a file
+    return key_of_files(sorted(set(found)), versions)
+
+
+def key_of_files(files: Iterable[Path | str], versions: str) -> str:
+    """Return the key of the code in files; it is kept if the cache has a private folder for it, or else made each time.
+
+    The folder must be private, because a wrong key would lead to other machine code.
+    """
+    texts = []
+    for file in files:
+        with open(file, "rb", buffering=0) as opened:  # noqa: PTH123  # of hundreds of files, in less time than by Path
+            texts.append(opened.read())
+    digest = hashlib.sha256(versions.encode())
+    for text in texts:
+        digest.update(b"%d " % len(text) + text)
+    kept = None
+    with suppress(OSError):
+        kept = private_folder(cache_root() / "keys") / digest.hexdigest()
+        if (found := read_sealed(kept)) is not None:
+            return found.decode()
+    key = key_of(texts, versions)
+    if kept is not None:
+        with suppress(OSError):  # whatever else is kept in the cache will meet the same fault, and say so
+            write_sealed(kept, key.encode())
+    return key
+
+
+def key_of(texts: Iterable[bytes], versions: str) -> str:
+    """Return the key of the code in some source files."""
+    digest = hashlib.sha256(versions.encode())
+    for text in texts:
+        digest.update(_bytecode(_on_one_line(text)).encode())
+    return digest.hexdigest()[:DIGITS]
+
+
+def _on_one_line(text: bytes) -> CodeType:
+    """Compile a source file as if all of it stood in one place."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.stmt | ast.expr | ast.arg | ast.keyword | ast.alias | ast.pattern | ast.ExceptHandler):
+            node.lineno = node.end_lineno = 1
+            node.col_offset = node.end_col_offset = 0
+    return compile(tree, "", "exec", dont_inherit=True, optimize=2)
+
+
+def _bytecode(code: CodeType) -> str:
+    """Return all that a code object does, with the functions in it, as a text: without numbers of lines."""
+    parts = [code.co_name, code.co_argcount, code.co_kwonlyargcount, code.co_posonlyargcount, code.co_flags, code.co_code]
+    parts += [code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars, code.co_exceptiontable]
+    for one in code.co_consts:
+        parts.append(_bytecode(one) if isinstance(one, CodeType) else sorted(map(repr, one)) if isinstance(one, frozenset) else one)
+    return repr(parts)
