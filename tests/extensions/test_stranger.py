@@ -114,7 +114,7 @@ def test_commands_and_tables_of_a_stranger_are_like_our_own(site: Path) -> None:
     (site / "slab.toml").write_text(
         wrong.replace("[station]\ndistance", "[row]\njoint").replace("2000 km", "1 N/m"), encoding="utf-8"
     )
-    sweep = ["sweep", "far.toml", "--vary", "station.distance=0..1e6:3", "--out", "far.zarr"]
+    sweep = ["sweep", "far.toml", "--vary", "station.distance=0..1e6:3", "--dry-run"]
     commands = [
         ["--help"],
         ["check", "far.toml", "--parameters"],
@@ -127,7 +127,8 @@ def test_commands_and_tables_of_a_stranger_are_like_our_own(site: Path) -> None:
     assert re.search(r"Seismology:\n +spectrum  Tell the spectrum of the slip rate at the \[station\] of a scenario", shown)
     assert re.search(r"station\.distance +m +distance of the station", parameters)
     assert re.search(r"row\.joint +N/m +stiffness of the springs between the blocks", special)
-    assert swept[0] == 0, swept
+    assert swept[0] == 0
+    assert "3 members" in swept[1]
     assert [(code, out) for code, out, _ in refused] == [(2, "")] * 5
     lines = [err for _, _, err in refused]
     assert lines[0] == "stickslip: run: row: a run of this kind has no --rtol: leave it out\n"
@@ -202,6 +203,14 @@ def test_a_scenario_keeps_the_table_of_a_stranger(site: Path) -> None:
     with pytest.raises(ss.InputError, match=r"distance must be at least 0 m, got -1"):
         far.with_values({"station.distance": -1.0})
     assert ss.simulate(far).events.slip[0] == ss.simulate("fig6-slab").events.slip[0]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("strangers")
+def test_a_sweep_over_the_table_of_a_stranger_has_the_members_that_it_says(site: Path) -> None:
+    found = ss.sweep(site / "far.toml", {"station.distance": ["1 km", "5 km"]})
+    assert found["station.distance"].values.tolist() == [1e3, 5e3]
+    assert found.slip.values.tolist() == [ss.simulate("fig6-slab").events.slip[0]] * 2
 
 
 @pytest.mark.usefixtures("strangers")
