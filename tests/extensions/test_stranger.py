@@ -99,30 +99,39 @@ def test_a_package_of_the_page_has_at_most_sixty_lines() -> None:
     assert all(sum(bool(line.strip()) for line in text.splitlines()) <= 60 for text in packages)
 
 
-def test_what_the_page_types_does_what_it_shows(site: Path) -> None:
-    typed = [part.splitlines() for block in PAGE if block.language == "shell" for part in block.text.split("$ stickslip ")[1:]]
-    assert len(typed) == 5
-    for (command, *shown), (code, out, err) in zip(typed, run(site, *(line[0].split() for line in typed)), strict=True):
+TYPED = [part.splitlines() for block in PAGE if block.language == "shell" for part in block.text.split("$ stickslip ")[1:]]
+"""The commands of the page, each with the lines that it shows."""
+OTHERS = [
+    ["--help"],
+    ["check", "far.toml", "--parameters"],
+    ["check", "row.toml"],
+    ["sweep", "far.toml", "--vary", "station.distance=0..1e6:3", "--dry-run"],
+    ["run", "row.toml", "--rtol", "1e-5"],
+    *(["run", f"{name}.toml"] for name in ("key", "unit", "slab")),
+    ["spektrum", "fig6-slab"],
+]
+
+
+@pytest.fixture(scope="module")
+def answers(site: Path) -> list[tuple[int, str, str]]:
+    """What is said to the commands of the page, and to the others."""
+    far = (site / "far.toml").read_text(encoding="utf-8")
+    (site / "key.toml").write_text(far.replace("distance =", "distence ="), encoding="utf-8")
+    (site / "unit.toml").write_text(far.replace("2000 km", "2000 s"), encoding="utf-8")
+    row = far.replace("[station]\ndistance", "[row]\njoint").replace("2000 km", "1 N/m")
+    (site / "slab.toml").write_text(row, encoding="utf-8")
+    return run(site, *(line[0].split() for line in TYPED), *OTHERS)
+
+
+def test_what_the_page_types_does_what_it_shows(answers: list[tuple[int, str, str]]) -> None:
+    assert len(TYPED) == 5
+    for (command, *shown), (code, out, err) in zip(TYPED, answers, strict=False):
         assert missing_lines(shown, out + err) == [], command
         assert code == (2 if shown[0].startswith("stickslip: ") else 0), command
 
 
-def test_commands_and_tables_of_a_stranger_are_like_our_own(site: Path) -> None:
-    wrong = (site / "far.toml").read_text(encoding="utf-8")
-    (site / "key.toml").write_text(wrong.replace("distance =", "distence ="), encoding="utf-8")
-    (site / "unit.toml").write_text(wrong.replace("2000 km", "2000 s"), encoding="utf-8")
-    (site / "slab.toml").write_text(
-        wrong.replace("[station]\ndistance", "[row]\njoint").replace("2000 km", "1 N/m"), encoding="utf-8"
-    )
-    sweep = ["sweep", "far.toml", "--vary", "station.distance=0..1e6:3", "--dry-run"]
-    commands = [
-        ["--help"],
-        ["check", "far.toml", "--parameters"],
-        ["check", "row.toml"],
-        sweep,
-        ["run", "row.toml", "--rtol", "1e-5"],
-    ]
-    found = run(site, *commands, *(["run", f"{name}.toml"] for name in ("key", "unit", "slab")), ["spektrum", "fig6-slab"])
+def test_commands_and_tables_of_a_stranger_are_like_our_own(answers: list[tuple[int, str, str]]) -> None:
+    found = answers[len(TYPED) :]
     (_, shown, _), (_, parameters, _), (_, special, _), swept, *refused = found
     assert re.search(r"Seismology:\n +spectrum  Tell the spectrum of the slip rate at the \[station\] of a scenario", shown)
     assert re.search(r"station\.distance +m +distance of the station", parameters)
