@@ -48,10 +48,10 @@ def main(arguments: list[str]) -> None:
     names = [one for one in arguments if one != "--files"] or list(THINGS)
     for name in names:
         lines = lines_of(loaded(THINGS[name]))
-        print(f"{name:12} {sum(lines.values()):6} lines in {len(lines):3} modules")
+        sys.stdout.write(f"{name:12} {sum(lines.values()):6} lines in {len(lines):3} modules\n")
         if "--files" in arguments:
             for module, count in sorted(lines.items(), key=lambda one: -one[1]):
-                print(f"    {count:5} {module}")
+                sys.stdout.write(f"    {count:5} {module}\n")
 
 
 if __name__ == "__main__":
