@@ -167,9 +167,9 @@ def _is_declared() -> bool:
     `importlib.metadata` takes 50 ms to load, a tenth of what `stickslip --help` takes: it is loaded where there is something to
     find.
     """
-    for folder in map(Path, sys.path):
-        with suppress(OSError):
-            for one in os.scandir(folder):
+    for folder in sys.path:
+        with suppress(OSError), os.scandir(folder or ".") as there:
+            for one in there:
                 if one.name.endswith((".dist-info", ".egg-info")):
                     with suppress(OSError):
                         if f"[{GROUP}]" in Path(one.path, "entry_points.txt").read_text(encoding="utf-8", errors="replace"):

@@ -76,10 +76,13 @@ def _count(text: str, where: str) -> int:
 
 def _in_one_unit(low: str, high: str) -> tuple[str, str]:
     """Return two ends as texts; one that is a number without a unit gets that of the other one."""
-    first, last = split_quantity(low), split_quantity(high)
-    if first and is_number(high):
-        return low, f"{high.strip()} {first[1]}"
-    return (f"{low.strip()} {last[1]}" if last and is_number(low) else low), high
+    if is_number(low) == is_number(high):  # of 1e3 alone `split_quantity` would take the exponent for a unit
+        return low, high
+    if is_number(high):
+        first = split_quantity(low)
+        return low, f"{high.strip()} {first[1]}" if first else high
+    last = split_quantity(high)
+    return f"{low.strip()} {last[1]}" if last else low, high
 
 
 def check_ends(name: str, low: float, high: float, *, log: bool = False, unit: str = "") -> None:

@@ -168,7 +168,7 @@ def simulate(
             "title": title or None,
         }
         check_option_names(of_solver)
-        solver.check("simulate", given | of_solver | {"selection": selection})
+        solver.check("simulate", given | of_solver | {"selection": selection, "checkpoint": checkpoint})
         problem = problem if selection is None else under_rule(problem, selection)
         file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
         others = {"progress": report, "checkpoint": file, "checkpoint_every": checkpoint_every, "of_solver": of_solver}

@@ -77,6 +77,8 @@ def explore(
     'Irregular: several slip rates at some lo'
     """
     check_extra("explore")
+    if record is not None:
+        check_is_there("inference", "explore: record=")
     from stickslip.extensions.explorer.server.start import shown_in_notebook
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.problem.scenarios.source import read_source
@@ -90,7 +92,6 @@ def explore(
     if record is not None and not found.is_of_core:
         raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")
     if record is not None:
-        check_is_there("inference", "explore: record=")
         from stickslip.extensions.inference import record_beside
 
         behind = record_beside(record, sensor, found.problem, "explore")

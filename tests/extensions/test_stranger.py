@@ -1,0 +1,370 @@
+"""Extensions of other packages: those of docs/extensions.md do what the page shows, and bad ones are told in one line."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip import extension
+from stickslip.cli import app, mistyped
+from stickslip.cli.installation import extensions_there
+from stickslip.foundation.errors import InputWarning
+from tests.docs.pages import ROOT, Block, blocks_of, missing_lines
+
+PAGE = blocks_of(ROOT / "docs" / "extensions.md")
+NAME = re.compile(r"# (\S+)\n")
+RUNNER = """
+import io, json, sys
+from contextlib import redirect_stderr, redirect_stdout
+from stickslip.cli.main import main
+found = []
+for arguments in json.load(sys.stdin):
+    out, err, code = io.StringIO(), io.StringIO(), 0
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            main(arguments)
+        except SystemExit as stop:
+            code = stop.code or 0
+    found.append([code, out.getvalue(), err.getvalue()])
+print(json.dumps(found))
+"""
+"""Runs commands one after the other in one process, and prints the code and the output of each."""
+
+
+def named(block: Block) -> str:
+    """The name of the file that a block shows; "" if it shows none."""
+    found = NAME.match(block.text)
+    return found[1] if found else ""
+
+
+def install(site: Path, package: str, code: str, entry: str) -> None:
+    """Put a package with an entry point into a folder, as pip would."""
+    module = entry.partition("= ")[2].partition(":")[0]
+    (site / f"{module}.py").write_text(code, encoding="utf-8")
+    about = site / f"{package.replace('-', '_')}-1.0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.0\n", encoding="utf-8")
+    (about / "entry_points.txt").write_text(f"[stickslip.extensions]\n{entry}\n", encoding="utf-8")
+
+
+def python(site: Path, *arguments: str, given: str = "") -> subprocess.CompletedProcess[str]:
+    path = os.pathsep.join([str(site), str(Path(ss.__file__).parents[1])])
+    environment = os.environ | {"PYTHONPATH": path, "COLUMNS": "200", "MPLBACKEND": "agg"}
+    return subprocess.run([sys.executable, *arguments], cwd=site, env=environment, input=given, capture_output=True, text=True)
+
+
+def run(site: Path, *commands: list[str]) -> list[tuple[int, str, str]]:
+    """Exit code, output and errors of each command, all in one process."""
+    done = python(site, "-c", RUNNER, given=json.dumps(commands))
+    assert done.returncode == 0, done.stderr
+    return [(code, out, err) for code, out, err in json.loads(done.stdout)]
+
+
+# ---- the two packages of the page ------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the two packages of the page, and with its scenarios."""
+    folder = tmp_path_factory.mktemp("site")
+    texts = [(named(block), block.text) for block in PAGE]
+    about = [text for name, text in texts if name == "pyproject.toml"]
+    for name, text in texts:
+        if name.endswith(".py"):
+            project = about.pop(0)
+            entry = re.search(r'stickslip\.extensions"\]\n(\w+) = "(.*)"', project)
+            package = re.search(r'name = "(.*)"', project)
+            assert entry
+            assert package
+            install(folder, package[1], text, f"{entry[1]} = {entry[2]}")
+        elif name not in ("", "pyproject.toml"):
+            (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+def test_a_package_of_the_page_has_at_most_sixty_lines() -> None:
+    packages = [block.text for block in PAGE if named(block).endswith(".py")]
+    assert len(packages) == 2
+    assert all(sum(bool(line.strip()) for line in text.splitlines()) <= 60 for text in packages)
+
+
+TYPED = [part.splitlines() for block in PAGE if block.language == "shell" for part in block.text.split("$ stickslip ")[1:]]
+"""The commands of the page, each with the lines that it shows."""
+OTHERS = [
+    ["--help"],
+    ["check", "far.toml", "--parameters"],
+    ["check", "row.toml"],
+    ["sweep", "far.toml", "--vary", "station.distance=0..1e6:3", "--dry-run"],
+    ["run", "row.toml", "--rtol", "1e-5"],
+    *(["run", f"{name}.toml"] for name in ("key", "unit", "slab")),
+    ["spektrum", "fig6-slab"],
+]
+
+
+@pytest.fixture(scope="module")
+def answers(site: Path) -> list[tuple[int, str, str]]:
+    """What is said to the commands of the page, and to the others."""
+    far = (site / "far.toml").read_text(encoding="utf-8")
+    (site / "key.toml").write_text(far.replace("distance =", "distence ="), encoding="utf-8")
+    (site / "unit.toml").write_text(far.replace("2000 km", "2000 s"), encoding="utf-8")
+    row = far.replace("[station]\ndistance", "[row]\njoint").replace("2000 km", "1 N/m")
+    (site / "slab.toml").write_text(row, encoding="utf-8")
+    return run(site, *(line[0].split() for line in TYPED), *OTHERS)
+
+
+def test_what_the_page_types_does_what_it_shows(answers: list[tuple[int, str, str]]) -> None:
+    assert len(TYPED) == 5
+    for (command, *shown), (code, out, err) in zip(TYPED, answers, strict=False):
+        assert missing_lines(shown, out + err) == [], command
+        assert code == (2 if shown[0].startswith("stickslip: ") else 0), command
+
+
+def test_commands_and_tables_of_a_stranger_are_like_our_own(answers: list[tuple[int, str, str]]) -> None:
+    found = answers[len(TYPED) :]
+    (_, shown, _), (_, parameters, _), (_, special, _), swept, *refused = found
+    assert re.search(r"Seismology:\n +spectrum  Tell the spectrum of the slip rate at the \[station\] of a scenario", shown)
+    assert re.search(r"station\.distance +m +distance of the station", parameters)
+    assert re.search(r"row\.joint +N/m +stiffness of the springs between the blocks", special)
+    assert swept[0] == 0
+    assert "3 members" in swept[1]
+    assert [(code, out) for code, out, _ in refused] == [(2, "")] * 5
+    lines = [err for _, _, err in refused]
+    assert lines[0] == "stickslip: run: row: a run of this kind has no --rtol: leave it out\n"
+    assert lines[1] == "stickslip: key.toml: [station] distence is unknown; did you mean 'distance'?\n"
+    assert lines[2].startswith("stickslip: unit.toml: [station] distance must be a number in m or a text with a unit")
+    assert lines[3] == "stickslip: slab.toml: a [row] needs a spring-block, a law that sticks, and a pull rate above 0\n"
+    assert "did you mean 'spectrum'?" in lines[4]
+
+
+@contextmanager
+def installed_in(folder: Path) -> Iterator[None]:
+    """Let this process look for extensions again, in a further folder, until the end of the block."""
+
+    def look_again() -> None:
+        for cached in (extension.found, extension.tables, extension._public):
+            cached.cache_clear()
+
+    sys.path.insert(0, str(folder))
+    look_again()
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        look_again()
+
+
+@pytest.fixture
+def strangers(site: Path) -> Iterator[None]:
+    """The packages of the page, in this process."""
+    with installed_in(site):
+        yield
+
+
+@pytest.mark.usefixtures("strangers")
+def test_the_spectrum_is_that_of_a_rate_that_is_constant_while_the_slab_slips() -> None:
+    """The slip rate of Fig. 6 is 4.102 m/s for one two-way travel time T: its spectrum is the slip times sin(pi f T) / (pi f T)."""
+    slab = ss.simulate("fig6-slab")
+    frequencies, size = ss.studies.spectrum(slab)
+    slip, lasts = float(slab.slip()), 2.0 * 10e3 / 3500.0
+    low = frequencies < 2.0
+    np.testing.assert_allclose(size[low], slip * np.abs(np.sinc(frequencies[low] * lasts)), rtol=0.0, atol=2e-3 * slip)
+    assert size[0] == pytest.approx(slip, rel=1e-12)
+    station = ss.load_scenario("fig6-slab")
+    assert station.table("station") is None
+    far = extension.tables()["station"].kind()(distance=2e6)
+    weaker = ss.studies.spectrum(slab, far)[1]
+    np.testing.assert_allclose(weaker, size * np.exp(-np.pi * frequencies * 2e6 / 3500.0 / 200.0), rtol=1e-12)
+
+
+@pytest.mark.usefixtures("strangers")
+def test_a_figure_of_a_stranger_is_drawn_and_listed_beside_our_own() -> None:
+    from matplotlib.figure import Figure
+
+    slab = ss.simulate("fig6-slab")
+    assert {"spectrum", "energy"} <= set(dir(slab.plot))
+    drawn = slab.plot.spectrum()
+    (line,) = drawn.axes[0].lines
+    np.testing.assert_array_equal(line.get_ydata(), ss.studies.spectrum(slab)[1][1:])
+    axes = Figure().subplots()
+    assert slab.plot.spectrum(ax=axes) is axes
+    with pytest.raises(AttributeError, match="has no attribute 'spektrum'; did you mean 'spectrum'"):
+        slab.plot.spektrum  # noqa: B018
+
+
+@pytest.mark.usefixtures("strangers")
+def test_a_scenario_keeps_the_table_of_a_stranger(site: Path) -> None:
+    far = ss.load_scenario(site / "far.toml")
+    assert far.table("station").distance == 2e6
+    (site / "again.toml").write_text(far.to_toml(), encoding="utf-8")
+    assert ss.load_scenario(site / "again.toml") == far
+    assert far.with_values({"station.distance": "5 km"}).table("station").distance == 5e3
+    with pytest.raises(ss.InputError, match=r"distance must be at least 0 m, got -1"):
+        far.with_values({"station.distance": -1.0})
+    assert ss.simulate(far).events.slip[0] == ss.simulate("fig6-slab").events.slip[0]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("strangers")
+def test_a_sweep_over_the_table_of_a_stranger_has_the_members_that_it_says(site: Path) -> None:
+    found = ss.sweep(site / "far.toml", {"station.distance": ["1 km", "5 km"]})
+    assert found["station.distance"].values.tolist() == [1e3, 5e3]
+    assert found.slip.values.tolist() == [ss.simulate("fig6-slab").events.slip[0]] * 2
+
+
+@pytest.mark.usefixtures("strangers")
+def test_a_row_of_blocks_without_joints_is_a_hundred_blocks_in_closed_form(site: Path) -> None:
+    """Each block slips (static - dynamic) S / K = 0.02 m, and then waits for 0.02 m of pull, which takes 20 s."""
+    row = ss.load_scenario(site / "row.toml")
+    times, blocks, slips = np.array(ss.simulate(row.with_values({"row.joint": 0.0}))).T
+    assert set(blocks) == {1.0}
+    np.testing.assert_allclose(slips, 0.02, rtol=1e-9)
+    np.testing.assert_allclose(times[100:] - times[:-100], 20.0, rtol=1e-9)
+    np.testing.assert_allclose(times[:100], np.sort(20.0 * np.random.default_rng(0).random(100)), rtol=1e-9)
+
+
+@pytest.mark.usefixtures("strangers")
+def test_a_row_of_blocks_slips_as_far_as_it_is_pulled(site: Path) -> None:
+    """Joints only pass loads on: over 60 s the sum of the slips is that of the pull, but for loads between the two frictions."""
+    row = ss.load_scenario(site / "row.toml")
+    whole, of_object = ss.simulate(row), ss.simulate(row.to_solve, "60 s")
+    assert list(whole) == list(of_object)
+    slips = sum(slip for _, _, slip in whole)
+    assert abs(slips - 100 * 60.0 * 1e-3) <= 100 * (0.7 - 0.5) * 100.0 / 1e3
+    assert 1 < max(blocks for _, blocks, _ in whole) <= 100
+    for wrong in ({"rtol": 1e-6}, {"checkpoint": "row.nc"}):
+        with pytest.raises(ss.InputError, match=f"simulate: a row of blocks has no {next(iter(wrong))}"):
+            ss.simulate(row, **wrong)
+    with pytest.raises(ss.InputError, match=r"has a \[row\], for which there are"):
+        ss.uniqueness(row)
+
+
+@pytest.mark.usefixtures("strangers")
+def test_doctor_names_the_packages_of_extensions() -> None:
+    rows = [(one.name, one.value, one.fault) for one in extensions_there()]
+    own = ", ".join(sorted(path.parent.name for path in Path(ss.__file__).parent.glob("extensions/*/__init__.py")))
+    assert rows[0] == ("extensions", own, "")
+    assert rows[1:] == [("extension", "row of stickslip-row 1.0", ""), ("extension", "spectrum of stickslip-spectrum 1.0", "")]
+
+
+# ---- bad extensions --------------------------------------------------------------------------------------------------------------
+
+HEAD = "from stickslip.extension import Extension\nclass Other(Extension):\n    name = 'other'\n"
+END = "EXTENSION = Other()\n"
+COMMAND = HEAD + "    def commands(self):\n        def check(): ...\n        return {'Mine': (check,)}\n" + END
+BAD = {
+    "cannot be imported": (
+        "import no_such_library\n",
+        r"other:EXTENSION of bad 1\.0 cannot be used \(ModuleNotFoundError: No module",
+    ),
+    "ends the process": ("raise SystemExit(3)\n", r"cannot be used \(SystemExit: 3\)"),
+    "is of another class": ("EXTENSION = 3\n", r"\(TypeError: it is no instance of stickslip\.extension\.Extension, but a int\)"),
+    "is a class": (f"{HEAD}EXTENSION = Other\n", r"it is no instance of stickslip\.extension\.Extension, but a type\)"),
+    "has another name": (
+        HEAD.replace("'other'", "'odder'") + END,
+        r"\(TypeError: its name is 'odder', and that of its entry point 'other'",
+    ),
+    "needs what is not there": (
+        f"{HEAD}    needs = ('spectra', 'maps')\n{END}",
+        "it needs the extensions 'spectra' and 'maps', which are not",
+    ),
+    "has no such object": ("", r"cannot be used \(AttributeError: module 'other' has no attribute 'EXTENSION'"),
+}
+
+
+@pytest.fixture
+def bad(tmp_path: Path) -> Iterator[Callable[[str], None]]:
+    """Return a function that installs an extension "other" with some code, in this process."""
+
+    def installed(code: str) -> None:
+        install(tmp_path, "bad", code, "other = other:EXTENSION")
+        extension.found.cache_clear()
+
+    with installed_in(tmp_path):
+        yield installed
+    sys.modules.pop("other", None)
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_a_bad_extension_is_left_out_with_one_line(bad: Callable[[str], None], kind: str) -> None:
+    code, why = BAD[kind]
+    bad(code)
+    with pytest.warns(InputWarning, match=f"^the extension 'other' is left out: .*{why}") as told:
+        assert "other" not in [one.name for one in extension.extensions()]
+    assert len(told) == 1
+    assert "\n" not in str(told[0].message)
+    (left_out,) = [one.value for one in extensions_there() if one.name == "left out"]
+    assert (
+        f"the extension {str(told[0].message).partition('the extension ')[2]}"
+        == f"the extension 'other' is left out{left_out.removeprefix('other')}"
+    )
+
+
+def test_an_extension_that_fails_when_it_is_asked_adds_nothing(bad: Callable[[str], None]) -> None:
+    bad(f"{HEAD}    def commands(self):\n        return {{'Mine': no_such_name}}\n{END}")
+    with pytest.warns(
+        InputWarning, match=r"'other' cannot say which commands it adds \(NameError: name 'no_such_name' is not defined"
+    ):
+        groups = app._all_groups()
+    assert "Mine" not in groups
+
+
+def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None]) -> None:
+    bad(COMMAND)
+    with pytest.raises(ss.InputError, match="two extensions, or one and the core, have a command 'check': uninstall one"):
+        app._all_groups()
+
+
+def test_a_table_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None]) -> None:
+    bad(f"{HEAD}    def tables(self):\n        return {{'contact': None}}\n{END}")
+    with pytest.raises(ss.InputError, match=r"the extensions 'planar' and 'other' both add the table 'contact': uninstall one"):
+        ss.load_scenario("fig6-slab")
+
+
+def test_a_command_of_an_extension_that_is_left_out_says_what_it_needs(bad: Callable[[str], None]) -> None:
+    bad(COMMAND.replace("name = 'other'", "name = 'other'\n    needs = ('maps',)").replace("check", "chart"))
+    with pytest.warns(InputWarning):
+        extension.extensions()
+    said = "'chart' is a command of the extension 'other', which is left out: it needs the extension 'maps', which is not installed"
+    assert mistyped.unknown_command("chart", ["run"]) == said
+
+
+def test_beside_bad_extensions_everything_else_works(tmp_path: Path) -> None:
+    install(tmp_path, "first-bad", "import no_such_library\n", "first = first:EXTENSION")
+    install(tmp_path, "second-bad", "EXTENSION = 3\n", "second = second:EXTENSION")
+    done = python(tmp_path, "-m", "stickslip", "new", "--list")
+    assert done.returncode == 0
+    assert "fig6-slab" in done.stdout
+    notes = done.stderr.splitlines()
+    assert [line.partition(" is left out: ")[0] for line in notes] == [
+        f"stickslip: note: the extension '{name}'" for name in ("first", "second")
+    ]
+
+
+def test_without_an_extension_its_names_and_what_uses_it_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    there = {name: one for name, one in extension.found().there.items() if name not in ("inference", "sweeps")}
+    monkeypatch.setattr(extension, "found", lambda: extension.Found(there, dict.fromkeys(there, ""), ()))
+    extension._public.cache_clear()
+    try:
+        for name, owner in (("sweep", "sweeps"), ("studies", "inference")):
+            holder: Any = ss if name == "sweep" else ss.studies
+            wanted = "sweep" if name == "sweep" else "infer"
+            vars(holder).pop(wanted, None)
+            with pytest.raises(
+                AttributeError, match=f"has no {wanted} here: it belongs to the extension '{owner}', which is not installed"
+            ):
+                getattr(holder, wanted)
+        with pytest.raises(ss.InputError, match="explore: record= needs the extension 'inference', which is not installed"):
+            ss.explore("fig6-slab", record={"time (s)": [0.0, 1.0], "mu": [0.5, 0.5]})
+    finally:
+        extension._public.cache_clear()
