@@ -13,7 +13,8 @@ from itertools import pairwise
 from typing import Literal
 
 from stickslip.contact.branches import resistance
-from stickslip.contact.folds import Verdict, certificate, lowest_slope, lowest_slopes
+from stickslip.contact.folds import Verdict, certificate
+from stickslip.contact.lowest_slope import lowest_slope, lowest_slopes
 from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.errors import InputError

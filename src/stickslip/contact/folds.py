@@ -1,19 +1,14 @@
-"""Folds of the resistance g(v) = Z v + S mu(v), and its smallest slope, each with a proof by bounds of g' and g''.
+"""Folds of the resistance g(v) = Z v + S mu(v), with a proof by bounds of g' and g''.
 
-The proofs are those of `contact.turns` and `contact.lowest_slope`; here they meet a contact.
+The proofs are those of `contact.turns`; here they meet a contact.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import ClassVar, Literal
 
-import numpy as np
-
-from stickslip.contact.lowest_slope import find_lowest, polished
 from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
 from stickslip.contact.turns import PROVEN, find_turns, folds_of
 from stickslip.foundation.errors import InputError
@@ -24,11 +19,6 @@ Verdict = Literal["proven", "not decided"]
 """proven: by interval arithmetic. not decided: proven except on some intervals of slip rates."""
 Interval = tuple[float, float]
 
-_TOLERANCE, _NEAR = 1e-12, 1e3
-"""The search for the smallest g' ends when its two bounds differ by less than _TOLERANCE, relative to the larger of Z and |g'|. If
-rounding keeps them apart by at most _NEAR times that, the smallest g' still counts as proven."""
-_ROUNDING = 8.0 * float(np.finfo(float).eps)
-"""Relative rounding error allowed for three operations."""
 MOST_FOLDS = 1024
 """Largest number of folds that a contact may have. Friction that rises and falls with the slip rate for ever has any number."""
 _MOST_SHOWN = 6
@@ -81,20 +71,6 @@ class Certificate:
         return next((one for one in self.turns if one[0] <= rate <= one[1]), None)
 
 
-@dataclass(frozen=True)
-class LowestSlope:
-    """The smallest g' (Pa s/m) at slip rates up to 1e30 m/s: proven bounds, its value to rounding, and where it is (m/s).
-
-    The verdict is "not decided" if the lower bound could not be brought close to the upper one.
-    """
-
-    verdict: Verdict
-    at_least: float
-    at_most: float
-    slope: float
-    rate: float
-
-
 @lru_cache(maxsize=64)
 def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     """Prove where g' changes its sign, with at most `budget` evaluations.
@@ -124,43 +100,6 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     if reach < FASTEST and rates and g.slope(reach) <= 0.0:
         rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
     return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)
-
-
-@lru_cache(maxsize=64)
-def lowest_slope(g: Resistance) -> LowestSlope:
-    """Return `lowest_slopes` of one contact."""
-    return lowest_slopes([g])[0]
-
-
-def lowest_slopes(contacts: Sequence[Resistance], tolerance: float = _TOLERANCE) -> list[LowestSlope]:
-    """Bound the smallest g' of each contact, and find it to rounding, for contacts under laws of one kind.
-
-    The tolerance of the bounds is relative to the larger of Z and the smallest g' itself.
-    """
-    if not contacts:
-        return []
-    pieces = pieces_of(contacts)
-    found = find_lowest(pieces, tolerance)
-    columns = (one.tolist() for one in (found.at_least, found.at_most, *polished(pieces, found)))
-    lowest = []
-    for g, least, most, rate, slope in zip(contacts, *columns, strict=True):
-        near = most - least <= _NEAR * tolerance * max(g.damping, abs(most))
-        lowest.append(LowestSlope("proven" if near else "not decided", least, most, slope, rate))
-    return lowest
-
-
-def critical_stress_between(g: Resistance) -> Interval | None:
-    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) by the bounds of the smallest g'.
-
-    Returns None if friction is not proven to fall with the slip rate, if it steps down as slip begins, or without finite bounds.
-    """
-    if not g.law.depends_on_rate or g.law.static_excess > 0.0:
-        return None
-    lowest = lowest_slope(g)
-    steepest, at_least = ((g.damping - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))
-    if not (at_least > 0.0 and math.isfinite(steepest)):
-        return None
-    return g.damping / steepest * (1.0 - _ROUNDING), g.damping / at_least * (1.0 + _ROUNDING)
 
 
 def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:

@@ -5,14 +5,25 @@ Source: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis, ch. 11 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW, SLOWEST, Integers, Pieces, cut_between
+from stickslip.contact.folds import Interval, Verdict
+from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW, SLOWEST, Integers, Pieces, cut_between, pieces_of
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.resistance import Resistance
 
+_TOLERANCE, _NEAR = 1e-12, 1e3
+"""The search for the smallest g' ends when its two bounds differ by less than _TOLERANCE, relative to the larger of Z and |g'|. If
+rounding keeps them apart by at most _NEAR times that, the smallest g' still counts as proven."""
+_ROUNDING = 8.0 * float(np.finfo(float).eps)
+"""Relative rounding error allowed for three operations."""
 CUTS = 8
 """A cell is cut into this many parts."""
 PARTS = np.linspace(0.0, 1.0, 257)
@@ -93,3 +104,54 @@ def polished(of: Pieces, found: LowestOfEach) -> tuple[Floats, Floats]:
     values = 0.5 * (seen.low + seen.high).reshape(places.shape)
     best = values.argmin(axis=0), np.arange(len(low))
     return places[best], values[best]
+
+
+@dataclass(frozen=True)
+class LowestSlope:
+    """The smallest g' (Pa s/m) at slip rates up to 1e30 m/s: proven bounds, its value to rounding, and where it is (m/s).
+
+    The verdict is "not decided" if the lower bound could not be brought close to the upper one.
+    """
+
+    verdict: Verdict
+    at_least: float
+    at_most: float
+    slope: float
+    rate: float
+
+
+@lru_cache(maxsize=64)
+def lowest_slope(g: Resistance) -> LowestSlope:
+    """Return `lowest_slopes` of one contact."""
+    return lowest_slopes([g])[0]
+
+
+def lowest_slopes(contacts: Sequence[Resistance], tolerance: float = _TOLERANCE) -> list[LowestSlope]:
+    """Bound the smallest g' of each contact, and find it to rounding, for contacts under laws of one kind.
+
+    The tolerance of the bounds is relative to the larger of Z and the smallest g' itself.
+    """
+    if not contacts:
+        return []
+    pieces = pieces_of(contacts)
+    found = find_lowest(pieces, tolerance)
+    columns = (one.tolist() for one in (found.at_least, found.at_most, *polished(pieces, found)))
+    lowest = []
+    for g, least, most, rate, slope in zip(contacts, *columns, strict=True):
+        near = most - least <= _NEAR * tolerance * max(g.damping, abs(most))
+        lowest.append(LowestSlope("proven" if near else "not decided", least, most, slope, rate))
+    return lowest
+
+
+def critical_stress_between(g: Resistance) -> Interval | None:
+    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) by the bounds of the smallest g'.
+
+    Returns None if friction is not proven to fall with the slip rate, if it steps down as slip begins, or without finite bounds.
+    """
+    if not g.law.depends_on_rate or g.law.static_excess > 0.0:
+        return None
+    lowest = lowest_slope(g)
+    steepest, at_least = ((g.damping - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))
+    if not (at_least > 0.0 and math.isfinite(steepest)):
+        return None
+    return g.damping / steepest * (1.0 - _ROUNDING), g.damping / at_least * (1.0 + _ROUNDING)

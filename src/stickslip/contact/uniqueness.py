@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.contact.branches import branches_of, rates_at, resistance
 from stickslip.contact.critical import critical_normal_stress, nearest_critical
-from stickslip.contact.folds import Certificate, Fold, Verdict, critical_stress_between, sentence
+from stickslip.contact.folds import Certificate, Fold, Verdict, sentence
+from stickslip.contact.lowest_slope import critical_stress_between
 from stickslip.contact.regime import Regime, named_regime, proof_of, window_of
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of

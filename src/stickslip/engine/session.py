@@ -36,7 +36,6 @@ from stickslip.engine.state.workspace import (
     with_more_rows,
 )
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
-from stickslip.foundation.memory import granted
 from stickslip.problem.limits import creep_tolerance
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_codes import Stop
@@ -207,6 +206,8 @@ class Session(Generic[Options]):
 
     def _fitting(self, pieces: int) -> int:
         """Return how many of so many pieces fit into the memory that the history may take."""
+        from stickslip.foundation.memory import granted  # of long histories
+
         size, waves = self.size_of_piece, self.waves.nbytes
         return min(pieces, math.floor((granted(pieces * size + waves, self.taken) - waves) / size + 0.5))
 
@@ -222,6 +223,8 @@ class Session(Generic[Options]):
 
     def _more_rows(self) -> bool:
         """Make room for more rows of waves. Returns False if memory is short."""
+        from stickslip.foundation.memory import granted  # of long histories
+
         wanted = self.taken + 3 * self.waves.nbytes
         if granted(wanted, self.taken) < wanted:
             self.is_short_of_memory = True

@@ -50,6 +50,12 @@ def _required() -> Any:
     return field()
 
 
+def _is_body(given: Any) -> bool:
+    """Return True if a value is a body of a kind that is known."""
+    kind = getattr(given, "kind", None)
+    return isinstance(kind, str) and kind in BODIES and isinstance(given, BODIES[kind])
+
+
 @dataclass(frozen=True)
 class ProblemFields(CheckedArguments):
     """The fields of a `Problem`, which describes them."""
@@ -88,11 +94,12 @@ class ProblemFields(CheckedArguments):
     )
 
     def __post_init__(self) -> None:
-        bodies = tuple(BODIES.values())
-        if isinstance(self.body, FrictionLaw) and isinstance(self.friction, bodies):
+        if isinstance(self.body, FrictionLaw) and _is_body(self.friction):
             names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
             raise InputError(f"Problem: body comes first, then friction: got {names}")
-        check_type("Problem: body", self.body, bodies, " or ".join(body.__name__ for body in bodies))
+        if not _is_body(self.body):
+            bodies = tuple(BODIES.values())
+            check_type("Problem: body", self.body, bodies, " or ".join(body.__name__ for body in bodies))
         if not isinstance(self.friction, FrictionLaw):
             from stickslip.friction.custom.from_function import as_law
 

@@ -14,7 +14,6 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.problem.scenarios.source import read_source, under_rule
 from stickslip.problem.selection_rule import SelectionRule
-from stickslip.run.exact_run import ExactRun
 from stickslip.run.kinds import ALL_TAKE, SolverKind, Special, special_solver_of, special_solvers
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
 from stickslip.run.progress import Progress, reporting
@@ -191,6 +190,8 @@ def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solutio
     """Run a contact that slips as a whole (one node) from t = 0: see `simulate`."""
     if options.checkpoint is not None:
         check_replaceable(options.checkpoint, f"simulate: {options.checkpoint}")
+    from stickslip.run.exact_run import ExactRun  # which loads the engine, as no other solver does
+
     problem = source if isinstance(source, Problem) else source.problem
     with options.alone():
         run = ExactRun.begin(problem, options.check("simulate", problem))

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from stickslip.engine.history.history import Epoch, History
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.quantities import Quantity
@@ -20,6 +19,8 @@ from stickslip.solution.evaluation import Curve
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+    from stickslip.engine.history.history import Epoch, History
 
 MARGIN = 0.1
 """Default time shown on either side of an event, as a share of its duration."""
@@ -103,6 +104,8 @@ def window_around(
     solution: Exports, event: pd.Series, before: float | str | WithUnit | None, after: float | str | WithUnit | None
 ) -> Window:
     """Return the window on an event; see `Solution.window`."""
+    from stickslip.engine.history.history import Epoch
+
     lasts = float(event.duration)
     history = solution.history.seen_from(Epoch(int(event.start_row), float(event.start_offset)))
     if math.isnan(lasts):

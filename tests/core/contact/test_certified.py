@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.critical import critical_normal_stress, critical_value, margin
-from stickslip.contact.folds import certificate, lowest_slope
+from stickslip.contact.folds import certificate
+from stickslip.contact.lowest_slope import lowest_slope
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine.input.branch_table import table_of_branches
 from stickslip.engine.state.layout import BranchRow

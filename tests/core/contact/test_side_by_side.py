@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.folds import certificate, lowest_slope, lowest_slopes
+from stickslip.contact.folds import certificate
+from stickslip.contact.lowest_slope import lowest_slope, lowest_slopes
 from stickslip.contact.slopes import pieces_of
 from stickslip.contact.turns import PROVEN, find_turns
 from stickslip.problem.resistance import Resistance

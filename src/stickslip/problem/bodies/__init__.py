@@ -1,32 +1,21 @@
 """The bodies: a block on a spring and slabs, of one layer or several, that slide; a disc on a spring and a string that turn."""
 
-from stickslip.problem.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
-from stickslip.problem.bodies.layered import LayeredSlab, OfLayers, TwoSlabs
-from stickslip.problem.bodies.sections import SectionedString
-from stickslip.problem.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
-from stickslip.problem.bodies.turning import RotatingBlock, TorsionalString
+from stickslip.foundation.classes_by_kind import ClassesByKind
+from stickslip.foundation.lazy_names import lazy_names
+from stickslip.problem.bodies.contract import BodyOnCharacteristics
 
-BODIES: dict[str, type[BodyOnCharacteristics]] = {
-    body.kind: body for body in (SpringBlock, ElasticSlab, LayeredSlab, TwoSlabs, RotatingBlock, TorsionalString, SectionedString)
-}
-"""Every body by its name in scenario files."""
+BODIES: ClassesByKind[BodyOnCharacteristics] = ClassesByKind(
+    "stickslip.problem.bodies",
+    {
+        "spring-block": "sliding.SpringBlock",
+        "elastic-slab": "sliding.ElasticSlab",
+        "layered-slab": "layered.LayeredSlab",
+        "two-slabs": "layered.TwoSlabs",
+        "rotating-block": "turning.RotatingBlock",
+        "torsional-string": "turning.TorsionalString",
+        "sectioned-string": "sections.SectionedString",
+    },
+)
+"""The class of every body by its name in scenario files."""
 
-__all__ = [
-    "BODIES",
-    "MACHINE",
-    "Body",
-    "BodyOnCharacteristics",
-    "BodyWithWaves",
-    "ElasticSlab",
-    "LayeredSlab",
-    "OfLayers",
-    "RotatingBlock",
-    "SectionedString",
-    "SpringBlock",
-    "TorsionalString",
-    "TwoSlabs",
-    "as_block",
-    "as_slab",
-    "as_waves",
-    "has_dashpot",
-]
+__getattr__, __dir__ = lazy_names(__name__, __file__)

@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import KINDS, Name, si_unit
-from stickslip.foundation.quantities import check_fields
+from stickslip.foundation.quantities import Quantity, check_fields
 
 
 class Body(Protocol):
@@ -131,6 +131,8 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
 
+WEIGHT_ON_BIT = Quantity("N", "weight on the bit: a force, compression positive", above=0)
+"""How the normal load of a body that turns on its bit may be given, and vary."""
 MACHINE = "a driver with a mass or an integral gain"
 """Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from stickslip.foundation.conversion import Number, Numbers, OptionalNumber, OptionalNumbers
 from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import check_body, check_driver
+from stickslip.problem.bodies.contract import WEIGHT_ON_BIT, check_body, check_driver
 from stickslip.problem.bodies.layered import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
 from stickslip.problem.bodies.soft_torque import with_soft_torque
 from stickslip.problem.bodies.turning import (
@@ -21,7 +21,6 @@ from stickslip.problem.bodies.turning import (
     INNER,
     NORMAL_TORQUE,
     OUTER,
-    WEIGHT_ON_BIT,
     OnBit,
     RotatingBlock,
     check_pipe,

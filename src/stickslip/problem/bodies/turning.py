@@ -13,12 +13,11 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.contract import WEIGHT_ON_BIT, OnSpring, WithWaves, check_body, check_driver, check_equivalent
 from stickslip.problem.bodies.soft_torque import with_soft_torque
 
 OUTER = "outer diameter of the section"
 INNER = "inner diameter of the section"
-WEIGHT_ON_BIT = Quantity("N", "weight on the bit: a force, compression positive", above=0)
 BIT_RADIUS = Quantity("m", "effective radius of the bit: 2/3 of its own if the weight is spread evenly", above=0)
 NORMAL_TORQUE = Quantity("N m", "torque of the bit if mu is 1, in place of weight and radius", above=0)
 DRIVE = Quantity(
