@@ -28,7 +28,7 @@ from tests.extensions.inference.files_of_programs import CLOCK, FORCE, RAM, labv
 
 import stickslip as ss
 from benchmarks.damages import RECORDS, copied, damage, edit, edit_metadata
-from stickslip.cli.commands.show import stored
+from stickslip.cli.stored import stored
 from stickslip.extensions.sweeps.results.store import open_store
 from stickslip.extensions.sweeps.shown import SweepResults
 

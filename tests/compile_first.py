@@ -22,7 +22,7 @@ def main() -> None:
         repr(ss.simulate(scenario))  # with events and all else that a summary compiles
         examine(scenario)
     for path in sorted(Path(__file__).with_name("extensions").glob("*/compile_first.py")):
-        import_module(f"tests.extensions.{path.parent.name}.compile_first").main()
+        import_module(f"{__package__}.extensions.{path.parent.name}.compile_first").main()
 
 
 if __name__ == "__main__":

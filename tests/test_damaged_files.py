@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.cli.commands.show import stored
+from stickslip.cli.stored import stored
 from stickslip.engine.history.status import Checkpoint
 from stickslip.engine.state.layout import NEVER, Counts, State
 from stickslip.foundation import atomic_write, netcdf_file

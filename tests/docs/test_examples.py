@@ -155,10 +155,9 @@ def test_a_law_is_one_file_and_its_line_in_laws(tmp_path: Path) -> None:
     scenario = next(block.text for block in blocks if block.language == "toml")
     (package / "friction" / "laws" / "two_distance_weakening.py").write_text(law, encoding="utf-8")
     listing = package / "friction" / "__init__.py"
-    text = listing.read_text(encoding="utf-8").replace(
-        "LAWS: dict", "from stickslip.friction.laws.two_distance_weakening import TwoDistanceWeakening\n\nLAWS: dict", 1
-    )
-    listing.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        TwoDistanceWeakening,\n", text), encoding="utf-8")
+    text = listing.read_text(encoding="utf-8")
+    place = '        "two-distance-weakening": "laws.two_distance_weakening.TwoDistanceWeakening",\n'
+    listing.write_text(re.sub(r"(\n    \"stickslip.friction\",\n    \{\n)", rf"\1{place}", text), encoding="utf-8")
     (tmp_path / "mine.toml").write_text(scenario, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", TWO_COMMANDS],

@@ -81,10 +81,10 @@ def test_pages_build_without_a_warning_where_sphinx_is_installed(tmp_path: Path)
 
 
 def test_every_independent_solution_is_in_the_reference() -> None:
-    """The page names all that a module of `stickslip.run.reference` defines, but for the parts that others return."""
+    """The page names all that a module of references defines, but for the parts that others return."""
     page = (DOCS / "site" / "api" / "reference.rst").read_text(encoding="utf-8")
-    defined = set()
-    for path in (ROOT / "src" / "stickslip" / "reference").rglob("*.py"):
+    defined, package = set(), ROOT / "src" / "stickslip"
+    for path in (*(package / "run" / "reference").rglob("*.py"), *package.glob("extensions/*/reference.py")):
         module = ".".join(path.relative_to(ROOT / "src").with_suffix("").parts)
         nodes = ast.parse(path.read_text(encoding="utf-8")).body
         defined |= {
@@ -118,7 +118,7 @@ def test_every_promise_names_a_test() -> None:
 def test_the_diagram_of_the_loop_names_what_there_is() -> None:
     diagram = (DOCS / "figures" / "states-of-the-loop.svg").read_text(encoding="utf-8").partition("</defs>")[2]
     named = set(re.findall(r"\w+_\w+|\b[A-Z]{3,}\b", re.sub(r"<[^>]*>", " ", diagram)))
-    source = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "src" / "stickslip" / "engine").rglob("*.py"))
+    source = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "src" / "stickslip").rglob("*.py"))
     assert {"next_piece", "approach_fold", "depart_from_fold", "PAUSED"} <= named
     assert [name for name in sorted(named) if not re.search(rf"^def {name}\(|^    {name} = ", source, re.MULTILINE)] == []
 

@@ -1,7 +1,7 @@
 """The key of code: a hash of what is executed, which comments, docstrings, assertions and the layout of lines leave as it is.
 
 It is made from Python's bytecode. The compiler chooses a few instructions by where lines end, so that everything is put on one line
-first. That takes up to 2 s for a hundred files; the key is therefore kept in the cache, under a hash of the files themselves.
+first. That takes a second for three hundred files; the key is therefore kept in the cache, under a hash of the files themselves.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import hashlib
 import os
 from collections.abc import Iterable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from types import CodeType
 
@@ -20,6 +21,8 @@ from stickslip.foundation.sealed_files import cache_root, read_sealed, write_sea
 PACKAGE = Path(__file__).parents[1]
 DIGITS = 16
 """Number of hexadecimal digits of a key."""
+ONE_PLACE = {"lineno": 1, "end_lineno": 1, "col_offset": 0, "end_col_offset": 0}
+"""Where all code is put."""
 
 
 def key_of_folders(names: Iterable[str], versions: str, package: Path = PACKAGE) -> str:
@@ -41,7 +44,7 @@ def key_of_files(files: Iterable[Path | str], versions: str) -> str:
         with open(file, "rb", buffering=0) as opened:  # noqa: PTH123  # of hundreds of files, in less time than by Path
             texts.append(opened.read())
     digest = hashlib.sha256(versions.encode())
-    for text in texts:
+    for text in (Path(__file__).read_bytes(), *texts):  # how a key is made decides it, too
         digest.update(b"%d " % len(text) + text)
     kept = None
     with suppress(OSError):
@@ -59,18 +62,23 @@ def key_of(texts: Iterable[bytes], versions: str) -> str:
     """Return the key of the code in some source files."""
     digest = hashlib.sha256(versions.encode())
     for text in texts:
-        digest.update(_bytecode(_on_one_line(text)).encode())
+        digest.update(_executed(text))
     return digest.hexdigest()[:DIGITS]
 
 
-def _on_one_line(text: bytes) -> CodeType:
-    """Compile a source file as if all of it stood in one place."""
+@cache  # most files belong to two keys: that of machine code, and that of a checkpoint
+def _executed(text: bytes) -> bytes:
+    """Return the hash of the code in a source file, compiled as if all of it stood in one place."""
     tree = ast.parse(text)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.stmt | ast.expr | ast.arg | ast.keyword | ast.alias | ast.pattern | ast.ExceptHandler):
-            node.lineno = node.end_lineno = 1
-            node.col_offset = node.end_col_offset = 0
-    return compile(tree, "", "exec", dont_inherit=True, optimize=2)
+    todo: list[ast.AST] = [tree]
+    while todo:
+        inside = vars(todo.pop())
+        if "lineno" in inside:
+            inside |= ONE_PLACE
+        for one in inside.values():
+            todo += [each for each in (one if isinstance(one, list) else [one]) if isinstance(each, ast.AST)]
+    code = compile(tree, "", "exec", dont_inherit=True, optimize=2)
+    return hashlib.sha256(_bytecode(code).encode()).digest()
 
 
 def _bytecode(code: CodeType) -> str:

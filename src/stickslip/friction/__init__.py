@@ -1,72 +1,48 @@
-"""Export the friction laws of the contact.
+"""Export the friction laws of the contact; each is imported when it is first used.
 
-To add a law, add a class to `laws` (docs/adding-a-law.md), and here its import, its place in `LAWS` and its name in `__all__`.
-`FromExpression`, `FromFunction` and `FromTable` make laws from formulas, functions and measured points of users;
-`smooth` and `fit`, of an extension, make laws from noisy points. `__init__.pyi` is the page of all names.
+To add a law, add a class to `laws` (docs/adding-a-law.md), its place to `LAWS`, and its import and name to `__init__.pyi`, the page
+of all names. `FromExpression`, `FromFunction` and `FromTable` make laws from formulas, functions and measured points of users;
+`smooth` and `fit`, of an extension, make laws from noisy points.
 """
 
-from stickslip.foundation.lazy_names import other_names
-from stickslip.friction.custom.from_expression import FromExpression
-from stickslip.friction.custom.from_function import FromFunction
-from stickslip.friction.custom.points import FromTable, Points
-from stickslip.friction.law import FrictionLaw
-from stickslip.friction.laws.bristles import Dahl, LuGre
-from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
-from stickslip.friction.laws.of_rate import (
-    Coulomb,
-    ExponentialStribeck,
-    HyperbolicRate,
-    PiecewiseLinearRate,
-    PowerStribeck,
-    VelocityStrengthening,
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stickslip.foundation.classes_by_kind import ClassesByKind
+from stickslip.foundation.lazy_names import lazy_names
+
+if TYPE_CHECKING:
+    from stickslip.friction.law import FrictionLaw
+
+LAWS: ClassesByKind[FrictionLaw] = ClassesByKind(
+    "stickslip.friction",
+    {
+        "sinusoidal-slip": "laws.of_slip.SinusoidalSlip",
+        "hyperbolic-rate": "laws.of_rate.HyperbolicRate",
+        "coulomb": "laws.of_rate.Coulomb",
+        "linear-slip-weakening": "laws.of_slip.LinearSlipWeakening",
+        "exponential-slip-weakening": "laws.of_slip.ExponentialSlipWeakening",
+        "power-slip-weakening": "laws.of_slip.PowerSlipWeakening",
+        "parabolic-slip-weakening": "laws.of_slip.ParabolicSlipWeakening",
+        "exponential-cohesive-zone": "laws.of_slip.ExponentialCohesiveZone",
+        "piecewise-linear-slip": "laws.polylines.PiecewiseLinearSlip",
+        "exponential-stribeck": "laws.of_rate.ExponentialStribeck",
+        "power-stribeck": "laws.of_rate.PowerStribeck",
+        "piecewise-linear-rate": "laws.polylines.PiecewiseLinearRate",
+        "velocity-strengthening": "laws.of_rate.VelocityStrengthening",
+        "rate-and-state": "laws.rate_and_state.RateAndState",
+        "two-state-rate-and-state": "laws.rate_and_state.TwoStateRateAndState",
+        "lagged": "laws.combined.LaggedFriction",
+        "lugre": "laws.bristles.LuGre",
+        "dahl": "laws.bristles.Dahl",
+        "flash-heating": "laws.rate_and_state.FlashHeating",
+        "sum": "laws.combined.SlipPlusRate",
+        "product": "laws.combined.SlipTimesRate",
+        "expression": "custom.from_expression.FromExpression",
+        "table": "custom.points.FromTable",
+    },
 )
-from stickslip.friction.laws.of_slip import (
-    ExponentialCohesiveZone,
-    ExponentialSlipWeakening,
-    LinearSlipWeakening,
-    ParabolicSlipWeakening,
-    PiecewiseLinearSlip,
-    PowerSlipWeakening,
-    SinusoidalSlip,
-)
-from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState, TwoStateRateAndState
+"""The class of every friction law by its name in scenario files, in the order of tables."""
 
-LAWS: dict[str, type[FrictionLaw]] = {
-    law.kind: law
-    for law in (
-        SinusoidalSlip,
-        HyperbolicRate,
-        Coulomb,
-        LinearSlipWeakening,
-        ExponentialSlipWeakening,
-        PowerSlipWeakening,
-        ParabolicSlipWeakening,
-        ExponentialCohesiveZone,
-        PiecewiseLinearSlip,
-        ExponentialStribeck,
-        PowerStribeck,
-        PiecewiseLinearRate,
-        VelocityStrengthening,
-        RateAndState,
-        TwoStateRateAndState,
-        LaggedFriction,
-        LuGre,
-        Dahl,
-        FlashHeating,
-        SlipPlusRate,
-        SlipTimesRate,
-        FromExpression,
-        FromTable,
-    )
-}
-"""Every friction law by its name in scenario files."""
-
-__all__ = ["LAWS", "FrictionLaw", "FromExpression", "FromFunction", "FromTable"]
-__all__ += ["Points"]
-__all__ += ["Coulomb", "Dahl", "FlashHeating", "LuGre"]
-__all__ += ["HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
-__all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
-__all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerSlipWeakening", "PowerStribeck", "SinusoidalSlip"]
-__all__ += ["SlipPlusRate", "SlipTimesRate"]
-
-__getattr__ = other_names(__name__)
+__getattr__, __dir__ = lazy_names(__name__, __file__)

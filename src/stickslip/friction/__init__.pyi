@@ -1,6 +1,7 @@
 # The friction laws of the contact, and what makes laws from measured points.
 from stickslip.extensions.inference.points.fit import Fit, fit, fit_each
 from stickslip.extensions.inference.points.smooth import Smooth, smooth
+from stickslip.foundation.classes_by_kind import ClassesByKind
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
 from stickslip.friction.custom.points import FromTable, Points
@@ -11,7 +12,6 @@ from stickslip.friction.laws.of_rate import (
     Coulomb,
     ExponentialStribeck,
     HyperbolicRate,
-    PiecewiseLinearRate,
     PowerStribeck,
     VelocityStrengthening,
 )
@@ -20,13 +20,13 @@ from stickslip.friction.laws.of_slip import (
     ExponentialSlipWeakening,
     LinearSlipWeakening,
     ParabolicSlipWeakening,
-    PiecewiseLinearSlip,
     PowerSlipWeakening,
     SinusoidalSlip,
 )
-from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState
+from stickslip.friction.laws.polylines import PiecewiseLinearRate, PiecewiseLinearSlip
+from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState, TwoStateRateAndState
 
-LAWS: dict[str, type[FrictionLaw]]
+LAWS: ClassesByKind[FrictionLaw]
 
 __all__ = [
     "LAWS",
@@ -56,6 +56,7 @@ __all__ = [
     "SlipPlusRate",
     "SlipTimesRate",
     "Smooth",
+    "TwoStateRateAndState",
     "VelocityStrengthening",
     "fit",
     "fit_each",

@@ -18,8 +18,6 @@ from stickslip.foundation.names import KINDS, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.friction.custom.from_function import as_law
-from stickslip.friction.pressed import Pressed
 from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics, OfLayers
 from stickslip.problem.ground import Ground
 from stickslip.problem.loading import VARYING, LoadingHistory
@@ -95,7 +93,10 @@ class ProblemFields(CheckedArguments):
             names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
             raise InputError(f"Problem: body comes first, then friction: got {names}")
         check_type("Problem: body", self.body, bodies, " or ".join(body.__name__ for body in bodies))
-        object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
+        if not isinstance(self.friction, FrictionLaw):
+            from stickslip.friction.custom.from_function import as_law
+
+            object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         if isinstance(self.normal_load, LoadingHistory):
             object.__setattr__(self, "normal_load", begun_with_body(self.normal_load, self.body))
         self._check_varying()
@@ -323,6 +324,8 @@ class ProblemFields(CheckedArguments):
         if self.normal_load is None:
             return self.friction
         least, most = self.normal_load.lowest / self.normal, self.normal_load.highest / self.normal
+        from stickslip.friction.pressed import Pressed
+
         return Pressed(self.friction, least, most)
 
     @property

@@ -17,7 +17,10 @@ from stickslip.foundation.given import shown_in
 from stickslip.problem.scenarios.templates import template
 
 TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_name("clumsy.toml").read_text(encoding="utf-8"))
+OF_EXTENSIONS = sorted(Path(__file__).parents[2].glob("extensions/*/clumsy.toml"))
+"""What is typed of the extensions whose tests are there."""
 GROUPS = [group for name, group in TABLE.items() if name != "si"]
+GROUPS += [group for path in OF_EXTENSIONS for group in tomllib.loads(path.read_text(encoding="utf-8")).values()]
 REFUSED: dict[str, str] = {typed: wanted for group in GROUPS for typed, wanted in group.get("refused", {}).items()}
 ANSWERED: dict[str, str] = {typed: wanted for group in GROUPS for typed, wanted in group.get("answered", {}).items()}
 MOST_NAMES = 8

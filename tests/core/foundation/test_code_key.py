@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import ast
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from stickslip.engine.history.status import DECIDE, engine
+from stickslip.foundation import code_key
 from stickslip.foundation.code_key import PACKAGE, key_of, key_of_files, key_of_folders
 from stickslip.foundation.sealed_files import read_sealed, write_sealed
 
@@ -95,6 +99,9 @@ def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path, monk
     (kept,) = (tmp_path / "keys").iterdir()
     write_sealed(kept, b"0" * len(key))
     assert key_of_files([file], "") == "0" * len(key)  # what is read is used
+    with monkeypatch.context() as later:  # keys were made in another way when that one was kept
+        later.setattr(code_key, "__file__", str(file))
+        assert key_of_files([file], "") == key
     write_sealed(tmp_path / "keys" / "another", b"1" * len(key))
     for damaged in (b"\xff damaged", b"1" * len(key), (tmp_path / "keys" / "another").read_bytes()):
         kept.write_bytes(damaged)
@@ -160,3 +167,29 @@ def test_a_checkpoint_has_the_key_of_all_these_folders_and_of_those_that_an_exte
     assert engine() == key_of_folders(DECIDE, SOURCES)
     assert engine("foundation") == key_of_folders((*DECIDE, "foundation"), SOURCES) != engine()
     assert all((PACKAGE / name).is_dir() for name in DECIDE)
+
+
+@pytest.mark.slow
+def test_a_run_is_resumed_after_an_edited_docstring_and_refused_after_an_edited_constant(tmp_path: Path) -> None:
+    shutil.copytree(PACKAGE, tmp_path / "src" / "stickslip", ignore=shutil.ignore_patterns("__pycache__"))
+
+    def python(code: str) -> str:
+        settings = os.environ | {"PYTHONPATH": str(tmp_path / "src")}
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, env=settings)
+        return done.stdout.strip() or done.stderr.splitlines()[-1]
+
+    def edit(name: str, old: str, new: str) -> None:
+        path = tmp_path / "src" / "stickslip" / name
+        text = path.read_text(encoding="utf-8")
+        assert text.count(old) == 1
+        path.write_text(text.replace(old, new), encoding="utf-8")
+
+    begun = "import stickslip as ss; print(ss.simulate('cycles-block', duration=30.0, checkpoint='run.nc').status.name)"
+    resumed = "import stickslip as ss; print(ss.resume('run.nc', duration={}).status.name)"
+    assert python(begun) == "finished"
+    edit("contact/secant.py", '"""\n\nfrom __future__', ' Now."""\n\nfrom __future__')
+    assert python(resumed.format(40.0)) == "finished"
+    edit("contact/secant.py", "\nfrom __future__ import annotations\n", "\nfrom __future__ import annotations\n\nONE_MORE = 1.0\n")
+    said = python(resumed.format(50.0))
+    assert "run.nc: cannot be resumed: another version of stickslip's engine made it" in said
+    assert said.endswith("run it again from the start")

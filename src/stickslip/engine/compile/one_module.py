@@ -35,7 +35,6 @@ from stickslip.engine.compile.numba_privates import (
     dumps,
     rtsys,
 )
-from stickslip.engine.compile.shortcuts import at_speed, is_counted
 from stickslip.foundation.sealed_files import tell
 
 PASSES = tuple(
@@ -65,6 +64,8 @@ class Passes:
 
     def run(self, state: Any) -> None:
         """Compile what is in `state`. Ends of variables are written only if some hold references that are counted."""
+        from stickslip.engine.compile.shortcuts import is_counted
+
         for one in PASSES:
             if not isinstance(one, IRLegalization) or any(is_counted(state.targetctx, kind) for kind in state.typemap.values()):
                 one.run_pass(state)
@@ -79,6 +80,8 @@ class LeanCompiler(Compiler):  # type: ignore[misc] # numba is untyped
 
     def compile_extra(self, function: Any) -> Any:
         """Compile a function, with all that it calls."""
+        from stickslip.engine.compile.shortcuts import at_speed  # machine code from the disk needs none
+
         with at_speed():
             return super().compile_extra(function)
 

@@ -244,6 +244,12 @@ def machine_at_first(problem: Problem) -> tuple[float, float]:
     return (force + left) / (body.last_impedance + body.driver_impedance), 0.0
 
 
+def tone_of(problem: Problem) -> Tone:
+    """Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground (of its velocity, m/s)."""
+    inflow = inflow_of(problem).tone
+    return inflow if problem.ground is None or inflow.amplitude != 0.0 or not problem.body.has_waves else problem.ground.tone
+
+
 def settled_rate(problem: Problem, time: Floats) -> Floats:
     """Return the rate (m/s) that a machine tends to while the contact rests, under the loading that has arrived at times (s).
 

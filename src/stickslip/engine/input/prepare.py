@@ -24,11 +24,11 @@ from stickslip.engine.input.forcing import (
     pull_of,
     steady_inflow,
     steady_ramp,
+    tone_of,
     wave_before,
 )
 from stickslip.engine.input.ladder import first_pieces, ladder_of, set_counts
 from stickslip.engine.input.limits import set_length, set_lumping
-from stickslip.engine.input.shaking import force_steps, put_ground, shaking_of, tone_of
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
@@ -259,9 +259,11 @@ def loading_of(problem: Problem) -> at.Floats:
     """Return the segments of inflow and normal load, and where they arrive; an empty one if both are steady."""
     if not problem.varies:
         return NOT_VARYING
+    from stickslip.engine.input import shaking  # of moving ground
+
     inflow, pressing = inflow_of(problem), pressing_of(problem)
     ground, body = problem.ground, problem.body
-    shaken = shaking_of(problem) if ground is not None and body.has_waves and body.is_uniform else None
+    shaken = shaking.shaking_of(problem) if ground is not None and body.has_waves and body.is_uniform else None
     start = np.union1d(inflow.start if shaken is None else shaken.start, pressing.start)
     if ground is not None and not body.is_uniform:
         start = np.union1d(start, ground.start)
@@ -278,10 +280,10 @@ def loading_of(problem: Problem) -> at.Floats:
     else:
         shaken.put(segments, start)
     if ground is not None and not body.has_waves:
-        segments.step = force_steps(problem, start)
+        segments.step = shaking.force_steps(problem, start)
         segments.jump[1:] = segments.step[1:] != 0.0
     elif ground is not None and not body.is_uniform:
-        put_ground(segments, ground, start)
+        shaking.put_ground(segments, ground, start)
     for one, value, slope in straight:
         of = np.searchsorted(one.start, start, side="right") - 1
         begins, grows = one.value[of] + one.slope[of] * (start - one.start[of]), one.slope[of]

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.input.forcing import Inflow, inflow_of
+from stickslip.engine.input.forcing import Inflow, inflow_of, tone_of
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.ground import Ground
 from stickslip.problem.loading import Tone
@@ -23,12 +23,6 @@ from stickslip.problem.problem import Problem
 
 STILL = 1e-15
 """Ground whose velocity is below this share of its largest one (1) is at rest: the rest is rounding of sums."""
-
-
-def tone_of(problem: Problem) -> Tone:
-    """Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground (of its velocity, m/s)."""
-    inflow = inflow_of(problem).tone
-    return inflow if problem.ground is None or inflow.amplitude != 0.0 or not problem.body.has_waves else problem.ground.tone
 
 
 def force_steps(problem: Problem, start: Floats) -> Floats:

@@ -216,8 +216,9 @@ def nodes_of(root: Expression) -> tuple[Expression, ...]:
 
 def __getattr__(name: str) -> Any:
     """Return a function such as `exp`, which laws of users have imported from here."""
-    from stickslip.friction.formula import functions, operations
+    if not name.startswith("__"):  # as Python asks for __path__ in every import from here
+        from stickslip.friction.formula import functions, operations
 
-    if name in operations.FUNCTIONS:
-        return getattr(functions, name)
+        if name in operations.FUNCTIONS:
+            return getattr(functions, name)
     raise AttributeError(f"module {__name__} has no attribute {name!r}")

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from typing_extensions import override
 
-from stickslip.foundation.conversion import Number, Numbers
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
+from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.functions import exp, log
 from stickslip.friction.law import FrictionLaw, Stribeck
-from stickslip.friction.piecewise import PiecewiseLinearLaw
 
 
 @dataclass(frozen=True)
@@ -106,25 +104,6 @@ class PowerStribeck(Stribeck):
     @override
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.dynamic + (law.static - law.dynamic) / (1.0 + (v / law.rate) ** law.exponent) + law.viscosity * v
-
-
-@dataclass(frozen=True)
-class PiecewiseLinearRate(PiecewiseLinearLaw):
-    """mu(v) runs straight from point to point, and is constant below the first and beyond the last."""
-
-    kind = "piecewise-linear-rate"
-    source = "a polyline through the user's points"
-    knot_variable = "rate"
-    example: ClassVar = {"rates": [0.0, "1 cm/s", "1 m/s"], "coefficients": [0.6, 0.5, 0.3]}
-    columns: ClassVar = {"slip_rate": "rates", "friction": "coefficients"}
-
-    rates: Numbers = declare(NumberSeries(Quantity("m/s", "slip rates of the points", at_least=0), ascending=True))
-    coefficients: Sequence[float] = declare(NumberSeries(Quantity("1", "friction coefficients at the points", at_least=0)))
-
-    @property
-    @override
-    def points(self) -> tuple[Sequence[float], Sequence[float]]:
-        return self.rates, self.coefficients
 
 
 @dataclass(frozen=True)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from typing_extensions import override
 
-from stickslip.foundation.conversion import Number, Numbers
-from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
+from stickslip.foundation.conversion import Number
+from stickslip.foundation.quantities import quantity
 from stickslip.friction.contract import Formula
 from stickslip.friction.formula.functions import exp, sin
 from stickslip.friction.law import RemembersSlip, SlipWeakening, hull
-from stickslip.friction.piecewise import PiecewiseLinearLaw
 
 
 @dataclass(frozen=True)
@@ -180,25 +178,3 @@ class SinusoidalSlip(RemembersSlip):
     @override
     def range(self) -> tuple[float, float]:
         return self.mean - abs(self.amplitude), self.mean + abs(self.amplitude)
-
-
-@dataclass(frozen=True)
-class PiecewiseLinearSlip(RemembersSlip, PiecewiseLinearLaw):
-    """mu(d) runs straight from point to point, and is constant before the first and beyond the last; d is the slip path."""
-
-    kind = "piecewise-linear-slip"
-    source = (
-        "Bolotskaya & Hager 2022, Bull. Seismol. Soc. Am., doi:10.1785/0120220052 (double slip weakening with initial "
-        "strengthening)"
-    )
-    counts = "path"
-    example: ClassVar = {"slips": [0.0, "5 cm", "0.2 m", "0.5 m"], "coefficients": [0.55, 0.6, 0.45, 0.4]}
-    columns: ClassVar = {"slip": "slips", "friction": "coefficients"}
-
-    slips: Numbers = declare(NumberSeries(Quantity("m", "slips of the points", at_least=0), ascending=True))
-    coefficients: Sequence[float] = declare(NumberSeries(Quantity("1", "friction coefficients at the points", at_least=0)))
-
-    @property
-    @override
-    def points(self) -> tuple[Sequence[float], Sequence[float]]:
-        return self.slips, self.coefficients

@@ -15,7 +15,6 @@ from stickslip.extension import tables
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
-from stickslip.foundation.headings import TURNED
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Field as Declared
@@ -30,7 +29,7 @@ from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
-from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_points, read_typed
+from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_typed
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
@@ -266,16 +265,17 @@ def read_table(
     """Check one table and return it, with the points from a data file if the table names one. Raises InputError."""
     columns = columns_of(table, kind, heading)
     if columns and "file" in raw:
+        from stickslip.problem.scenarios.points_of_files import read_points  # few scenarios name a file
+
         name = raw["file"]
         both = next((key for key in columns.values() if key in raw), None)
         if both or not isinstance(name, str):
             got = f"and {both} exclude each other" if both else f"must be text in quotes, got {shown(name)}"
             raise InputError(f"{source.file}: [{table}] file {got}")
         along = raw.get("along") if len(columns) > 2 else None
-        if source.load_unit == TURNS:
-            columns, along = {TURNED.get(column, column): key for column, key in columns.items()}, TURNED.get(str(along), along)
         named = raw.get("columns")
-        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along, named=named)
+        turns = source.load_unit == TURNS
+        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along, named=named, turns=turns)
         taken = {"file", "columns"} if along is None else {"file", "columns", "along"}
         raw = {key: value for key, value in raw.items() if key not in taken} | points
     return _read_keys(keys_of(table, kind, states), raw, source, table)

@@ -7,9 +7,8 @@ import re
 from pathlib import Path
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.atomic_write import BINARY, read_bounded
 from stickslip.foundation.errors import InputError, did_you_mean, meant
-from stickslip.foundation.netcdf_file import MAGIC
 from stickslip.problem.scenarios import library
 
 LARGEST_SCENARIO_FILE = 1_000_000
@@ -21,7 +20,7 @@ _TABLE = (
 )
 _PICTURE = "a picture, not a scenario"
 _STARTS = (
-    (MAGIC, _SHOW),
+    (BINARY[".nc"], _SHOW),
     (b"CDF", _SHOW),
     (b"PAR1", _SHOW),
     (b"\x89PNG", _PICTURE),
