@@ -6,11 +6,13 @@ import ast
 import importlib
 import subprocess
 import sys
+from importlib.util import resolve_name
 from pathlib import Path
 
 import pytest
 
 import stickslip as ss
+from stickslip.foundation.lazy_names import lazy_names
 from tests.limits import mypy_on
 
 LAZY = ("stickslip", "stickslip.studies", "stickslip.figures")
@@ -40,10 +42,17 @@ def test_stub_and_lazy_table_agree(package: str) -> None:
 def test_each_name_is_what_the_stub_says(package: str) -> None:
     for node in stub_of(package).body:
         if isinstance(node, ast.ImportFrom):
-            assert node.level == 1
-            home = importlib.import_module(f"{package}.{node.module}" if node.module else package)
+            home = importlib.import_module(resolve_name("." * node.level + (node.module or ""), package))
             for alias in node.names:
                 assert getattr(importlib.import_module(package), alias.name) is getattr(home, alias.name)
+
+
+def test_what_a_stub_imports_for_a_type_is_no_name_of_the_package(tmp_path: Path) -> None:
+    (tmp_path / "__init__.pyi").write_text(
+        "from stickslip.foundation.errors import InputError, nearest\n"
+        "TABLE: dict[str, InputError]\n__all__ = ['TABLE', 'nearest']\n"
+    )
+    assert lazy_names("made.up", str(tmp_path / "__init__.py"))[1]() == ["TABLE", "nearest"]
 
 
 def test_functions_are_not_hidden_by_their_modules() -> None:
