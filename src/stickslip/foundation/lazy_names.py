@@ -88,10 +88,6 @@ def other_names(package: str) -> Get:
     def get(name: str) -> Any:
         if not name.startswith("__") and name in (added := public_names(package)):
             return home_of(added[name])
-        stub = Path(sys.modules[package].__file__ or "").with_suffix(".pyi")
-        home = _homes(package, stub).get(name, ("", ""))[0] if stub.is_file() else ""
-        if home.startswith(GROUP):  # an extension that is not there
-            raise _missing(package, name, home)
         from stickslip.foundation.errors import UnknownAttributeError
 
         raise UnknownAttributeError(sys.modules[package], name)
