@@ -74,19 +74,12 @@ def other_names(package: str) -> Get:
     def get(name: str) -> Any:
         if not name.startswith("__") and name in (added := public_names(package)):
             return home_of(added[name])
-        if (home := _home_in_stub(package, name)).startswith(GROUP):  # of an extension that is not there
+        stub = Path(sys.modules[package].__file__ or "").with_suffix(".pyi")
+        home = _homes(package, stub).get(name, ("", ""))[0] if stub.is_file() else ""
+        if home.startswith(GROUP):  # an extension that is not there
             raise _missing(package, name, home)
         from stickslip.foundation.errors import UnknownAttributeError
 
         raise UnknownAttributeError(sys.modules[package], name)
 
     return get
-
-
-def _home_in_stub(package: str, name: str) -> str:
-    """Return the module from which the stub of a package imports a name; "" if it imports no such name, or there is no stub."""
-    stub = Path(sys.modules[package].__file__ or "").with_suffix(".pyi")
-    for node in ast.parse(stub.read_text(encoding="utf-8")).body if stub.is_file() else ():
-        if isinstance(node, ast.ImportFrom) and name in (alias.asname or alias.name for alias in node.names):
-            return resolve_name("." * node.level + (node.module or ""), package)
-    return ""
