@@ -19,6 +19,7 @@ from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWrite
 from stickslip.engine.memory.records import FLOATS, MemoryRecord
 from stickslip.engine.state import layout, workspace
 from stickslip.friction.formula.expression import Expression
+from stickslip.problem import run_codes
 
 SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
 FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenmp", "-Wl,-Bsymbolic")
@@ -70,7 +71,7 @@ def header(writer: FormulaWriter) -> str:
     """law.h: the engine's records as structures, its codes as numbers, and the law."""
     names = {name: value for module in (layout, workspace) for name, value in vars(module).items() if isinstance(value, int)}
     names |= {
-        code.name: int(code) for codes in (layout.Stop, layout.Cause, layout.Incoming) for code in codes if code.name != "NONE"
+        code.name: int(code) for codes in (run_codes.Stop, layout.Cause, layout.Incoming) for code in codes if code.name != "NONE"
     }
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
     for name in ("RATIOS", "SHRUNK", "SHRUNK_SLOPE"):

@@ -17,10 +17,11 @@ from benchmarks.explorer_in_browser import print_table
 from stickslip.extensions.explorer.model.answer import Answer
 from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.explorer.model.solve import solve
-from stickslip.extensions.explorer.model.strip import StripRange, strip_of
+from stickslip.extensions.explorer.model.strip import MEMBERS, strip_of
 from stickslip.extensions.explorer.page.page import TITLES
 from stickslip.extensions.explorer.page.panels import view_of
 from stickslip.extensions.explorer.page.view import headings_of, view_bytes
+from stickslip.foundation.axis import Axis
 
 CASES = (
     ("fig5-slab-printed", "friction.wavenumber", 5.0),
@@ -60,7 +61,7 @@ def measure(name: str, path: str, value: float) -> tuple[float, float, float, fl
     size = max(len(picture_of(one)) for one in answers)
     answer = least(lambda k: solve(settings[k].scenario()))
     picture = least(lambda k: picture_of(answers[k % 3]))
-    where = StripRange(path, 0.5 * value, 2.0 * value)
+    where = Axis(path, 0.5 * value, 2.0 * value, MEMBERS)
     strip_of(setting.scenario(), where)
     strip = least(lambda k: strip_of(setting.scenario(), where), 5)
     return answer, picture, size / 1e3, strip

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
+from stickslip.foundation.lazy_names import lazy_names
 from tests.limits import mypy_on
 
 LAZY = ("stickslip", "stickslip.studies", "stickslip.figures", "stickslip.friction", "stickslip.problem.bodies")
@@ -44,6 +45,14 @@ def test_each_name_is_what_the_stub_says(package: str) -> None:
             home = importlib.import_module(resolve_name("." * node.level + (node.module or ""), package))
             for alias in node.names:
                 assert getattr(importlib.import_module(package), alias.name) is getattr(home, alias.name)
+
+
+def test_what_a_stub_imports_for_a_type_is_no_name_of_the_package(tmp_path: Path) -> None:
+    (tmp_path / "__init__.pyi").write_text(
+        "from stickslip.foundation.errors import InputError, nearest\n"
+        "TABLE: dict[str, InputError]\n__all__ = ['TABLE', 'nearest']\n"
+    )
+    assert lazy_names("made.up", str(tmp_path / "__init__.py"))[1]() == ["TABLE", "nearest"]
 
 
 def test_functions_are_not_hidden_by_their_modules() -> None:

@@ -21,12 +21,12 @@ def lazy_names(package: str, file: str) -> tuple[Get, Callable[[], list[str]]]:
     The stub names those of our own extensions, too, for type checkers. While the program runs, extensions say themselves what they
     add, so that a name whose extension is not there is answered with what is missing.
     """
-    homes = _homes(package, Path(file).with_suffix(".pyi"))
+    homes, own = _homes(package, Path(file).with_suffix(".pyi"))
     of_core = {name: home for name, home in homes.items() if not home[0].startswith(GROUP)}
     others = other_names(package)
 
     def listed() -> list[str]:
-        return sorted({*of_core, *public_names(package)})
+        return sorted({*own, *of_core, *public_names(package)})
 
     def get(name: str) -> Any:
         if name == "__all__":
@@ -45,15 +45,21 @@ def lazy_names(package: str, file: str) -> tuple[Get, Callable[[], list[str]]]:
     return get, listed
 
 
-def _homes(package: str, stub: Path) -> dict[str, tuple[str, str]]:
-    """Return the names of a stub, each with the module that it is imported from and its name there."""
+def _homes(package: str, stub: Path) -> tuple[dict[str, tuple[str, str]], set[str]]:
+    """Return the names that a stub imports, each with its module and its name there, and the names of the package itself.
+
+    What the stub imports for a type, and does not list in `__all__`, is none of them.
+    """
     tree = ast.parse(stub.read_text(encoding="utf-8"))
     found: dict[str, tuple[str, str]] = {}
+    listed: set[str] = set()
     for node in tree.body:
         if isinstance(node, ast.ImportFrom):
             module = resolve_name("." * node.level + (node.module or ""), package)
             found |= {alias.asname or alias.name: (module, alias.name) for alias in node.names}
-    return found
+        elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            listed = set(ast.literal_eval(node.value))
+    return {name: home for name, home in found.items() if name in listed}, listed - found.keys()
 
 
 def _inside(module: str, name: str) -> Any:

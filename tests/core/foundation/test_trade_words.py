@@ -214,7 +214,7 @@ def test_a_misspelt_word_and_words_in_another_order_are_answered_as_those_meant(
 
 
 def test_no_answer_names_many() -> None:
-    for many in (list(library.names()), list(COMMANDS), list(ss.friction.LAWS), dir(run())):
+    for many in (list(library.names()), [*COMMANDS, *library.STARTERS], list(ss.friction.LAWS), dir(run())):
         said = nearest("qqqq", many, listed="there")
         assert said.count(",") < MOST_NAMED
         assert said.endswith(f" and {len(many) - said.count(',') - 1} more: there")

@@ -31,7 +31,6 @@ def test_show_repeats_the_summary_of_a_sweep(command: Command):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["."], ".: exists and is not the store of a sweep"),
         (["run.nc", "--quantity", "slip"], "show: --quantity chooses what is drawn of a sweep, and run.nc is not a sweep"),
         (["map.zarr", "--energy-figure", "a.png"], "map.zarr: the results of a sweep have no --energy-figure: --figure draws"),
     ],

@@ -3,8 +3,8 @@
 Machine code and pickles from the cache folder are executed. The folder must therefore belong to this user alone (see
 `private_folder`). If there is no such folder, each process compiles for itself.
 
-Every file carries a checksum (`sealed_files`), because LLVM does not check what it loads: of 300 machine codes with one wrong bit 30
-ended the process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is compiled again.
+Every file carries a checksum (`sealed_files`), because LLVM does not check what it loads: of 300 machine codes with one wrong bit
+30 ended the process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is compiled again.
 
 The name of the folder contains the key of all code that is compiled (`code_key`), so that an edited kernel never meets its old
 machine code, and an edited comment, docstring or line break leaves it as it is.

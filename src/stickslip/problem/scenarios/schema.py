@@ -256,6 +256,8 @@ def check_rule(value: Any, where: str, name: str) -> str:
 
 def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
     """Return a parsed TOML document if it has a scenario's texts and tables, whose content is not checked. Raises InputError."""
+    if clash := next((name for name in tables() if name in _DOCUMENT), None):
+        raise InputError(f"an extension adds the table '{clash}' to scenario files, which is there already: uninstall it")
     return _read_keys(_DOCUMENT | {name: Key(_read_inner, None) for name in tables()}, raw, source)
 
 
