@@ -91,6 +91,7 @@ def every_name() -> set[str]:
     from stickslip.problem.scenarios.schema import TABLES, keys_of
     from stickslip.problem.selection_rule import SELECTION_RULES
     from stickslip.run.find import WHAT
+    from stickslip.run.kinds import special_solvers
 
     registered = (
         BODIES,
@@ -117,6 +118,7 @@ def every_name() -> set[str]:
     found |= {*dir(run()), *run().events.columns, *dir(scenario("fig6-slab").problem), *dir(ss.studies.compare(run(), run()))}
     for call in (ss.simulate, ss.catalogue, ss.sweep, ss.studies.infer, ss.friction.fit):
         found |= set(inspect.signature(call).parameters)
+    found |= {option for solver in special_solvers() for option in solver.takes}
     return {plain(name) for name in found}
 
 
