@@ -17,8 +17,8 @@ from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.extensions.sweeps.batch.long_member import run_alone
-from stickslip.extensions.sweeps.batch.setups import Alike, alike, set_up
-from stickslip.extensions.sweeps.batch.vectorised_problem import Values, are_fine, groups, member, why_not
+from stickslip.engine.lanes.setups import Alike, alike, set_up
+from stickslip.engine.lanes.vectorised_problem import Values, are_fine, groups, member, why_not
 from stickslip.foundation.errors import InputError
 from stickslip.problem.run_codes import BAD_PARAMETERS, INTERRUPTED, Stop
 from stickslip.problem.scenarios.scenario import Scenario

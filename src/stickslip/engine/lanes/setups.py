@@ -27,7 +27,7 @@ from stickslip.engine.lanes.branch_search import MOST_BRANCHES, NEVER_RISES, TOO
 from stickslip.engine.lanes.runs import fill_constants
 from stickslip.engine.lanes.workspace import Setups
 from stickslip.engine.state.layout import BranchRow, Counts, Floats, Integers, LawPiece, Params, State
-from stickslip.extensions.sweeps.batch.vectorised_problem import Values, member, vectorised_problem
+from stickslip.engine.lanes.vectorised_problem import Values, member, vectorised_problem
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
