@@ -15,7 +15,7 @@ import stickslip as ss
 from stickslip.foundation.lazy_names import lazy_names
 from tests.limits import mypy_on
 
-LAZY = ("stickslip", "stickslip.studies", "stickslip.figures")
+LAZY = ("stickslip", "stickslip.studies", "stickslip.figures", "stickslip.friction", "stickslip.problem.bodies")
 """Packages whose names are those of their stub."""
 
 

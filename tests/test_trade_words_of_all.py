@@ -88,7 +88,7 @@ def every_name() -> set[str]:
     from stickslip.foundation.names import QUANTITIES
     from stickslip.problem.bodies import BODIES
     from stickslip.problem.loading import HISTORIES
-    from stickslip.problem.scenarios.schema import CONTACT, TABLES, keys_of
+    from stickslip.problem.scenarios.schema import TABLES, keys_of
     from stickslip.problem.selection_rule import SELECTION_RULES
     from stickslip.run.find import WHAT
 
@@ -104,7 +104,7 @@ def every_name() -> set[str]:
         KEYWORDS,
         SENSORS,
         TABLES,
-        (CONTACT,),
+        ("contact",),
     )
     found = {name for table in registered for name in table} | set(COMMANDS) | set(library.STARTERS) | set(library.names())
     kinds = [*BODIES.values(), *ss.friction.LAWS.values(), *HISTORIES.values()]

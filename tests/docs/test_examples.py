@@ -154,7 +154,7 @@ def test_a_law_is_one_file_and_its_line_in_laws(tmp_path: Path) -> None:
     law = next(block.text for block in blocks if "class TwoDistanceWeakening" in block.text)
     scenario = next(block.text for block in blocks if block.language == "toml")
     (package / "friction" / "laws" / "two_distance_weakening.py").write_text(law, encoding="utf-8")
-    listing = package / "friction" / "__init__.py"
+    listing = package / "friction" / "register.py"
     text = listing.read_text(encoding="utf-8")
     place = '        "two-distance-weakening": "laws.two_distance_weakening.TwoDistanceWeakening",\n'
     listing.write_text(re.sub(r"(\n    \"stickslip.friction\",\n    \{\n)", rf"\1{place}", text), encoding="utf-8")

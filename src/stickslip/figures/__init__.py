@@ -3,12 +3,9 @@
 Runs and studies draw themselves (`solution.plot()`); `ss.figures` has the figures of datasets: `ss.figures.plot_sweep(dataset)`,
 and of laws made from points: `ss.figures.plot_fit(result)`.
 
-What figures of extensions take from here:
-
-- `style`: colours, units, and labels that carry their units.
+- `style`, `names`: colours, units, labels that carry their units, and the names of parameters.
 - `sheet`: where a figure is drawn, and how large it is.
 - `panels`: titles, letters, keys, scales, and panels of one kind.
-- `names`: the names of parameters in figures.
 - `page`: the frame of reports in HTML, and how they write numbers.
 - `runs`, `contact`: the figures of single runs and of the contact, a module each.
 """

@@ -1,7 +1,6 @@
 # The friction laws of the contact, and what makes laws from measured points.
 from stickslip.extensions.inference.points.fit import Fit, fit, fit_each
 from stickslip.extensions.inference.points.smooth import Smooth, smooth
-from stickslip.foundation.classes_by_kind import ClassesByKind
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
 from stickslip.friction.custom.points import FromTable, Points
@@ -25,8 +24,7 @@ from stickslip.friction.laws.of_slip import (
 )
 from stickslip.friction.laws.polylines import PiecewiseLinearRate, PiecewiseLinearSlip
 from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState, TwoStateRateAndState
-
-LAWS: ClassesByKind[FrictionLaw]
+from stickslip.friction.register import LAWS
 
 __all__ = [
     "LAWS",

@@ -137,7 +137,7 @@ def test_the_scatter_of_slips_is_a_share_of_their_mean(slips: list[float], perce
         (["bad.nc"], "bad.nc: not a netCDF file that can be read"),
         (["bad.csv"], "bad.csv: not a catalogue of slip events: there is no column start"),
         (["."], ".: is a folder that holds no results of stickslip"),
-        (["run.nc", "--space-time", "a.png"], "run.nc: --space-time needs a slab or a string: a block is rigid"),
+        (["run.nc", "--space-time", "a.png"], "show: --space-time needs a slab or a string: a block is rigid"),
         (["events.csv", "--figure", "a.png"], "events.csv: a catalogue keeps slip events only, no history: leave out --figure"),
     ],
 )
