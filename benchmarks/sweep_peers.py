@@ -17,11 +17,11 @@ from benchmarks import c_peer, scipy_peer
 from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import UnavailableError
 from stickslip.engine.lanes.runs import Group, engine_address, run_group
+from stickslip.engine.lanes.setups import set_up
+from stickslip.engine.lanes.vectorised_problem import member
 from stickslip.engine.lanes.workspace import new_workspace, table_of
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.extensions.sweeps.batch import QUANTITIES, run_members
-from stickslip.extensions.sweeps.batch.setups import set_up
-from stickslip.extensions.sweeps.batch.vectorised_problem import member
 from stickslip.friction import SinusoidalSlip
 from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.scenarios.scenario import Scenario

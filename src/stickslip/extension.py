@@ -24,8 +24,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.table import ScenarioTable
-    from stickslip.run.kinds import Reader, SolverKind
+    from stickslip.problem.scenarios import ScenarioTable
+    from stickslip.run import Reader, SolverKind
 
 GROUP = "stickslip.extensions"
 """The folder of our own extensions as a package, and the group of the entry points of others."""

@@ -112,8 +112,7 @@ def engine() -> Iterator[Finding]:
     from llvmlite import __version__ as version
     from llvmlite.binding import get_host_cpu_name
 
-    from stickslip.engine.compile.numba_privates import WHY_PLAIN
-    from stickslip.engine.compile.uncompiled import UNCOMPILED
+    from stickslip.engine import UNCOMPILED, WHY_PLAIN
     from stickslip.foundation.sealed_files import cache_root
 
     way = f", plainly ({WHY_PLAIN}): first starts take some three times as long" if WHY_PLAIN else ""

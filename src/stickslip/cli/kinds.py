@@ -11,13 +11,11 @@ from typing_extensions import override
 
 from stickslip.cli.results import EventsOfRun, PlainRun, RunResults, WholeRun
 from stickslip.foundation.errors import InputError
-from stickslip.run.kinds import reader_of, special_solver_of
-from stickslip.run.progress import progress_line
+from stickslip.run import progress_line, reader_of, special_solver_of
 
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
-    from stickslip.problem.problem import Problem
-    from stickslip.problem.run_status import Status
+    from stickslip.problem import Problem, Status
 
 
 class KindOfRun(ABC):
@@ -48,7 +46,7 @@ def kind_of_run(request: Request) -> KindOfRun:
     if request.resume is not None:
         if (reader := reader_of(request.resume)) is not None:
             return reader.on_command_line()
-        from stickslip.solution.files.netcdf import is_catalogue
+        from stickslip.solution.files import is_catalogue
 
         return EventsOnly() if is_catalogue(request.resume) else RunOfHistory()
     solver = special_solver_of(request.chosen)
@@ -75,9 +73,8 @@ class RunOfHistory(KindOfRun):
                 from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
                 return WholeRun(chosen, simulate(chosen, progress=report, **keep))
-        from stickslip.run.options import RunOptions
-        from stickslip.run.resume import resume_run
-        from stickslip.solution.files.netcdf import read_solution
+        from stickslip.run import RunOptions, resume_run
+        from stickslip.solution.files import read_solution
 
         stopped = read_solution(request.resume)
         check_same(request, stopped.problem)
@@ -105,15 +102,13 @@ class EventsOnly(KindOfRun):
         if request.energy and request.catalogue is None:
             raise InputError("run: --energy belongs to --catalogue FILE")
         if request.catalogue is not None:
-            from stickslip.solution.files.catalogue_rows import check_catalogue
+            from stickslip.solution.files import check_catalogue
 
             check_catalogue(request.catalogue, "--catalogue")
 
     @override
     def run(self, request: Request) -> EventsOfRun:
-        from stickslip.run.catalogue import catalogue_of, check_energy
-        from stickslip.run.options import RunOptions
-        from stickslip.run.resume import PausedCatalogue
+        from stickslip.run import PausedCatalogue, RunOptions, catalogue_of, check_energy
 
         if request.resume is None:
             chosen = request.chosen
@@ -158,7 +153,7 @@ class PlainKindOfRun(KindOfRun):
 
 def _with_more_room(status: Status, file: Path | None, pieces: int) -> str:
     """Return how a run whose history is full goes on from its file, if it has one."""
-    from stickslip.problem.run_status import SHORT_OF_MEMORY, TOO_MANY
+    from stickslip.problem import SHORT_OF_MEMORY, TOO_MANY
 
     if file is None or status.name != TOO_MANY:
         return ""

@@ -139,8 +139,8 @@ def _parameters(context: Context) -> list[str]:
     While the value of an option is typed, typer leaves the words that are no options in `args`, and the scenario is the first.
     """
     from stickslip.foundation.errors import InputError
+    from stickslip.problem.scenarios import load_scenario
     from stickslip.problem.scenarios.parameter_paths import parameter_paths
-    from stickslip.problem.scenarios.scenario import load_scenario
 
     scenario = context.params.get("scenario") or next(iter(context.args), None)
     if scenario is None:

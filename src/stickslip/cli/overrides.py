@@ -15,16 +15,21 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import show_in
-from stickslip.problem.given_units import units_given
-from stickslip.problem.limits import check_creep_rtol, check_shortest_event
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
-from stickslip.problem.scenarios.entries import read_typed, typed_number
-from stickslip.problem.scenarios.parameter_paths import with_values
-from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.problem.scenarios.schema import check_events, check_rule, read_duration
-from stickslip.problem.scenarios.source import solved_by_core
-from stickslip.problem.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
+from stickslip.problem import SHORTEST_EVENT, Problem, check_creep_rtol, check_rtol, check_shortest_event, units_given
+from stickslip.problem.scenarios import (
+    LARGEST_SCENARIO_FILE,
+    Scenario,
+    check_events,
+    check_rule,
+    load_scenario,
+    read_duration,
+    read_scenario,
+    read_typed,
+    solved_by_core,
+    text_of,
+    typed_number,
+    with_values,
+)
 
 Reader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""

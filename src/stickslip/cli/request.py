@@ -12,9 +12,8 @@ from stickslip.cli.output.files import CATALOGUES, Target, check_targets
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.problem.scenarios.schema import check_events, read_duration
-from stickslip.run.kinds import FILES_OF_CORE
+from stickslip.problem.scenarios import Scenario, check_events, read_duration
+from stickslip.run import FILES_OF_CORE
 
 if TYPE_CHECKING:
     from stickslip.cli.output.pictures import Pictures
@@ -90,7 +89,6 @@ class Request:
     @property
     def most_pieces(self) -> int:
         """The largest number of pieces that the history of a catalogue may have."""
-        from stickslip.run.catalogue import CAPACITY
-        from stickslip.run.options import MAX_PIECES
+        from stickslip.run import CAPACITY, MAX_PIECES
 
         return max(self.max_pieces or MAX_PIECES, CAPACITY)

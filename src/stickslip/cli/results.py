@@ -16,16 +16,16 @@ from stickslip.cli.output.show import console, say, titled
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import clean
-from stickslip.problem.run_status import Status
+from stickslip.problem import Status
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.cli.output.pictures import Pictures
-    from stickslip.problem.problem import Problem
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.run.catalogue import Catalogue
-    from stickslip.solution.solution import Solution
+    from stickslip.problem import Problem
+    from stickslip.problem.scenarios import Scenario
+    from stickslip.run import Catalogue
+    from stickslip.solution import Solution
 
 
 DONE = Status("finished", "the run is finished", ok=True)
@@ -181,7 +181,7 @@ class StoredEvents(Results):
     @cached_property
     def problem(self) -> Problem | None:
         """The problem of the run; None if neither the catalogue nor a checkpoint beside it holds the scenario."""
-        from stickslip.problem.scenarios.scenario import read_scenario
+        from stickslip.problem.scenarios import read_scenario
 
         return read_scenario(str(self.about["scenario"]), self.path.stem).problem if "scenario" in self.about else None
 
@@ -203,7 +203,7 @@ class StoredEvents(Results):
     def to_csv(self, path: Path) -> Path:
         """Write the slip events with the units of their columns, and return the path. Raises InputError if these are not known."""
         from stickslip.foundation.atomic_write import write_table
-        from stickslip.solution.observables.event_table import with_units
+        from stickslip.solution.observables import with_units
 
         if self.problem is None:
             raise InputError(f"{self.path}: does not say of what body it is, so that its units are not known: leave out --csv")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.results import Stored, StoredEvents, WholeRun
 from stickslip.foundation.errors import InputError
-from stickslip.run.kinds import no_results, reader_of
+from stickslip.run import no_results, reader_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,7 +23,7 @@ def stored(path: Path) -> Stored:
         raise no_results(path)
     suffix = path.suffix.lower()
     if suffix in (".csv", ".parquet"):
-        from stickslip.solution.files.catalogue_rows import read_table
+        from stickslip.solution.files import read_table
 
         return _events(path, read_table(path), _beside(path))
     if suffix != ".nc":
@@ -33,9 +33,8 @@ def stored(path: Path) -> Stored:
 
 def _netcdf(path: Path) -> Stored:
     from stickslip.foundation import netcdf_file
-    from stickslip.run.resume import PausedCatalogue
-    from stickslip.solution.files.catalogue_rows import read_table
-    from stickslip.solution.files.netcdf import CATALOGUE, to_solution
+    from stickslip.run import PausedCatalogue
+    from stickslip.solution.files import CATALOGUE, read_table, to_solution
 
     dataset = netcdf_file.read(path, "a result")
     if CATALOGUE in dataset.attrs:
@@ -48,7 +47,7 @@ def _netcdf(path: Path) -> Stored:
 
 
 def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> Stored:
-    from stickslip.solution.observables.event_table import NEEDED
+    from stickslip.solution.observables import NEEDED
 
     missing = [name for name in NEEDED if name not in table]
     if missing:
@@ -59,8 +58,8 @@ def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> Stored
 def _beside(path: Path) -> Mapping[str, Any]:
     """Return the attributes of the checkpoint beside the table of a catalogue, or nothing if there is none."""
     from stickslip.foundation.netcdf_file import attributes
-    from stickslip.run.catalogue import checkpoint_of
-    from stickslip.solution.files.catalogue_rows import Rows
+    from stickslip.run import checkpoint_of
+    from stickslip.solution.files import Rows
 
     return attributes(checkpoint_of(Rows(path)))
 

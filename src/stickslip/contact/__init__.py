@@ -1,1 +1,8 @@
-"""The contact equation: its branches and folds, selection rules, and whether its solution is unique."""
+"""The contact equation: its branches and folds, selection rules, and whether its solution is unique.
+
+`__init__.pyi` lists what others take from here.
+"""
+
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

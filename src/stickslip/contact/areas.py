@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.contact.slopes import NARROW, Pieces, cut_between, pieces_of
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.resistance import Resistance
+from stickslip.problem import Resistance
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """Gauss's rule on [-1, 1]."""

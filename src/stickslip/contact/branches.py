@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Branch, Resistance
+from stickslip.problem import Branch, Problem, Resistance
 
 
 def resistance(problem: Problem, law_slip: float | None = None, normal: float | None = None) -> Resistance:

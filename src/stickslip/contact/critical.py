@@ -19,9 +19,7 @@ from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
-from stickslip.problem.parameters import Parameter
-from stickslip.problem.problem import Problem, check_problem
-from stickslip.problem.resistance import Resistance
+from stickslip.problem import Parameter, Problem, Resistance, check_problem
 
 Regime = Literal["regular", "irregular"]
 

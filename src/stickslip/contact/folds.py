@@ -13,7 +13,7 @@ from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
 from stickslip.contact.turns import PROVEN, find_turns, folds_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
-from stickslip.problem.resistance import Resistance
+from stickslip.problem import Resistance
 
 Verdict = Literal["proven", "not decided"]
 """proven: by interval arithmetic. not decided: proven except on some intervals of slip rates."""

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.bodies.layered import OfLayers
+from stickslip.problem.bodies import OfLayers
 from stickslip.problem.bodies.layers import Layers
 
 Complex = NDArray[np.complex128]

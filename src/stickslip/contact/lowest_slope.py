@@ -17,7 +17,7 @@ import numpy as np
 from stickslip.contact.folds import Interval, Verdict
 from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW, SLOWEST, Integers, Pieces, cut_between, pieces_of
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.resistance import Resistance
+from stickslip.problem import Resistance
 
 _TOLERANCE, _NEAR = 1e-12, 1e3
 """The search for the smallest g' ends when its two bounds differ by less than _TOLERANCE, relative to the larger of Z and |g'|. If

@@ -13,9 +13,7 @@ import numpy as np
 from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.foundation.show import brief
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Branch, Resistance
-from stickslip.problem.selection_rule import PERFECT_DELAY
+from stickslip.problem import PERFECT_DELAY, Branch, Problem, Resistance
 
 Regime = Literal["regular", "irregular", "continuum"]
 """Possible values of `Uniqueness.regime`."""

@@ -18,8 +18,7 @@ from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import LawField, NamedNumbers, NumberSeries, Quantity, fields_of
 from stickslip.friction import FrictionLaw
-from stickslip.problem.parameters import Parameter, put_many
-from stickslip.problem.problem import Problem
+from stickslip.problem import Parameter, Problem, put_many
 
 _POINTS = 65
 """Number of equally spaced slips for samples of the regime; each sample costs a search over all slip rates."""

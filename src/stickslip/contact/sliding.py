@@ -13,14 +13,14 @@ from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, brief_repr, exactly
-from stickslip.problem.given_units import in_given_units
+from stickslip.problem import in_given_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from stickslip.foundation.place import Place
-    from stickslip.problem.problem import Problem
+    from stickslip.problem import Problem
 
 RATES = np.geomspace(1e-15, 1e3, 73)
 """Slip rates (m/s) for examining the stability of a law with states, four a decade; changes are then found to rounding. Slower

@@ -14,10 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.bounds import Enclosure
-from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import add, multiply
-from stickslip.problem.resistance import Resistance
+from stickslip.friction.formula import Enclosure, Expression, add, multiply
+from stickslip.problem import Resistance
 
 Integers = NDArray[np.int64]
 

@@ -35,11 +35,9 @@ from stickslip.contact.steady_proof import proven_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
-from stickslip.friction.formula.differences import value_and_slopes
+from stickslip.friction.formula import value_and_slopes
+from stickslip.problem import LoadingHistory, Problem, Resistance
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Resistance
 
 FAR = (0.0, 0.37, 1e3)
 """Steady sliding requires that friction does not change with slip over these distances (m)."""

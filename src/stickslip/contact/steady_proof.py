@@ -27,10 +27,18 @@ import numpy as np
 
 from stickslip.contact.wave_proof import of_slab, slope_symbols
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.bounds import largest, on_discs
-from stickslip.friction.formula.differences import slope_formula, value_and_slopes
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter
-from stickslip.friction.formula.operations.sets import Disc
+from stickslip.friction.formula import (
+    RATE,
+    SLIP,
+    STATES,
+    Disc,
+    Expression,
+    Parameter,
+    largest,
+    on_discs,
+    slope_formula,
+    value_and_slopes,
+)
 from stickslip.friction.law import FrictionLaw
 from stickslip.problem.bodies import BodyOnCharacteristics
 

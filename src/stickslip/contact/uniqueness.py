@@ -30,19 +30,15 @@ from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
-from stickslip.problem.given_units import in_given_units
-from stickslip.problem.parameters import normal_name
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Branch, Plateau, Resistance
-from stickslip.problem.scenarios.source import read_source
-from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.problem import SELECTION_RULES, Branch, Plateau, Problem, Resistance, in_given_units, normal_name
+from stickslip.problem.scenarios import read_source
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from stickslip.foundation.place import Place
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 MOST_LEFT = 16
 """If there is no end of folds, only the jumps of this many branches are worked out."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.rules.loop import Jump
 from stickslip.foundation.show import brief, exact_range
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Resistance
+from stickslip.problem import Problem, Resistance
 
 MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` and `summary` show."""

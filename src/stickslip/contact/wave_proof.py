@@ -31,9 +31,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.bounds import on_discs
-from stickslip.friction.formula.expression import Expression, Parameter
-from stickslip.friction.formula.operations.sets import Disc
+from stickslip.friction.formula import Disc, Expression, Parameter, on_discs
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 OUT = 4e-15

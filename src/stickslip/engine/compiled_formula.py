@@ -17,8 +17,7 @@ from stickslip.engine.memory.records import Floats
 from stickslip.engine.memory.simd import fused
 from stickslip.engine.series import ball_radii
 from stickslip.engine.series.sine import sine, versine
-from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations import OPERATIONS
+from stickslip.friction.formula import OPERATIONS, Expression
 
 CALLED: dict[str, Callable[..., Any]] = {one.__name__: one for operation in OPERATIONS.values() for one in operation.called}
 """The functions that lines of operations call. Many are f(now) - f(reference), now = reference + step: near the reference they have

@@ -55,7 +55,7 @@ from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integer
 from stickslip.engine.state.workspace import ROOM, Run, borrow, lacks_rows
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 LARGEST_STALL = 1000
 """A run ends after more than this many consecutive steps that take no time (1), because they would never stop. A contact that never

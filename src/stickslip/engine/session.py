@@ -36,10 +36,7 @@ from stickslip.engine.state.workspace import (
     with_more_rows,
 )
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
-from stickslip.problem.limits import creep_tolerance
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_codes import Stop
-from stickslip.problem.run_quantities import RunNumbers
+from stickslip.problem import Problem, RunNumbers, Stop, creep_tolerance
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""

@@ -22,7 +22,7 @@ from stickslip.figures.style import PALE, Numbers, folded, label, shown
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.given import Given
 from stickslip.foundation.place import Place
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 LETTER, MARK = 0.062, 0.4
 """Widths (inches) of a letter of a key, and of the mark before it with the space around."""

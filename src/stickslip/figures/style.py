@@ -43,7 +43,7 @@ from stickslip.foundation.units import si_factor
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.solution.evaluation import Readings
+    from stickslip.solution import Readings
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -1,6 +1,8 @@
-"""Define problems: a body, a friction law, the loading, the initial state, and the rule that selects a slip rate."""
+"""Define problems: a body, a friction law, the loading, the initial state, and the rule that selects a slip rate.
 
-from stickslip.problem import selection_rule as selection
-from stickslip.problem.problem import Problem
+`__init__.pyi` lists what others take from here.
+"""
 
-__all__ = ["Problem", "selection"]
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

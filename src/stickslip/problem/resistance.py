@@ -19,9 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief_repr
 from stickslip.friction import FrictionLaw
-from stickslip.friction.formula.differences import difference
-from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.functions import evaluate
+from stickslip.friction.formula import Expression, difference, evaluate
 
 _LOADS = 2.0
 """Many solutions are distinguished up to this load, as a multiple (1) of the largest friction."""

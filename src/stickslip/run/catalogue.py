@@ -8,33 +8,35 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.engine.history.reach import Reach, reach_of
-from stickslip.engine.history.tables import creep_note
+from stickslip.engine import Reach, creep_note, reach_of
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_codes import ENOUGH_EVENTS, UNDER_WAY
-from stickslip.problem.run_quantities import check_event_rate
-from stickslip.problem.run_status import Status
+from stickslip.problem import ENOUGH_EVENTS, UNDER_WAY, Problem, Status, check_event_rate
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import run_to_end
-from stickslip.solution.files.catalogue_rows import Rows, RowsInMemory, check_catalogue
-from stickslip.solution.files.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
-from stickslip.solution.observables.energy.balance import trapped_note
-from stickslip.solution.observables.event_stream import EventStream, Look
-from stickslip.solution.observables.predictability import attributes_of, in_short, is_followed, predictability_of_events
-from stickslip.solution.observables.proof import Proven, proven
+from stickslip.solution.files import CATALOGUE, FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
+from stickslip.solution.observables import (
+    EventStream,
+    Look,
+    Proven,
+    attributes_of,
+    in_short,
+    is_followed,
+    predictability_of_events,
+    proven,
+    trapped_note,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.solution.solution import Solution
+    from stickslip.problem.scenarios import Scenario
+    from stickslip.solution import Solution
 
 CAPACITY = 16_384
 """Initial room of a catalogue in pieces of history, about 7 MB; it grows only if the pieces to keep fill half of it."""

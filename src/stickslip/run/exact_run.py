@@ -9,19 +9,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 from typing_extensions import override
 
-from stickslip.engine.history.status import Checkpoint
-from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
-from stickslip.engine.session import SPARE, Session
-from stickslip.problem.limits import leaps_over, lumps_by_itself
-from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, UNDER_WAY, Stop
-from stickslip.problem.run_quantities import default_event_rate
-from stickslip.problem.run_status import STATUSES, Crowd, Status
+from stickslip.engine import SPARE, Checkpoint, Session
+from stickslip.engine.input import MOST_PIECES, PATIENCE
+from stickslip.problem import (
+    ENOUGH_EVENTS,
+    FULL_HISTORY,
+    STATUSES,
+    UNDER_WAY,
+    Crowd,
+    Status,
+    Stop,
+    default_event_rate,
+    leaps_over,
+    lumps_by_itself,
+)
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Doing, Pace, Report
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 if TYPE_CHECKING:
-    from stickslip.solution.observables.event_stream import EventStream, Look
+    from stickslip.solution.observables import EventStream, Look
 
 
 @dataclass(eq=False)
@@ -39,7 +46,7 @@ class ExactRun(Session[RunOptions]):
         return self._new_stream()
 
     def _new_stream(self) -> EventStream:
-        from stickslip.solution.observables.event_stream import EventStream
+        from stickslip.solution.observables import EventStream
 
         return EventStream(default_event_rate(self.problem))
 
@@ -111,7 +118,7 @@ class ExactRun(Session[RunOptions]):
     def save(self) -> None:
         """Renew the checkpoint, if a file for it was given."""
         if self.options.checkpoint is not None:
-            from stickslip.solution.files.netcdf import save_checkpoint
+            from stickslip.solution.files import save_checkpoint
 
             save_checkpoint(self.solution(UNDER_WAY), self.options.checkpoint)
 

@@ -8,24 +8,19 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.contact.sliding import FROM_REST_WITHIN, FromRest, SteadySlidings
-from stickslip.contact.steady import steady_slidings
-from stickslip.engine.history.slip_events import share_sticking
+from stickslip.contact import FROM_REST_WITHIN, FromRest, SteadySlidings, steady_slidings
+from stickslip.engine import share_sticking
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem.fields import INITIAL_STATES, STEADY
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION
-from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.problem.scenarios.source import read_source
+from stickslip.problem import DURATION, INITIAL_STATES, STEADY, Problem
+from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter, read_source
 from stickslip.run.longer_runs import held_in_longer_runs
 from stickslip.run.simulate import simulate
 from stickslip.run.study import StudyWithDataset, TextProgress, telling, uninterrupted
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 if TYPE_CHECKING:
     import pandas as pd

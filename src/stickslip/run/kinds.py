@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from stickslip.extension import extensions
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import Scenario
 
 if TYPE_CHECKING:
     from stickslip.cli.kinds import KindOfRun

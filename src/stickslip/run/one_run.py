@@ -3,16 +3,13 @@
 from dataclasses import replace
 from pathlib import Path
 
-from stickslip.contact.critical import critical_value
-from stickslip.contact.sliding import SteadySlidings
-from stickslip.contact.steady import proven_slidings
+from stickslip.contact import SteadySlidings, critical_value, proven_slidings
 from stickslip.foundation.arguments import for_users
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.problem.scenarios.source import read_source
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run.find import from_rest as runs_from_rest
 from stickslip.run.study import TextProgress, telling
-from stickslip.solution.observables.event_table import catalogue_statistics
+from stickslip.solution.observables import catalogue_statistics
 from stickslip.solution.observables.predictability import predictability
 from stickslip.solution.observables.severity import severity
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.run.kinds import no_results, reader_of
-from stickslip.solution.files.netcdf import read_solution
+from stickslip.solution.files import read_solution
 
 
 @for_users

@@ -14,16 +14,26 @@ from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import declare
-from stickslip.problem.limits import check_creep_rtol, check_shortest_event
-from stickslip.problem.problem import Problem, check_problem
-from stickslip.problem.run_codes import ENOUGH_EVENTS
-from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, RunNumbers, check_rtol
-from stickslip.problem.run_status import STATUSES, TOO_MANY
-from stickslip.problem.scenarios.source import read_source
+from stickslip.problem import (
+    CHECKPOINT_INTERVAL,
+    CREEP_RTOL,
+    DURATION,
+    ENOUGH_EVENTS,
+    SHORTEST_EVENT,
+    STATUSES,
+    TOO_MANY,
+    Problem,
+    RunNumbers,
+    check_creep_rtol,
+    check_problem,
+    check_rtol,
+    check_shortest_event,
+)
+from stickslip.problem.scenarios import read_source
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.solution.solution import Solution
+    from stickslip.problem.scenarios import Scenario
+    from stickslip.solution import Solution
 
 RTOL = 1e-10
 """Default relative tolerance."""

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from stickslip.engine.history.reach import Reach
-from stickslip.engine.history.soundness import check_checkpoint
-from stickslip.engine.history.status import engine
+from stickslip.engine import Reach, check_checkpoint, engine
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -20,11 +18,9 @@ from stickslip.run.kinds import no_results, reader_of
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.progress import reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
-from stickslip.solution.files.catalogue_rows import Rows, check_catalogue
-from stickslip.solution.files.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
-from stickslip.solution.files.soundness import check_place
-from stickslip.solution.observables.event_stream import EventStream, HistoryPlace
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
+from stickslip.solution.files import CATALOGUE, Rows, check_catalogue, check_place, is_catalogue, read, read_solution, to_solution
+from stickslip.solution.observables import EventStream, HistoryPlace
 
 
 @for_users

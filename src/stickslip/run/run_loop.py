@@ -17,8 +17,7 @@ from types import FrameType
 from typing import Any, Generic, Protocol, Self, TypeVar
 
 from stickslip.foundation.errors import InputError
-from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, Stop
-from stickslip.problem.run_status import STATUSES
+from stickslip.problem import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, STATUSES, Stop
 from stickslip.run.progress import Pace
 from stickslip.run.solver import NewEvents, Solver
 

@@ -10,15 +10,13 @@ from typing import Any, TypeVar, overload
 from stickslip.foundation.arguments import as_path, check_names, for_users
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.problem.scenarios.source import read_source, under_rule
-from stickslip.problem.selection_rule import SelectionRule
+from stickslip.problem import Problem, SelectionRule
+from stickslip.problem.scenarios import Scenario, read_source, under_rule
 from stickslip.run.kinds import ALL_TAKE, SolverKind, Special, special_solver_of, special_solvers
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 Run = TypeVar("Run")
 

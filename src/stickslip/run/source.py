@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stickslip.foundation.errors import InputError
-from stickslip.problem.scenarios import Scenario, load_scenario
-from stickslip.problem.scenarios.source import solved_by_core
+from stickslip.problem.scenarios import Scenario, load_scenario, solved_by_core
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.run.study import uninterrupted
-from stickslip.solution.files.netcdf import read_solution
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
+from stickslip.solution.files import read_solution
 
 
 class RunSource(NamedTuple):

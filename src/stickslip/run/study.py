@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
-from stickslip.problem.given_units import in_given_units
+from stickslip.problem import in_given_units
 from stickslip.run.progress import reporting
-from stickslip.solution.accessors import known_to_pyplot
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution, known_to_pyplot
 
 if TYPE_CHECKING:
     import pandas as pd

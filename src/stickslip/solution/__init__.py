@@ -1,1 +1,8 @@
-"""Results of a run: values at any time, tables of events, and windows around events."""
+"""Results of a run: values at any time, tables of events, and windows around events.
+
+`__init__.pyi` lists what others take from here.
+"""
+
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

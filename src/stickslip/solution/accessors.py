@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import NamesAttributes, as_path
 from stickslip.foundation.errors import InputError
-from stickslip.problem.given_units import in_given_units
+from stickslip.problem import in_given_units
 from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:

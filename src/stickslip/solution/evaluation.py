@@ -15,12 +15,12 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.engine.history.history import History, Positions, Side
+    from stickslip.engine import History, Positions, Side
     from stickslip.solution.observables.at_driver import AtDriver
     from stickslip.solution.observables.field import Field
 
@@ -186,7 +186,7 @@ class Readings(NamesAttributes):
         Columns: time (s); cause (start, fold, echo, loading, healing); rate_before and rate_after (m/s); traction_before and
         traction_after (Pa); rule (the selection rule; empty if the slip rate is unique without one).
         """
-        from stickslip.engine.history.tables import shocks_table
+        from stickslip.engine import shocks_table
 
         return shocks_table(self.history)
 

@@ -13,11 +13,8 @@ from numpy.typing import ArrayLike
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, exactly, how_long, html_table
-from stickslip.problem.given_units import in_given_units
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import check_event_rate, default_event_rate
-from stickslip.problem.run_status import Status
-from stickslip.problem.scenarios.scenario import UNNAMED, Scenario
+from stickslip.problem import Problem, Status, check_event_rate, default_event_rate, in_given_units
+from stickslip.problem.scenarios import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
 
 if TYPE_CHECKING:
@@ -26,9 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stickslip.engine.history.history import History
-    from stickslip.engine.history.reach import Reach
-    from stickslip.engine.history.status import Checkpoint
+    from stickslip.engine import Checkpoint, History, Reach
     from stickslip.foundation.place import Place
     from stickslip.solution.observables.predictability import Predictability
     from stickslip.solution.observables.proof_of_run import ProofOfRun
@@ -155,14 +150,14 @@ class Solution(Exports):
         Within a leap the slip is an average over round trips. It is right to within the error; the true slip oscillates around it
         by half of its growth in one round trip. Slip rate, traction and load are averages too.
         """
-        from stickslip.engine.history.tables import creep_table
+        from stickslip.engine import creep_table
 
         return creep_table(self.history)
 
     @property
     def creep_note(self) -> str:
         """One line on the leaps over creep; empty if there are none."""
-        from stickslip.engine.history.tables import creep_note
+        from stickslip.engine import creep_note
 
         return creep_note(self.history)
 
@@ -260,7 +255,7 @@ class Solution(Exports):
     @cached_property
     def reach(self) -> Reach:
         """How far the contact has gone: its displacement at the end (m, or rad), and the largest one with its time (s)."""
-        from stickslip.engine.history.reach import reach_of
+        from stickslip.engine import reach_of
 
         return reach_of(self.history)
 

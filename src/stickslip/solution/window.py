@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 from stickslip.solution.accessors import Exports
 from stickslip.solution.evaluation import Curve
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from stickslip.engine.history.history import Epoch, History
+    from stickslip.engine import Epoch, History
 
 MARGIN = 0.1
 """Default time shown on either side of an event, as a share of its duration."""
@@ -71,7 +71,7 @@ class Window(Exports):
     @cached_property
     def shocks(self) -> pd.DataFrame:
         """The shocks within the time that is shown: the table of `Solution.shocks`, in local time."""
-        from stickslip.engine.history.tables import shocks_table
+        from stickslip.engine import shocks_table
 
         return shocks_table(self.history, *self.shown)
 
@@ -104,7 +104,7 @@ def window_around(
     solution: Exports, event: pd.Series, before: float | str | WithUnit | None, after: float | str | WithUnit | None
 ) -> Window:
     """Return the window on an event; see `Solution.window`."""
-    from stickslip.engine.history.history import Epoch
+    from stickslip.engine import Epoch
 
     lasts = float(event.duration)
     history = solution.history.seen_from(Epoch(int(event.start_row), float(event.start_offset)))

@@ -18,11 +18,9 @@ from stickslip.foundation.errors import InputError, InputWarning
 from stickslip.foundation.show import brief, clean, exact_range, exactly, with_unit
 
 if TYPE_CHECKING:
-    from stickslip.contact.folds import Fold
-    from stickslip.contact.sliding import SteadySlidings
-    from stickslip.contact.uniqueness import Uniqueness
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.run.check.examine import Examination
+    from stickslip.contact import Fold, SteadySlidings, Uniqueness
+    from stickslip.problem.scenarios import Scenario
+    from stickslip.run.check import Examination
 
 PARAMETERS = "List the names, units and meanings of all numbers that --set, --vary and --free take, and stop."
 RUNS = "Make a dozen short exact runs from rest, where steady sliding becomes stable at a critical rate."
@@ -101,8 +99,7 @@ def _show_parameters(loaded: Scenario) -> None:
 
 def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
     """Return what is found about steady sliding, with runs from rest if they are wanted."""
-    from stickslip.run.one_run import steady
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line, steady
 
     with progress_line("runs from rest:") as report:
         return steady(loaded, from_rest=runs, progress=report)
@@ -110,7 +107,7 @@ def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
 
 def _show_special(loaded: Scenario, drawing_wanted: object) -> None:
     """Print what is found about a scenario that the solver of an extension runs. Raises InputError if a drawing is wanted."""
-    from stickslip.run.kinds import special_solver_of
+    from stickslip.run import special_solver_of
 
     tables = "] and [".join(name for name, _ in loaded.tables)
     if drawing_wanted:
@@ -143,7 +140,7 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     from stickslip.cli.overrides import read_axis
     from stickslip.contact.regime_map import regime_map
     from stickslip.figures.contact import regimes
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:

@@ -12,9 +12,8 @@ from stickslip.cli.output.files import announce, check_target
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.run.kinds import Reader
-    from stickslip.run.source import RunSource
-    from stickslip.solution.solution import Solution
+    from stickslip.run import Reader, RunSource
+    from stickslip.solution import Solution
 
 RUN = "A TOML file, a bundled name, a file or folder of `run --out`, or - for a scenario from standard input."
 FILE = "What to write: curves (.csv or .nc), or the text of the SCEC (.txt or .dat)."
@@ -62,9 +61,8 @@ def export(
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.overrides import STDIN
-    from stickslip.problem.scenarios.text_of_files import is_scenario_name
-    from stickslip.run.kinds import reader_of
-    from stickslip.run.progress import progress_line
+    from stickslip.problem.scenarios import is_scenario_name
+    from stickslip.run import progress_line, reader_of
 
     if is_scenario_name(str(file)):
         raise InputError(f"export: the run comes first, and then the file: `stickslip export {file} {run}`")
@@ -109,8 +107,8 @@ def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any
 
 def _source(run: str, duration: str | None) -> RunSource:
     from stickslip.cli.overrides import STDIN, load, read
-    from stickslip.problem.scenarios.schema import read_duration
-    from stickslip.run.source import read_source
+    from stickslip.problem.scenarios import read_duration
+    from stickslip.run import read_source
 
     length = read(read_duration, duration, "export", "duration")
     return read_source(load(run, "export") if run == STDIN else run, length, who="export")

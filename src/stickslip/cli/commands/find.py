@@ -48,9 +48,9 @@ def find(
     """
     from stickslip.cli.overrides import load_with
     from stickslip.foundation.axis import TypedRange
-    from stickslip.problem.scenarios.entries import typed_number
+    from stickslip.problem.scenarios import typed_number
+    from stickslip.run import progress_line
     from stickslip.run.find import find as study
-    from stickslip.run.progress import progress_line
 
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)

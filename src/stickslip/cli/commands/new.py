@@ -41,7 +41,7 @@ def new(
     elif name is None:
         raise InputError("new: which scenario? `stickslip new --list` lists them")
     else:
-        from stickslip.problem.scenarios.templates import template
+        from stickslip.problem.scenarios import template
 
         typer.echo(template(name, friction, pull), nl=False)
 
@@ -49,7 +49,7 @@ def new(
 def _print_list(about: str | None) -> None:
     """Print what can be printed, or what has a word in its name, its trade or what it shows. Raises InputError if nothing has."""
     from stickslip.friction import LAWS
-    from stickslip.problem.loading import HISTORIES
+    from stickslip.problem import HISTORIES
     from stickslip.problem.scenarios import library
 
     screen, entries = console(), library.entries()

@@ -23,7 +23,7 @@ from stickslip.cli.output.files import announce, write_files
 from stickslip.cli.output.pictures import Pictures
 
 if TYPE_CHECKING:
-    from stickslip.problem.run_status import Status
+    from stickslip.problem import Status
 
 CREEP_RTOL = (
     "Leap over slow creep between pulses (under a law of slip) and over steady sliding from the start, with an error of slip of at "

@@ -15,8 +15,8 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.problem.problem import Problem
-    from stickslip.solution.solution import Solution
+    from stickslip.problem import Problem
+    from stickslip.solution import Solution
 
 ANIMATION = "Save the slab in motion (.gif; .mp4 and .webm need ffmpeg)."
 FILMS = (".gif", ".mp4", ".webm")
@@ -60,7 +60,7 @@ class Pictures:
         if inside and not problem.body.has_waves:
             raise InputError(f"{command}: {inside[0]} needs a slab or a string: a block is rigid and has no interior field")
         if self.path is not None:
-            from stickslip.contact.uniqueness import uniqueness_of
+            from stickslip.contact import uniqueness_of
 
             if uniqueness_of(problem).resistance is None:
                 what = "a slab or a string without a mass at its contact: with inertia the slip rate is a state, there is no set K"
@@ -107,7 +107,7 @@ class Pictures:
 
 def animated(solution: Any, target: Path) -> Path:
     """Write the animation of a run with its progress on one line, and return the file."""
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     with progress_line(f"{target}:") as report:
         found: Path = solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 WIDE = 132
 """Width (columns) of tables that go to a file, so that their rows keep their lines."""
@@ -54,7 +54,7 @@ def say(screen: Console, *texts: str, style: str | None = None) -> None:
 
 def titled(scenario: Scenario) -> Console:
     """Print the title of a scenario, or its name, on the console for results, and return the console."""
-    from stickslip.problem.given_units import units_given  # help does without problems
+    from stickslip.problem import units_given
 
     screen = console()
     show_in(units_given(scenario.problem))

@@ -11,17 +11,16 @@ from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.show import clean, how_long, number, with_unit
-from stickslip.problem.limits import creep_tolerance
-from stickslip.problem.scenarios.scenario import doubts
+from stickslip.problem import creep_tolerance
+from stickslip.problem.scenarios import doubts
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from stickslip.problem.problem import Problem
-    from stickslip.problem.run_status import Status
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.run.catalogue import Catalogue
-    from stickslip.solution.solution import Solution
+    from stickslip.problem import Problem, Status
+    from stickslip.problem.scenarios import Scenario
+    from stickslip.run import Catalogue
+    from stickslip.solution import Solution
 
 FIRST = 12
 """Number of table rows that are shown."""
@@ -41,10 +40,9 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:
     """Print the summary of a run on standard output, with `everything` that is known of its proof, waves and predictability."""
-    from stickslip.engine.history.slip_events import SlipEvents
-    from stickslip.engine.history.tables import SHOCK_COLUMNS, shock_columns
-    from stickslip.problem.run_quantities import default_event_rate
-    from stickslip.solution.observables.event_table import event_columns
+    from stickslip.engine import SHOCK_COLUMNS, SlipEvents, shock_columns
+    from stickslip.problem import default_event_rate
+    from stickslip.solution.observables import event_columns
 
     screen, history = titled(scenario), solution.history
     say(screen, solution.reach_note)
@@ -104,7 +102,7 @@ def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem |
 
     Stiffness times slip is left out where the driver has a finite impedance: the load does not fall by that much.
     """
-    from stickslip.solution.observables.event_table import EVENT_COLUMNS, shown_columns
+    from stickslip.solution.observables import EVENT_COLUMNS, shown_columns
 
     if problem is not None and _slides_throughout(events, problem):
         say(screen, "the contact slides throughout: there are no separate slip events\n")
@@ -132,7 +130,7 @@ def statistics(events: Mapping[Any, Any], slip: str = "m") -> list[str]:
     """Return a line with mean and scatter of slips (unit `slip`) and recurrence times, if there are three of these or more."""
     import numpy as np
 
-    from stickslip.solution.observables.event_table import that_count
+    from stickslip.solution.observables import that_count
 
     lines = []
     for name, unit in (("recurrence", "s"), ("slip", slip)):

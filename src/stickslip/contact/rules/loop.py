@@ -15,9 +15,7 @@ from stickslip.contact.areas import area
 from stickslip.contact.branches import rate_on, resistance
 from stickslip.contact.rules.selection import selection_table
 from stickslip.foundation.show import brief_repr
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Branch, Resistance
-from stickslip.problem.selection_rule import SelectionTable
+from stickslip.problem import Branch, Problem, Resistance, SelectionTable
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,7 @@ from stickslip.contact.roots import bracketed_newton
 from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Branch, Resistance
-from stickslip.problem.selection_rule import SelectionRule, SelectionTable, registered
+from stickslip.problem import Branch, Problem, Resistance, SelectionRule, SelectionTable, registered
 
 MOST_COMPARED = 150
 """Largest number of branches that Maxwell's rule compares: a minute's work."""

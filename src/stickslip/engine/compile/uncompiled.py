@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compile.lock import LOCK
-from stickslip.friction.formula.operations import OPERATIONS
+from stickslip.friction.formula import OPERATIONS
 
 UNCOMPILED = os.environ.get("STICKSLIP_UNCOMPILED", "") not in ("", "0")
 """True if kernels run as plain Python."""

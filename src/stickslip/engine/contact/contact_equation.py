@@ -13,7 +13,7 @@ from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, re
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Floats, Incoming
 from stickslip.engine.state.workspace import Run
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 TIE = 1e-13
 """An event closer (in xi) to the end of a piece than this waits for the start of the next piece, because changes that arrive with

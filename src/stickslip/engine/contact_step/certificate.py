@@ -30,7 +30,7 @@ from stickslip.engine.series.polynomial import bound_of_slope, bounds_on_disc, m
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput
 from stickslip.engine.state.workspace import Run
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0
 """Largest share of a step (1), in units of the local tolerance, which is a tenth of rtol. The second number is for a contact with

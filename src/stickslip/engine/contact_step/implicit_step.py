@@ -25,7 +25,7 @@ from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Task
 from stickslip.engine.state.workspace import Run, borrow
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 STILL = 1e-3
 """The slip rate of a contact hanging in bristles is only rounding if it is below this share (1) of the hanging slip rate."""

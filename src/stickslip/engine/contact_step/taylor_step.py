@@ -41,7 +41,7 @@ from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, NearFold, SeriesInput, StepEvent, Task
 from stickslip.engine.state.workspace import Run
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 LONGEST_GUESS = 2.0
 """Guess at the length of the next step, relative to the last one (1)."""

@@ -40,9 +40,8 @@ from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.creep.pattern import Pattern
 from stickslip.engine.input.branch_table import strength_change
 from stickslip.engine.state.layout import Ball, Floats
-from stickslip.friction.formula.differences import difference
-from stickslip.friction.formula.expression import Expression
-from stickslip.problem.problem import Problem
+from stickslip.friction.formula import Expression, difference
+from stickslip.problem import Problem
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from stickslip.engine.creep.averaged import AveragedCreep
 from stickslip.engine.creep.landing import Piece
 from stickslip.engine.creep.planner import CreepPlan, hermite
 from stickslip.engine.state.layout import TERMS, Counts, Floats, HistoryPiece, State, Store
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 
 def seen(load: Floats, strength: float, direction: int) -> Floats:

@@ -20,7 +20,7 @@ from stickslip.engine.creep.steady import SHORTEST_LEAP, integrals
 from stickslip.engine.creep.steady_landing import continue_after, write_piece
 from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem import default_event_rate
 
 LOOKED_AT = 400
 """Number of pieces in which cycles are looked for."""

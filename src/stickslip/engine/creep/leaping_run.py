@@ -6,7 +6,7 @@ from typing import Protocol
 
 from stickslip.engine.history.status import Checkpoint
 from stickslip.engine.state.layout import Counts, Integers, Setup, State, Store
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 
 class LeapingRun(Protocol):

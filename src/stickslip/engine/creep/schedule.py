@@ -11,8 +11,7 @@ import numpy as np
 from stickslip.engine.history.history import NO_LEAPS
 from stickslip.engine.input.limits import PATIENCE
 from stickslip.engine.state.layout import Counts, Floats, Incoming
-from stickslip.problem.limits import leaps_over
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem, leaps_over
 
 if TYPE_CHECKING:
     from stickslip.engine.creep.leaping_run import LeapingRun

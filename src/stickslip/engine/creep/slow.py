@@ -29,10 +29,8 @@ from typing import Self
 import numpy as np
 
 from stickslip.engine.state.layout import Floats
-from stickslip.friction.formula.differences import slope_formula
-from stickslip.friction.formula.expression import RATE, STATES
-from stickslip.friction.formula.functions import evaluate
-from stickslip.problem.problem import Problem
+from stickslip.friction.formula import RATE, STATES, evaluate, slope_formula
+from stickslip.problem import Problem
 
 NODES = 12
 """The motion is followed at this many offsets in each stretch of the round trip."""

@@ -14,7 +14,7 @@ from stickslip.engine.creep.slow import BOTH, HEAVY, PLAIN, Offsets, SlowMotion
 from stickslip.engine.creep.steady import SHORTEST_LEAP
 from stickslip.engine.history.series import horner
 from stickslip.engine.state.layout import Floats
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 MOST_OFFSETS = 12_000
 """Largest number of offsets that are followed: a round trip of more than a thousand pieces is not leaped over."""

@@ -31,15 +31,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.contact.sliding import Sliding
-from stickslip.contact.steady import steady_slidings
+from stickslip.contact import Sliding, steady_slidings
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.state.layout import TERMS, BranchRow, Floats
 from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.bounds import Enclosure
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Resistance
+from stickslip.friction.formula import Enclosure
+from stickslip.problem import Problem, Resistance
 
 SHORTEST_LEAP = 16
 """Fewest round trips of a leap that is worth its cost."""

@@ -20,9 +20,7 @@ from stickslip.engine.creep.steady_landing import SteadyLanding
 from stickslip.engine.creep.swing_landing import SwingLanding
 from stickslip.engine.creep.swing_leaps import SwingLeaps
 from stickslip.engine.state.layout import NEVER, Counts, Floats
-from stickslip.problem.limits import leaps_over
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Problem, Stop, leaps_over
 
 Landing = SteadyLanding | SlowLanding | SwingLanding | CycleLeap
 """A leap over sliding, ready to be written."""

@@ -14,8 +14,7 @@ from stickslip.engine.creep.planner import INTERPOLATION, hermite
 from stickslip.engine.creep.steady import SHORTEST_LEAP
 from stickslip.engine.creep.swing import SAFETY, CreepPlace, Swing, SwingingBlock
 from stickslip.engine.state.layout import Floats
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem import Problem, default_event_rate
 
 SLOWLY = 0.01
 """Largest relative change of the frequency in a radian: nearer to where creep turns dynamic each cycle is computed."""

@@ -16,9 +16,7 @@ Sources: Rump 2010, Verification methods, Acta Numerica 19 (balls); Rudin 1987, 
 from __future__ import annotations
 
 from stickslip.engine.formula_code.recurrences import Recurrences
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
-from stickslip.friction.formula.operations import operation_of
-from stickslip.friction.formula.operations.operation import TINIEST
+from stickslip.friction.formula import RATE, SLIP, STATES, TINIEST, VARIABLES, Expression, nodes_of, operation_of
 
 
 class Balls:

@@ -8,9 +8,19 @@ w_of_{k} and w2_of_{k}. Where an exp of an exp is so large that it counts as con
 
 from __future__ import annotations
 
-from stickslip.friction.formula.differences import harmless_overflows
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, depends_on, nodes_of
-from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS, operation_of
+from stickslip.friction.formula import (
+    LARGEST_EXPONENT,
+    OPERATIONS,
+    RATE,
+    SLIP,
+    STATES,
+    VARIABLES,
+    Expression,
+    depends_on,
+    harmless_overflows,
+    nodes_of,
+    operation_of,
+)
 
 NO_LIMIT = 1e308
 """Largest exponent of any other exp, in effect no limit: if exp is infinite, the run ends with a status that says so."""

@@ -9,9 +9,7 @@ rate (`direct`), sums are handed on before they are scaled (v{i}_{k}, see `serie
 from __future__ import annotations
 
 from stickslip.engine.formula_code.order_zero import OrderZero
-from stickslip.friction.formula.expression import RATE, SLIP, Expression
-from stickslip.friction.formula.operations import operation_of
-from stickslip.friction.formula.operations.operation import Scaled, oldest_first, sum_of
+from stickslip.friction.formula import RATE, SLIP, Expression, Scaled, oldest_first, operation_of, sum_of
 
 
 class Recurrences(OrderZero):

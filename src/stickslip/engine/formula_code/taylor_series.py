@@ -28,7 +28,7 @@ from collections.abc import Callable
 
 from stickslip.engine.formula_code.balls import Balls
 from stickslip.engine.formula_code.recurrences import Recurrences
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, depends_on
+from stickslip.friction.formula import RATE, SLIP, STATES, Expression, depends_on
 
 ORDER = 18
 """Order of the Taylor series, and therefore degree of the polynomials in the history."""

@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Integers, Store
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     from stickslip.engine.history.machine_motion import MachineMotion

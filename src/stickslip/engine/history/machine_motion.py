@@ -22,7 +22,7 @@ from stickslip.engine.input.forcing import EDGE, Inflow, inflow_of, machine_at_f
 from stickslip.engine.state.layout import TERMS, Store
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""

@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.engine.history.history import History, Positions
 from stickslip.foundation.names import name_of
 from stickslip.foundation.show import brief, in_turns
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 DIGITS = 8
 """Number of significant digits of a slip in a summary, as in its tables."""

@@ -15,7 +15,7 @@ from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
-from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem import default_event_rate
 
 LAST_THIRD = 2.0 / 3.0
 """After this share of a run (1), transients from its start count as over."""

@@ -26,8 +26,7 @@ from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, cou
 from stickslip.engine.waves.merged_series import MEAN, MOST_TOGETHER
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Problem, Stop
 
 ROUND_TRIP_ROUNDING = 1e-9
 """Rounding may carry an offset beyond the end of a round trip by this share of it; also the tolerance of xi around 0 and 1."""

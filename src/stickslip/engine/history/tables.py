@@ -6,13 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.contact.regime import regime_when_pressed
-from stickslip.contact.sliding import driven_at, slides_on
-from stickslip.contact.steady import steady_slidings
+from stickslip.contact import driven_at, regime_when_pressed, slides_on, steady_slidings
 from stickslip.engine.history.history import History, Positions
 from stickslip.engine.input.branch_table import is_algebraic
-from stickslip.problem.limits import leaps_over
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem, leaps_over
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,1 +1,8 @@
-"""Conversion of a problem to the numbers that the engine works on."""
+"""Conversion of a problem to the numbers that the engine works on.
+
+`__init__.pyi` lists what others take from here.
+"""
+
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

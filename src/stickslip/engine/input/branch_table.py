@@ -12,14 +12,10 @@ import math
 
 import numpy as np
 
-from stickslip.contact.branches import resistance
-from stickslip.contact.regime import regime_when_pressed
-from stickslip.contact.rules.selection import Branches, selection_table, table_of
+from stickslip.contact import Branches, regime_when_pressed, resistance, selection_table, table_of
 from stickslip.engine.state.layout import BranchRow, Counts, Floats, Params, Setup, State
-from stickslip.friction.formula.differences import difference
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Branch
-from stickslip.problem.selection_rule import SelectionTable
+from stickslip.friction.formula import difference
+from stickslip.problem import Branch, Problem, SelectionTable
 
 
 def is_algebraic(problem: Problem) -> bool:

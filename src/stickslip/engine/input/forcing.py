@@ -19,10 +19,8 @@ from numpy.typing import NDArray
 from stickslip.engine.waves.tone import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
+from stickslip.problem import SILENT, Ground, LoadingHistory, Problem, Segment, Tone
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
-from stickslip.problem.ground import Ground
-from stickslip.problem.loading import SILENT, LoadingHistory, Segment, Tone
-from stickslip.problem.problem import Problem
 
 
 @dataclass(frozen=True, eq=False)

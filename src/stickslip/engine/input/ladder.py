@@ -16,10 +16,9 @@ from stickslip.engine.input.forcing import far_excess
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
 from stickslip.foundation.constants import RIGID
+from stickslip.problem import LoadingHistory, Problem
 from stickslip.problem.bodies import OfLayers
 from stickslip.problem.bodies.layers import Layers
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
 
 NO_LADDER = LadderCell.table(0)
 """Table `Setup.ladder` of a body without layers."""

@@ -19,8 +19,7 @@ import math
 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
-from stickslip.problem.limits import check_round_trips, leaps_but_for_pull, lumps_by_itself
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem, check_round_trips, leaps_but_for_pull, lumps_by_itself
 
 PATIENCE = 200
 """Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.contact.regime import folds_not_followed
-from stickslip.contact.rules.selection import rule_of
+from stickslip.contact import folds_not_followed, rule_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.contact_step.certificate import RATIOS
 from stickslip.engine.input.branch_table import branch_of, is_algebraic, table_of_branches
@@ -34,11 +33,7 @@ from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece,
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
-from stickslip.problem.limits import automatic_length
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import EVENT_SHARE
-from stickslip.problem.selection_rule import SelectionRule
+from stickslip.problem import EVENT_SHARE, LoadingHistory, Problem, SelectionRule, automatic_length
 
 
 def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, Integers]:

@@ -17,9 +17,7 @@ import numpy as np
 
 from stickslip.engine.input.forcing import Inflow, inflow_of, tone_of
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.ground import Ground
-from stickslip.problem.loading import Tone
-from stickslip.problem.problem import Problem
+from stickslip.problem import Ground, Problem, Tone
 
 STILL = 1e-15
 """Ground whose velocity is below this share of its largest one (1) is at rest: the rest is rounding of sums."""

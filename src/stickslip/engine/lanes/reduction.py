@@ -20,7 +20,7 @@ from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, pieces_in
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 
 class Reduced(MemoryRecord):

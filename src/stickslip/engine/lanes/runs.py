@@ -36,7 +36,7 @@ from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
-from stickslip.problem.run_codes import BAD_PARAMETERS, Stop
+from stickslip.problem import BAD_PARAMETERS, Stop
 
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""

@@ -27,7 +27,7 @@ from stickslip.engine.series.polynomial import evaluate, fill, first_descent, re
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state.layout import STATES, TERMS
 from stickslip.engine.state.workspace import Run
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 ATTEMPTS = 80
 """An implicit step fails after this many attempts (1), each shorter."""

@@ -13,7 +13,7 @@ from stickslip.engine.series.polynomial import total
 from stickslip.engine.state.layout import NEVER, EnginePart, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING, is_slip_law, patience_spent, start_of_slide, worth_building
-from stickslip.problem.run_codes import Stop
+from stickslip.problem import Stop
 
 
 @kernel

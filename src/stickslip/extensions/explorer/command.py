@@ -14,7 +14,7 @@ from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.extensions.explorer.model.answer import RecordBehind
-    from stickslip.problem.problem import Problem
+    from stickslip.problem import Problem
 
 SERVER = "Server"
 """Heading of the options of the server in the help."""
@@ -97,7 +97,7 @@ def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None,
     from stickslip.cli.overrides import typed_columns
     from stickslip.extensions.inference import record_beside
     from stickslip.foundation.quantities import Quantity
-    from stickslip.problem.scenarios.entries import typed_number
+    from stickslip.problem.scenarios import typed_number
 
     time = Quantity("s", "time of the record")
     found = {name: time.check("explore", name, typed_number(text)) for name, text in ends.items() if text is not None}
@@ -108,7 +108,7 @@ def _write(folder: Path, scenario: str | None, changes: list[str] | None, record
     """Write the tour into a folder and say how large it is. Raises InputError."""
     from stickslip.extensions.explorer.static.export import write_tour
     from stickslip.foundation.errors import InputError
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     if scenario is not None or changes or record is not None:
         raise InputError(

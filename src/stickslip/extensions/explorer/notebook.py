@@ -11,10 +11,10 @@ from stickslip.extension import check_is_there
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 LIBRARIES = ("panel", "bokeh")
 """The libraries of the extra `explorer`."""
@@ -80,8 +80,7 @@ def explore(
     if record is not None:
         check_is_there("inference", "explore: record=")
     from stickslip.extensions.explorer.server.start import shown_in_notebook
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.problem.scenarios.source import read_source
+    from stickslip.problem.scenarios import Scenario, read_source
 
     found = read_source("explore", problem, any_kind=True)
     if isinstance(found, Problem):

@@ -10,7 +10,7 @@ from stickslip.extension import Command, Extension
 if TYPE_CHECKING:
     from stickslip.extensions.inference.beside import BesideRun as BesideRun
     from stickslip.extensions.inference.beside import RecordBeside
-    from stickslip.problem.problem import Problem
+    from stickslip.problem import Problem
 
 
 class InferenceExtension(Extension):

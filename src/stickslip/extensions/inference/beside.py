@@ -14,8 +14,8 @@ from stickslip.extensions.inference.record.record import SHEAR, SHEAR_IN, Record
 from stickslip.extensions.inference.record.resample import resampled
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.problem.problem import Problem
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem
+from stickslip.solution import Solution
 
 MOST_SAMPLES = 20_000
 """Of more samples than this, means are compared."""

@@ -25,9 +25,9 @@ from stickslip.extensions.inference.fit.pieces import pieces_of
 from stickslip.extensions.inference.fit.what_is_left import ResidualLook
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
-from stickslip.run.study import StudyWithDataset
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem
+from stickslip.run import StudyWithDataset
+from stickslip.solution import Solution
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -55,14 +55,12 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.parameters import PRESSING
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import check_rtol
-from stickslip.problem.scenarios.source import read_source
-from stickslip.run.study import TextProgress, telling
+from stickslip.problem import PRESSING, Problem, check_rtol
+from stickslip.problem.scenarios import read_source
+from stickslip.run import TextProgress, telling
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 WAYS = ("samples", "features")
 """Data to fit: each sample of a record, or features of its slip events."""

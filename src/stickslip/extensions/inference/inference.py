@@ -32,9 +32,9 @@ from stickslip.foundation.netcdf_file import write
 from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
 from stickslip.friction.law import FrictionLaw
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.run.study import TextProgress, telling
-from stickslip.solution.files.netcdf import origin
+from stickslip.problem.scenarios import Scenario
+from stickslip.run import TextProgress, telling
+from stickslip.solution.files import origin
 
 MISSED, MISSED_SHARE = 3.0, 0.2
 """A run misses a record if residuals exceed this multiple of the noise of neighbouring samples and this share of the scatter."""

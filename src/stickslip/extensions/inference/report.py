@@ -15,7 +15,7 @@ from stickslip.extensions.inference.inference import Inference, in_shown_unit, m
 from stickslip.figures.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 from stickslip.foundation.names import name_of
 from stickslip.foundation.show import about_time, brief, number, sentence
-from stickslip.problem.given_units import in_given_units
+from stickslip.problem import in_given_units
 
 PAGE = "report.html"
 """Name of the page in the folder of a report."""

@@ -11,7 +11,7 @@ from stickslip.foundation.show import clean, number
 
 if TYPE_CHECKING:
     from stickslip.extensions.inference.inference import Inference
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 _ARGUMENT = re.compile(
     r"\b(by|each|held_out|loss|max_time|normal|observe|parts|profiles|samples|sensor|start|starts|trend|weight|windows)='?([\w.]*\w)'?"

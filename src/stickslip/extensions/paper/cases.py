@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TypeVar
 
 import stickslip as ss
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 from stickslip.problem.scenarios import load_scenario
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 T = TypeVar("T")
 

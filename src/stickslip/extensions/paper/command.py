@@ -24,7 +24,7 @@ def paper(
     \b
       stickslip paper --out paper
     """
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     check_folder(out, "--out")
     from stickslip.extensions.paper.make import make

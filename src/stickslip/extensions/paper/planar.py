@@ -23,8 +23,8 @@ from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, quantity, styled
 from stickslip.foundation.arrays import Floats
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_slab
-from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.contact import uniqueness_of
 from stickslip.extensions.paper import planar
 from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.figures.contact import resistance, systems

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from stickslip.contact.uniqueness import uniqueness_of
-from stickslip.engine.history.tables import SHOCK_COLUMNS
+from stickslip.contact import uniqueness_of
+from stickslip.engine import SHOCK_COLUMNS
 from stickslip.extensions.paper.cases import READINGS, Runs, problem, typed
 from stickslip.extensions.paper.claims import ClaimVerdict
 from stickslip.extensions.paper.planar import STORED
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.names import si_unit
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_block, as_slab
-from stickslip.problem.problem import Problem
-from stickslip.solution.observables.event_table import EVENT_COLUMNS
+from stickslip.solution.observables import EVENT_COLUMNS
 
 
 def all_tables(runs: Runs, verdicts: Sequence[ClaimVerdict]) -> dict[str, pd.DataFrame]:

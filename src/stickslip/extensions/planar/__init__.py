@@ -14,9 +14,8 @@ from stickslip.extension import Extension
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution as PlanarSolution
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.problem.scenarios.table import ScenarioTable
-    from stickslip.run.kinds import Reader, SolverKind
+    from stickslip.problem.scenarios import Scenario, ScenarioTable
+    from stickslip.run import Reader, SolverKind
 
 
 class PlanarExtension(Extension):

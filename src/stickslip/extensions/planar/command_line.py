@@ -16,13 +16,13 @@ from stickslip.cli.results import RunResults
 from stickslip.extensions.planar.summary import announce_run, show_run
 from stickslip.extensions.planar.table import planar_slab_of
 from stickslip.foundation.errors import InputError
-from stickslip.run.progress import progress_line
+from stickslip.run import progress_line
 
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
     from stickslip.extensions.planar.solution import PlanarSolution
-    from stickslip.problem.run_status import Status
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem import Status
+    from stickslip.problem.scenarios import Scenario
 
 DRAWN: Sequence[str] = ("--figure", "--animation")
 """The pictures that these runs have."""
@@ -88,7 +88,7 @@ class PlanarKindOfRun(KindOfRun):
     def run(self, request: Request) -> PlanarResults:
         """Run, and say before the start how large the run is. Raises InputError."""
         from stickslip.extensions.planar.run import simulate_planar
-        from stickslip.run.options import options_of
+        from stickslip.run import options_of
 
         if request.resume is not None:
             return _resumed(request, request.resume)

@@ -15,7 +15,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, fields_of
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 LOCKED = "locked"
 """Name of the profile that is true where the contact never slips."""

@@ -12,8 +12,8 @@ from stickslip.extensions.planar.nodes import varying
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import LARGEST_SERIES, Choice, Quantity
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.schema import without_owner
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import without_owner
 
 PLACES = {axis: Quantity("m", f"interval of {axis}, 0 in the middle of the contact") for axis in ("y", "z")}
 SHAPE = Choice("shape of a patch on a plane", ("box", "ellipse"))

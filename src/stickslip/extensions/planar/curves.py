@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import stickslip
-from stickslip.solution.files.curves import checked_path, heading, write_columns
+from stickslip.solution.files import checked_path, heading, write_columns
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.problem import LoadingHistory, Problem
 from stickslip.problem.bodies import ElasticSlab
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
 
 
 def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:

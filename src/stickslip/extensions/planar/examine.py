@@ -15,10 +15,10 @@ from stickslip.extensions.planar.summary import size_of
 from stickslip.extensions.planar.table import CONTACT, contact_of, planar_slab_of
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
-from stickslip.problem.scenarios.scenario import Scenario, doubts
-from stickslip.problem.start import loading_rate
-from stickslip.run.check.examine import LARGE_STRAIN, Examination, examine
-from stickslip.run.check.facts import Fact
+from stickslip.problem import loading_rate
+from stickslip.problem.scenarios import Scenario, doubts
+from stickslip.run.check import LARGE_STRAIN, Examination, Fact
+from stickslip.run.check.examine import examine
 
 
 def examine_contact(scenario: Scenario) -> Examination:

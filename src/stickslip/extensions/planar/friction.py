@@ -13,9 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from stickslip.extensions.planar.nodes import NodeValues
-from stickslip.friction.formula.differences import limited
-from stickslip.friction.formula.expression import STATES, VARIABLES, Expression, nodes_of
-from stickslip.friction.formula.operations import LARGEST_EXPONENT, operation_of
+from stickslip.friction.formula import LARGEST_EXPONENT, STATES, VARIABLES, Expression, limited, nodes_of, operation_of
 from stickslip.friction.law import FrictionLaw
 
 ITERATIONS = 80

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
-from stickslip.run.kinds import ALL_TAKE, Reader, SolverKind
+from stickslip.run import ALL_TAKE, Reader, SolverKind
 
 if TYPE_CHECKING:
     from stickslip.cli.kinds import KindOfRun
     from stickslip.cli.results import Stored
     from stickslip.extensions.planar.solution import PlanarSolution
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.run.check.examine import Examination
-    from stickslip.run.options import RunOptions
+    from stickslip.problem.scenarios import Scenario
+    from stickslip.run import RunOptions
+    from stickslip.run.check import Examination
 
 
 def _solves(what: Any) -> bool:

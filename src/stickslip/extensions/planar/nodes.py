@@ -17,10 +17,8 @@ from stickslip.foundation.other_values import unchecked, with_values
 from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
-from stickslip.friction.formula.functions import evaluate
-from stickslip.problem.fields import LOAD
-from stickslip.problem.parameters import put_many
-from stickslip.problem.problem import Problem
+from stickslip.friction.formula import evaluate
+from stickslip.problem import LOAD, Problem, put_many
 
 MANY = 256
 """Up to this many different nodes are all checked as problems of their own; of more, the extremes and some others are."""

@@ -20,11 +20,9 @@ from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
-from stickslip.problem.run_codes import INTERRUPTED, UNSTABLE, Stop
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.run.options import RunOptions
-from stickslip.run.progress import Pace, how_far, how_fast
-from stickslip.run.run_loop import WholeHistory, run_to_end
+from stickslip.problem import INTERRUPTED, UNSTABLE, Stop
+from stickslip.problem.scenarios import Scenario
+from stickslip.run import Pace, RunOptions, WholeHistory, how_far, how_fast, run_to_end
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.contact.regime import regime_of
+from stickslip.contact import regime_of
 from stickslip.extensions.planar.nodes import NodeValues, full_names, node_values, varying
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
+from stickslip.problem import Problem, check_problem
 from stickslip.problem.bodies import MACHINE, ElasticSlab, has_dashpot
-from stickslip.problem.problem import Problem, check_problem
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution

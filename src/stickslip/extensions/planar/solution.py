@@ -19,10 +19,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import ENERGY_NAMES, in_files, si_unit
 from stickslip.foundation.show import brief
-from stickslip.problem.given_units import in_given_units
-from stickslip.problem.run_quantities import default_event_rate
-from stickslip.problem.run_status import STATUSES, Status
-from stickslip.solution.accessors import known_to_pyplot
+from stickslip.problem import STATUSES, Status, default_event_rate, in_given_units
+from stickslip.solution import known_to_pyplot
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -40,11 +40,9 @@ from stickslip.foundation.code_key import key_of_folders
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.netcdf_file import Variable
-from stickslip.problem.run_codes import INTERRUPTED, UNDER_WAY, Stop
-from stickslip.problem.run_status import STATUSES
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.solution.files.soundness import number, whole_number
-from stickslip.solution.files.zarr_store import create
+from stickslip.problem import INTERRUPTED, STATUSES, UNDER_WAY, Stop
+from stickslip.problem.scenarios import Scenario
+from stickslip.solution.files import create, number, whole_number
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver

@@ -27,11 +27,9 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
-from stickslip.problem.run_codes import UNDER_WAY
-from stickslip.problem.run_status import STATUSES, Status
-from stickslip.problem.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
-from stickslip.solution.files.soundness import number, whole_number
-from stickslip.solution.files.zarr_store import FolderFormat, check_layout
+from stickslip.problem import STATUSES, UNDER_WAY, Status
+from stickslip.problem.scenarios import LARGEST_TEXT, Scenario, read_scenario
+from stickslip.solution.files import FolderFormat, check_layout, number, whole_number
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver

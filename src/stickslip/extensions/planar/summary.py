@@ -8,11 +8,11 @@ from stickslip.cli.output.files import file_size
 from stickslip.cli.output.show import console, say, titled
 from stickslip.extensions.planar.table import contact_of, planar_slab_of
 from stickslip.foundation.show import brief
-from stickslip.problem.scenarios.scenario import doubts
+from stickslip.problem.scenarios import doubts
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 
 def size_of(scenario: Scenario, *, streamed: bool = False) -> str:

@@ -13,15 +13,13 @@ from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
-from stickslip.problem.scenarios.table import ScenarioTable
+from stickslip.problem.scenarios import ScenarioTable
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.contact import Contact
     from stickslip.extensions.planar.slab import PlanarSlab
-    from stickslip.problem.problem import Problem
-    from stickslip.problem.scenarios.entries import Source
-    from stickslip.problem.scenarios.scenario import Scenario
-    from stickslip.problem.scenarios.schema import Key
+    from stickslip.problem import Problem
+    from stickslip.problem.scenarios import Key, Scenario, Source
 
 CONTACT = "contact"
 """The name of the table."""
@@ -44,7 +42,7 @@ class ContactTable(ScenarioTable):
 
     @override
     def other_keys(self) -> Mapping[str, Key]:
-        from stickslip.problem.scenarios.schema import Key, read_as
+        from stickslip.problem.scenarios import Key, read_as
 
         return {
             "replicas": Key(partial(read_as, bool, "true or false"), True),
@@ -75,7 +73,7 @@ class ContactTable(ScenarioTable):
         from stickslip.extensions.planar.contact import LOCKED
         from stickslip.extensions.planar.contact_table import PLACES, TAPER
         from stickslip.extensions.planar.nodes import varying
-        from stickslip.problem.scenarios.parameter_paths import YES_OR_NO
+        from stickslip.problem.scenarios import YES_OR_NO
 
         yield from super().paths(value, problem)
         yield "replicas", YES_OR_NO
@@ -98,7 +96,7 @@ class ContactTable(ScenarioTable):
 
     @override
     def check(self, value: Contact, scenario: Scenario, source: Source) -> None:
-        from stickslip.problem.scenarios.schema import without_owner
+        from stickslip.problem.scenarios import without_owner
 
         try:
             _ = planar_slab_of(scenario).steps(scenario.duration)

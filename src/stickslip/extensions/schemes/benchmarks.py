@@ -28,12 +28,11 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
 from stickslip.friction.laws.of_rate import Coulomb
+from stickslip.problem import Problem
 from stickslip.problem.bodies import ElasticSlab
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios import Scenario, library, load_scenario
-from stickslip.problem.scenarios.source import read_duration_and_problem, read_source
+from stickslip.problem.scenarios import Scenario, library, load_scenario, read_duration_and_problem, read_source
+from stickslip.run import TextProgress, telling
 from stickslip.run.simulate import simulate
-from stickslip.run.study import TextProgress, telling
 
 if TYPE_CHECKING:
     import xarray as xr

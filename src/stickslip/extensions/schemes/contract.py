@@ -17,7 +17,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from stickslip.extensions.schemes.shocks import Shock, shadow, shocks_of
 from stickslip.extensions.schemes.verdict import mean_magnitude
 from stickslip.foundation.arrays import Floats
 from stickslip.friction import FrictionLaw
-from stickslip.problem.run_quantities import default_event_rate
-from stickslip.solution.solution import Solution
+from stickslip.problem import default_event_rate
+from stickslip.solution import Solution
 
 COLUMNS = {
     "scheme": ("", "name of the scheme, or of the program"),

@@ -18,10 +18,10 @@ from stickslip.extensions.schemes.contract import Grid, Sample, Scheme, SchemeCo
 from stickslip.extensions.schemes.run import SCHEMES
 from stickslip.foundation.errors import InputError
 from stickslip.friction import LaggedFriction
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_slab
-from stickslip.problem.problem import Problem
+from stickslip.run import uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import uninterrupted
 
 
 class Regularisation:

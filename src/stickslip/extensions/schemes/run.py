@@ -20,8 +20,8 @@ from stickslip.extensions.schemes.sbp import SummationByParts
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.problem import Problem
 from stickslip.problem.bodies import MACHINE, ElasticSlab, as_slab, has_dashpot
-from stickslip.problem.problem import Problem
 
 _ALL: tuple[Scheme, ...] = (
     Characteristics(),

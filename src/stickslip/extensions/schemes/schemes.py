@@ -28,13 +28,13 @@ from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.source import read_duration_and_problem
-from stickslip.run.study import Study, TextProgress, telling
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import read_duration_and_problem
+from stickslip.run import Study, TextProgress, telling
+from stickslip.solution import Solution
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 CELLS = (25, 50, 100, 200)
 """Meshes that are taken if none are given."""

@@ -11,8 +11,8 @@ from stickslip.extensions.schemes.contract import Series
 from stickslip.extensions.schemes.verdict import cell_time
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem
+from stickslip.solution import Solution
 
 NEAR = 1.5
 """A number whose ratio to the expected one lies within this factor of a power of 1000 has a wrong unit."""

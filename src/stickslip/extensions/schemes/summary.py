@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from stickslip.extensions.schemes.schemes import Schemes
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 
 def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Callable[[Path], object]]]:

@@ -16,11 +16,11 @@ import numpy as np
 
 from stickslip.extensions.schemes.contract import Series
 from stickslip.foundation.arrays import Floats
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_slab
-from stickslip.problem.problem import Problem
+from stickslip.run import TextProgress, uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import TextProgress, uninterrupted
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 
 def local_orders(sizes: Floats, errors: Floats) -> Floats:

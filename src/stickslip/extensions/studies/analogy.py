@@ -18,22 +18,20 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 import pandas as pd
 
-from stickslip.contact.critical import margin
-from stickslip.contact.regime_map import put_both, two_parameters
+from stickslip.contact import margin, put_both, two_parameters
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem, block_for
 from stickslip.problem.bodies import BodyWithWaves
-from stickslip.problem.equivalent_block import block_for
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.source import read_duration_and_problem
+from stickslip.problem.scenarios import read_duration_and_problem
+from stickslip.run import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import StudyWithDataset, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 
 Quantity = Literal["slip", "peak_rate", "duration"]

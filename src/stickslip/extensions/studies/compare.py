@@ -11,23 +11,19 @@ from typing import Any
 import pandas as pd
 
 import stickslip
-from stickslip.engine.history.slip_events import SlipEvents
+from stickslip.engine import SlipEvents
 from stickslip.extensions.studies.reach_of_runs import reach_of_runs
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION, check_rtol, default_event_rate
-from stickslip.problem.scenarios import Scenario, load_scenario
-from stickslip.problem.scenarios.source import solved_by_core
-from stickslip.run.source import read_source
-from stickslip.run.study import Study, TextProgress, telling
-from stickslip.solution.files.netcdf import read_solution
-from stickslip.solution.observables.energetics import extreme_tractions
-from stickslip.solution.observables.energy.pulses import Pulses
-from stickslip.solution.solution import Solution
+from stickslip.problem import DURATION, Problem, check_rtol, default_event_rate
+from stickslip.problem.scenarios import Scenario, load_scenario, solved_by_core
+from stickslip.run import Study, TextProgress, read_source, telling
+from stickslip.solution import Solution
+from stickslip.solution.files import read_solution
+from stickslip.solution.observables import Pulses, extreme_tractions
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),

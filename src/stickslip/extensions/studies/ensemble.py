@@ -18,16 +18,16 @@ from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import check_event_rate
-from stickslip.problem.scenarios.source import read_duration_and_problem
-from stickslip.run.options import RunOptions
-from stickslip.run.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
-from stickslip.solution.observables.predictability import LOST, Predictability, is_followed, predictability
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem, check_event_rate
+from stickslip.problem.scenarios import read_duration_and_problem
+from stickslip.run import RunOptions, RunsCompared, TextProgress, telling, uninterrupted
+from stickslip.run.study import MAX_PIECES
+from stickslip.solution import Solution
+from stickslip.solution.observables import LOST, Predictability, is_followed
+from stickslip.solution.observables.predictability import predictability
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 
 MAX_TOTAL = 2_000_000

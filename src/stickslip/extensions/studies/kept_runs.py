@@ -8,17 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stickslip.engine.history.status import engine
+from stickslip.engine import engine
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_codes import FULL_HISTORY, INTERRUPTED, UNDER_WAY
-from stickslip.problem.run_status import STATUSES
-from stickslip.run.options import RunOptions
-from stickslip.run.resume import resume_run
+from stickslip.problem import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, Problem
+from stickslip.run import RunOptions, resume_run
 from stickslip.run.simulate import simulate
-from stickslip.solution.files.netcdf import read_solution
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
+from stickslip.solution.files import read_solution
 
 STOPPED = (STATUSES[UNDER_WAY].name, STATUSES[INTERRUPTED].name)
 """Names of the statuses of runs that go on when they are asked for again."""

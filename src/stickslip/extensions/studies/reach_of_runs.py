@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from stickslip.engine.history.reach import SAME, largest_of, shown_slip
+from stickslip.engine import SAME, largest_of, shown_slip
 from stickslip.foundation.names import name_of
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 
 def reach_of_runs(runs: Mapping[str, Solution]) -> str:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem, resistance_slope, written_out
-from stickslip.solution.observables.predictability import LOST
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem, resistance_slope, written_out
+from stickslip.solution import Solution
+from stickslip.solution.observables import LOST
 
 LEAST_DISTURBANCE, LARGEST_DISTURBANCE = 1e-15, 1e-2
 """Allowed sizes of a disturbance, as shares of the strength: rounding hides smaller ones, and larger ones make another problem."""

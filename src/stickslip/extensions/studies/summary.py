@@ -7,11 +7,11 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, say, titled
-from stickslip.engine.history.reach import shown_slip
+from stickslip.engine import shown_slip
 from stickslip.foundation.given import preferred, show_in
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, clean, number, with_unit
-from stickslip.problem.given_units import units_shared
+from stickslip.problem import units_shared
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.studies.analogy import Analogy
     from stickslip.extensions.studies.compare import Comparison
     from stickslip.extensions.studies.ensemble import Ensemble
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 FIRST = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""

@@ -12,7 +12,7 @@ from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
     from stickslip.extensions.sweeps.along import Along
-    from stickslip.run.kinds import Reader
+    from stickslip.run import Reader
 
 
 class SweepsExtension(Extension):

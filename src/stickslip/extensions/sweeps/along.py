@@ -10,8 +10,7 @@ import numpy as np
 from stickslip.extensions.sweeps.design.quantities import QUANTITIES, quantities_named
 from stickslip.extensions.sweeps.execution.chunk import Work, run_chunk
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.scenarios.parameter_paths import ParameterPath
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios import ParameterPath, Scenario
 
 
 class Along(NamedTuple):

@@ -182,7 +182,7 @@ def _losses() -> Iterator[None]:
 def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.Dataset, SweepProgress | None]:
     """Return the results of a sweep and its last progress."""
     from stickslip.extensions.sweeps.sweep import carry_out, runner_of
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     last: list[SweepProgress] = []
     with runner_of(**resources) as run, progress_line(f"{plan.scenario.name}:") as tell:

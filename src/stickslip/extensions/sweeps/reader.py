@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from typing_extensions import override
 
-from stickslip.run.kinds import Reader
+from stickslip.run import Reader
 
 if TYPE_CHECKING:
     from stickslip.cli.results import Stored

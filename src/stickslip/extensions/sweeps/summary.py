@@ -55,8 +55,8 @@ def show_sweep(title: str, dataset: xr.Dataset) -> int:
 
 def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
     """Return a line if members without a mass at the contact start in another way than those with one."""
-    from stickslip.problem.scenarios.scenario import read_scenario
-    from stickslip.run.check.stability import other_start
+    from stickslip.problem.scenarios import read_scenario
+    from stickslip.run.check import other_start
 
     problem = read_scenario(dataset.attrs["scenario"], "sweep").problem
     mass = f"body.{problem.body.mass_field}"

@@ -22,9 +22,9 @@ from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import about_time, number
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.run.progress import reporting
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import Scenario
+from stickslip.run import reporting
 
 if TYPE_CHECKING:
     import xarray as xr

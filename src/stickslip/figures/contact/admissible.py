@@ -12,8 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.ticker import FuncFormatter
 
-from stickslip.contact.branches import resistance
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.contact import Uniqueness, resistance, uniqueness_of
 from stickslip.figures.contact.resistance import BRANCHES, draw_branches
 from stickslip.figures.panels import finish
 from stickslip.figures.sheet import one_panel
@@ -22,13 +21,12 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
-from stickslip.problem.problem import Problem
-from stickslip.problem.resistance import Resistance
+from stickslip.problem import Problem, Resistance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from stickslip.solution.solution import Solution
+    from stickslip.solution import Solution
 
 _POINTS = 1201
 """Number of slip rates at which the curve is evaluated."""

@@ -10,12 +10,12 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
-from stickslip.contact.regime_map import RegimeMap
+from stickslip.contact import RegimeMap
 from stickslip.figures.panels import add_legend, draw_map, draw_parameters, finish, parameter_numbers
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import INK, PALE, TWO, shown, styled, unit_shown
 from stickslip.foundation.place import Place
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

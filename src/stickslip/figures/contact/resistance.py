@@ -12,18 +12,18 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from stickslip.contact.branches import branches_of, rate_on, resistance
+from stickslip.contact import branches_of, rate_on, resistance
 from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, curve_quantity, label, quantity, shown, styled, unit_shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from stickslip.solution.solution import Solution
+    from stickslip.solution import Solution
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""

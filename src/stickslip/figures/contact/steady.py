@@ -9,8 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from stickslip.contact.sliding import SteadySlidings
-from stickslip.contact.steady import slip_rate_at, steady_traction
+from stickslip.contact import SteadySlidings, slip_rate_at, steady_traction
 from stickslip.figures.panels import add_legend, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, INK, PALE, PURPLE, VERMILLION, curve_quantity, label, shown, styled, unit_shown

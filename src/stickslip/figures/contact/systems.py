@@ -27,8 +27,8 @@ from stickslip.figures.style import (
 from stickslip.foundation.place import Place
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_slab
-from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

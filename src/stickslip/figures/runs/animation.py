@@ -21,10 +21,10 @@ from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import readable_unit, si_unit
-from stickslip.solution.interval import choose_interval
+from stickslip.solution import choose_interval
 
 if TYPE_CHECKING:
-    from stickslip.solution.evaluation import Readings
+    from stickslip.solution import Readings
 
 FRAMES, PER_SECOND, PLACES, DPI, SIZE = 150, 20, 401, 100, (8.0, 4.5)
 """Defaults of a film: number of frames, frames per second, points across the slab, dots per inch, and size in inches."""

@@ -38,10 +38,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
-from stickslip.solution.interval import last_large_event
-from stickslip.solution.observables.event_table import that_count
-from stickslip.solution.observables.predictability import is_followed, predictability
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution, last_large_event
+from stickslip.solution.observables import is_followed, that_count
+from stickslip.solution.observables.predictability import predictability
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,8 +17,7 @@ from stickslip.foundation.place import Place
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from stickslip.solution.evaluation import Curve
-    from stickslip.solution.solution import Solution
+    from stickslip.solution import Curve, Solution
 
 Unit = tuple[str, float]
 """Name of a unit, and its size in SI units."""

@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from stickslip.engine.history.slip_events import SlipEvents
-from stickslip.engine.history.tables import shock_columns
+from stickslip.engine import SlipEvents, shock_columns
 from stickslip.figures.panels import add_legend, finish, set_log_ticks, zero_line
 from stickslip.figures.runs.packed import draw_line
 from stickslip.figures.sheet import one_panel
@@ -35,9 +34,9 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import TURNS, name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.run_quantities import default_event_rate
-from stickslip.solution.evaluation import Curve, Readings, times_of
-from stickslip.solution.observables.event_table import event_columns
+from stickslip.problem import default_event_rate
+from stickslip.solution import Curve, Readings, times_of
+from stickslip.solution.observables import event_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -25,14 +25,14 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.names import for_readers, name_of, readable_unit
 from stickslip.foundation.place import Place
-from stickslip.solution.interval import choose_interval
-from stickslip.solution.observables.energy.balance import energies
+from stickslip.solution import choose_interval
+from stickslip.solution.observables import energies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stickslip.solution.evaluation import Readings
+    from stickslip.solution import Readings
 
 TIMES = 800
 """Number of evenly spaced times; breakpoints of the run are added, up to as many."""

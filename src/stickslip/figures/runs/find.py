@@ -14,7 +14,7 @@ from stickslip.figures.panels import add_legend, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, ORANGE, folded, label, quantity, shown, styled, unit_shown
 from stickslip.foundation.place import Place
-from stickslip.run.find import Edge
+from stickslip.run import Edge
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

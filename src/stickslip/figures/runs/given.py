@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.fields import MAY_VARY
-from stickslip.problem.loading import LoadingHistory
+from stickslip.problem import MAY_VARY, LoadingHistory
 
 if TYPE_CHECKING:
-    from stickslip.problem.problem import Problem
+    from stickslip.problem import Problem
 
 PERIODS = 60.0
 """A tone with more periods than this is drawn as a band of its amplitude: single periods could not be seen."""

@@ -41,13 +41,13 @@ from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.problem.bodies import OfLayers, as_waves
-from stickslip.solution.interval import choose_interval, fronts_of
-from stickslip.solution.observables.field import extent_of
+from stickslip.solution import choose_interval, fronts_of
+from stickslip.solution.observables import extent_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from stickslip.solution.evaluation import Curve, Readings
+    from stickslip.solution import Curve, Readings
 
 DISPLACEMENT_ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""

@@ -24,7 +24,7 @@ from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of
 from stickslip.foundation.names import for_readers, readable_unit
 from stickslip.foundation.place import Place
-from stickslip.solution.evaluation import Readings
+from stickslip.solution import Readings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,1 +1,8 @@
-"""Represent formulas of friction laws as expression trees: parsing, units, differences, bounds and text."""
+"""Represent formulas of friction laws as expression trees: parsing, units, differences, bounds and text.
+
+`__init__.pyi` lists what others take from here.
+"""
+
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

@@ -1,19 +1,8 @@
-"""Scenarios: TOML files that say what to simulate, and those that come with the package."""
+"""Scenarios: TOML files that say what to simulate, and those that come with the package.
 
-from __future__ import annotations
+`__init__.pyi` lists what others take from here.
+"""
 
-from typing import TYPE_CHECKING, Any
+from stickslip.foundation.lazy_names import lazy_names
 
-if TYPE_CHECKING:
-    from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
-
-__all__ = ["Scenario", "load_scenario", "read_scenario"]
-
-
-def __getattr__(name: str) -> Any:
-    """Import a name when it is first used, because completion in the shell must not wait for all that reads them."""
-    if name in __all__:
-        from stickslip.problem.scenarios import scenario
-
-        return getattr(scenario, name)
-    raise AttributeError(f"module 'stickslip.problem.scenarios' has no attribute '{name}'")
+__getattr__, __dir__ = lazy_names(__name__, __file__)

@@ -1,1 +1,8 @@
-"""What can be said of a scenario before it is run."""
+"""What can be said of a scenario before it is run.
+
+`__init__.pyi` lists what others take from here.
+"""
+
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

@@ -9,13 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.regime import folds_not_followed, regime_when_pressed
-from stickslip.contact.regime_map import regimes_along_slip
-from stickslip.contact.sliding import SteadySlidings
-from stickslip.contact.steady import proven_slidings
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
+from stickslip.contact import (
+    SteadySlidings,
+    Uniqueness,
+    critical_normal_stress,
+    folds_not_followed,
+    proven_slidings,
+    regime_when_pressed,
+    regimes_along_slip,
+    uniqueness_of,
+)
+from stickslip.engine.input import MOST_PIECES, PATIENCE
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
@@ -24,16 +28,20 @@ from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
+from stickslip.problem import (
+    STEADY,
+    VARYING,
+    LoadingHistory,
+    Problem,
+    automatic_length,
+    creep_tolerance,
+    leaps_over,
+    lumps_by_itself,
+    normal_name,
+)
 from stickslip.problem.bodies import BodyOnCharacteristics, BodyWithWaves, as_waves
 from stickslip.problem.bodies.soft_torque import sent_back, tuned_period
-from stickslip.problem.fields import STEADY
-from stickslip.problem.limits import automatic_length, creep_tolerance, leaps_over, lumps_by_itself
-from stickslip.problem.loading import VARYING, LoadingHistory
-from stickslip.problem.parameters import normal_name
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.entries import key_of
-from stickslip.problem.scenarios.scenario import Scenario, doubts
-from stickslip.problem.scenarios.schema import quantities_in
+from stickslip.problem.scenarios import Scenario, doubts, key_of, quantities_in
 from stickslip.run.check.examine_layers import (
     first_echo,
     given_layers,

@@ -5,14 +5,12 @@ from __future__ import annotations
 import cmath
 import math
 
-from stickslip.contact.layer_response import growth_on_layers
-from stickslip.contact.rules.loop import first_rate, resolved
+from stickslip.contact import first_rate, growth_on_layers, resolved
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import exactly
 from stickslip.friction import RateAndState
+from stickslip.problem import Problem, loading_rate
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers, as_waves
-from stickslip.problem.problem import Problem
-from stickslip.problem.start import loading_rate
 from stickslip.run.reference.rate_and_state import SteadySliding
 from stickslip.run.reference.slab import growth_rate
 

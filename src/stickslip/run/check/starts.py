@@ -10,14 +10,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stickslip.engine.input.forcing import far_at_first, machine_at_first
+from stickslip.engine.input import far_at_first, machine_at_first
 from stickslip.foundation.names import KINDS
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem import MAY_VARY, LoadingHistory, Problem
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.fields import MAY_VARY
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
 
 SAME = 1e-12
 """Relative difference (1) between two stresses that is rounding."""

@@ -11,13 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import stickslip
-from stickslip.engine.history.history import NO_LEAPS, History
-from stickslip.engine.history.slip_events import SlipEvents
-from stickslip.engine.history.soundness import check_history, history_table
-from stickslip.engine.history.status import ARRAYS, Checkpoint
-from stickslip.engine.history.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
+from stickslip.engine import (
+    ARRAYS,
+    NO_LEAPS,
+    SHOCK_COLUMNS,
+    Checkpoint,
+    History,
+    HistoryPiece,
+    SlipEvents,
+    Store,
+    check_history,
+    history_table,
+    rule_in_force,
+    shock_columns,
+)
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.constants import PAPER
@@ -25,14 +33,9 @@ from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
 from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.fields import MAY_VARY
-from stickslip.problem.loading import HISTORIES, LoadingHistory
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_codes import ENOUGH_EVENTS
-from stickslip.problem.run_quantities import default_event_rate
-from stickslip.problem.run_status import STATUSES, Status
+from stickslip.problem import ENOUGH_EVENTS, HISTORIES, MAY_VARY, STATUSES, LoadingHistory, Problem, Status, default_event_rate
+from stickslip.problem import names as rule_names
 from stickslip.problem.scenarios import read_scenario
-from stickslip.problem.selection_rule import names as rule_names
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.files.soundness import number
 from stickslip.solution.observables.event_table import EVENT_COLUMNS, event_columns

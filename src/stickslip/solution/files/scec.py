@@ -20,8 +20,8 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.entries import to_table
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import to_table
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.files.sampling import SampledRun, Span, sample
 from stickslip.solution.window import Window

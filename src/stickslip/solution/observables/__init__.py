@@ -1,1 +1,8 @@
-"""Quantities that are computed from the history of a run."""
+"""Quantities that are computed from the history of a run.
+
+`__init__.pyi` lists what others take from here.
+"""
+
+from stickslip.foundation.lazy_names import lazy_names
+
+__getattr__, __dir__ = lazy_names(__name__, __file__)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Side
+from stickslip.engine import History, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.observables.energy.ground import spring_force

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.history.slip_events import SlipEvents
+from stickslip.engine import History, Positions, SlipEvents
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.observables.energy.balance import energies_of_layers, epochs, event_energies, kinetic

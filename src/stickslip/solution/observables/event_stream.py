@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.history import History
-from stickslip.engine.history.slip_events import NOT_YET, SlipEvents
-from stickslip.engine.state.layout import Integers
+from stickslip.engine import NOT_YET, History, Integers, SlipEvents
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.history.slip_events import NOT_YET, SlipEvents
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine import NOT_YET, Floats, History, Integers, Positions, SlipEvents
 from stickslip.foundation.arguments import check_type, for_users
 from stickslip.foundation.names import in_files, si_unit
 from stickslip.solution.observables.energy.balance import event_energies

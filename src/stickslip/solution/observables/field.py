@@ -23,12 +23,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.history.history import History, Positions, Side
-from stickslip.engine.state.layout import TERMS
+from stickslip.engine import TERMS, History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyWithWaves, OfLayers, as_waves
-from stickslip.problem.problem import Problem
 from stickslip.solution.observables.inside_layers import field_of_layers
 from stickslip.solution.observables.waves import Waves
 

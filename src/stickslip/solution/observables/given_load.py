@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.input.forcing import far_at_first
+from stickslip.engine.input import far_at_first
 from stickslip.foundation.arrays import Floats
+from stickslip.problem import LoadingHistory, Problem
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
 
 BESIDE = 1e-10
 """Loads are compared this far (1) before and after a break of the loading, too, as a share of the round trip or of the time."""

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import History
+from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.operations.sets import Disc
-from stickslip.problem.loading import LoadingHistory
+from stickslip.friction.formula import Disc
+from stickslip.problem import LoadingHistory
 
 OF_TIME = 4e-16
 """Rounding of a time (1), a product and a sum of numbers that are rounded themselves, relative to it."""

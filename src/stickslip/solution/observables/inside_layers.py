@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Side
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine import Floats, History, Integers, Side
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import MOVED, MOVED_IN_TRIP

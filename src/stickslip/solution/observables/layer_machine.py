@@ -8,9 +8,8 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import Epoch, History
-from stickslip.engine.input.forcing import settled_rate
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine import Epoch, Floats, History, Integers
+from stickslip.engine.input import settled_rate
 
 BEYOND = 1.0 + 1e-9
 """Factor (1) that keeps a phase at the end of a round trip below that of the start of the next one."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine import Floats, Integers
 
 Flags = NDArray[np.bool_]
 

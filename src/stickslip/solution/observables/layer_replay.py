@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.state.layout import Floats
+from stickslip.engine import Floats, kernel
 from stickslip.foundation.constants import RIGID
 from stickslip.solution.observables.layer_records import (
     DRAGGED,

@@ -15,10 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
-from stickslip.engine.input.ladder import ladder_of, sides_of
-from stickslip.engine.state.layout import Floats, Integers, LadderCell
+from stickslip.engine import Floats, History, Integers, LadderCell, Positions
+from stickslip.engine.input import inflow_of, ladder_of, ramp_per_rate, settled_rate, sides_of
 from stickslip.foundation.constants import RIGID
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_machine import LayerMachine

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.input.forcing import machine_at_first
+from stickslip.engine import History, Positions
+from stickslip.engine.input import machine_at_first
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at

@@ -15,15 +15,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from stickslip.engine.history.history import History
-from stickslip.engine.input.branch_table import is_algebraic
-from stickslip.engine.input.prepare import SAFETY
+from stickslip.engine import History
+from stickslip.engine.input import SAFETY, is_algebraic
 from stickslip.foundation.arguments import NamesAttributes, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -25,15 +25,12 @@ from numpy.typing import NDArray
 from scipy.fft import dct
 from scipy.special import comb
 
-from stickslip.engine.history.history import History
-from stickslip.engine.state.layout import TERMS
+from stickslip.engine import TERMS, History
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import KINDS
 from stickslip.foundation.show import brief, brief_repr
-from stickslip.friction.formula.bounds import largest, on_discs
-from stickslip.friction.formula.expression import VARIABLES, Expression
-from stickslip.friction.formula.operations.sets import Disc
-from stickslip.problem.problem import Problem
+from stickslip.friction.formula import VARIABLES, Disc, Expression, largest, on_discs
+from stickslip.problem import Problem
 from stickslip.solution.observables.given_on_discs import NormalLoads, missed_growth
 
 Places = NDArray[np.intp]

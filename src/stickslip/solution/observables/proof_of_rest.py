@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.history.series import values_at
+from stickslip.engine import History, Positions, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.contract import one_argument
-from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import PERFECT_DELAY
+from stickslip.problem import PERFECT_DELAY, Problem
 from stickslip.solution.observables.given_on_discs import NormalLoads
 from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 

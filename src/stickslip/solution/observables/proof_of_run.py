@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from typing import ClassVar
 
-from stickslip.engine.history.history import History
+from stickslip.engine import History
 from stickslip.foundation.show import brief, brief_repr
 from stickslip.solution.observables.proof import Proof, proven
 from stickslip.solution.observables.proof_of_load import load_compared

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Positions
+from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
 from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 

@@ -17,11 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.history import History
+from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.bounds import largest, on_discs
-from stickslip.friction.formula.expression import VARIABLES, Expression
-from stickslip.friction.formula.operations.sets import Disc
+from stickslip.friction.formula import VARIABLES, Disc, Expression, largest, on_discs
 from stickslip.solution.observables.given_on_discs import NormalLoads
 from stickslip.solution.observables.proof import (
     AT_ONCE,

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import History, Positions
+from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
 
 Integrand = Callable[[Positions], Floats]

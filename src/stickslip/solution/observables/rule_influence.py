@@ -13,15 +13,12 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.branches import branches_of, resistance
-from stickslip.contact.regime import regime_when_pressed
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.engine.history.history import History, Side
-from stickslip.engine.history.tables import shock_columns
+from stickslip.contact import Uniqueness, branches_of, regime_when_pressed, resistance, uniqueness_of
+from stickslip.engine import History, Side, shock_columns
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.show import brief_repr
-from stickslip.problem.resistance import Branch
+from stickslip.problem import Branch
 
 Regime = Literal["regular", "irregular", "continuum"]
 

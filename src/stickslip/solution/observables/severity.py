@@ -7,9 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.history.slip_events import LAST_THIRD, walk
-from stickslip.engine.history.turning_points import Turn
+from stickslip.engine import LAST_THIRD, History, Positions, Turn, walk
 from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import START, Epoch, History, Positions
-from stickslip.engine.input.forcing import Inflow, inflow_of, wave_before
+from stickslip.engine import START, Epoch, History, Positions
+from stickslip.engine.input import Inflow, inflow_of, wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import stickslip as ss
-from stickslip.extensions.sweeps.batch.vectorised_problem import Values, member
+from stickslip.engine.lanes.vectorised_problem import Values, member
 from stickslip.problem.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
 

@@ -14,13 +14,13 @@ from stickslip.contact.regime import regime_of
 from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.input.limits import split_time, wait_for_creep
 from stickslip.engine.input.prepare import prepare
+from stickslip.engine.lanes.setups import set_up
+from stickslip.engine.lanes.vectorised_problem import groups
 from stickslip.engine.lanes.workspace import Setups
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine.state.workspace import counts_in, state_in
 from stickslip.extensions.sweeps.batch import why_not
-from stickslip.extensions.sweeps.batch.setups import set_up
-from stickslip.extensions.sweeps.batch.vectorised_problem import groups
 from stickslip.friction import LAWS
 from stickslip.friction.formula.bounds import bends_one_way
 from stickslip.problem.run_quantities import default_event_rate

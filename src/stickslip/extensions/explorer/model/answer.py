@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from stickslip.extensions.explorer.model.words import short
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.solution.solution import Solution
+from stickslip.problem.scenarios import Scenario
+from stickslip.solution import Solution
 
 if TYPE_CHECKING:
     from stickslip.extensions.inference import BesideRun

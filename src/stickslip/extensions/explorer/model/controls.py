@@ -18,14 +18,20 @@ from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
+from stickslip.problem import HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, names
 from stickslip.problem.bodies import BODIES
-from stickslip.problem.fields import HISTORIES_ONLY, STEADY
-from stickslip.problem.loading import HISTORIES
-from stickslip.problem.scenarios import library
-from stickslip.problem.scenarios.entries import describe, typed_number
-from stickslip.problem.scenarios.parameter_paths import YES_OR_NO, ParameterPath, parameter_paths
-from stickslip.problem.scenarios.schema import ONE_WAY, check_events, entries_in, kind_of
-from stickslip.problem.selection_rule import SELECTION_RULES, names
+from stickslip.problem.scenarios import (
+    ONE_WAY,
+    YES_OR_NO,
+    ParameterPath,
+    check_events,
+    describe,
+    entries_in,
+    kind_of,
+    library,
+    typed_number,
+)
+from stickslip.problem.scenarios.parameter_paths import parameter_paths
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
 

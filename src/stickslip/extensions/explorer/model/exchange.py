@@ -17,14 +17,9 @@ from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem import HISTORIES, STEADY, written_out
 from stickslip.problem.bodies import BODIES, BodyWithWaves
-from stickslip.problem.fields import STEADY
-from stickslip.problem.loading import HISTORIES
-from stickslip.problem.problem import written_out
-from stickslip.problem.scenarios import library
-from stickslip.problem.scenarios.entries import Source, to_table
-from stickslip.problem.scenarios.schema import KINDS, entries_in, kind_of, read_part
-from stickslip.problem.scenarios.templates import example_of
+from stickslip.problem.scenarios import KINDS, Source, entries_in, example_of, kind_of, library, read_part, to_table
 
 RIGID_DRIVER = {
     "driver_impedance": math.inf,

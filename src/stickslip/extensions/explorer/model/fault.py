@@ -11,8 +11,8 @@ import numpy as np
 from stickslip.extensions.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
 from stickslip.extensions.explorer.model.words import short
 from stickslip.foundation.errors import InputError
-from stickslip.problem.given_units import in_given_units
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem import in_given_units
+from stickslip.problem.scenarios import Scenario
 from stickslip.run.simulate import simulate
 
 if TYPE_CHECKING:

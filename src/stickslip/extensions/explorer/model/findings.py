@@ -9,16 +9,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stickslip.contact.uniqueness import Uniqueness
-from stickslip.engine.history.reach import largest_of
+from stickslip.contact import Uniqueness
+from stickslip.engine import largest_of
 from stickslip.extensions.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
 from stickslip.extensions.explorer.model.words import DIGITS, several, short
 from stickslip.foundation.names import si_unit
-from stickslip.problem.problem import Problem
-from stickslip.solution.interval import last_large_event
-from stickslip.solution.observables.energy.pulses import PULSE_COLUMNS
-from stickslip.solution.observables.rule_influence import RuleInfluence
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem
+from stickslip.solution import Solution, last_large_event
+from stickslip.solution.observables import PULSE_COLUMNS, RuleInfluence
 
 MOST_EVENTS = 500
 """Pulses are sought in at most this many slip events: each takes a millisecond, and among more, single ones would not be seen."""

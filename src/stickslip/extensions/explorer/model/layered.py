@@ -7,7 +7,7 @@ import numpy as np
 from stickslip.extensions.explorer.model.answer import SlabPicture
 from stickslip.extensions.explorer.model.sampled_waves import ShownInterval
 from stickslip.problem.bodies import OfLayers
-from stickslip.solution.observables.field import extent_of
+from stickslip.solution.observables import extent_of
 
 COLUMNS, ROWS = 160, 60
 """Numbers of times and of places of the picture."""

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.contact.uniqueness import Uniqueness
-from stickslip.engine.history.history import History, Positions
+from stickslip.contact import Uniqueness
+from stickslip.engine import History, Positions
 from stickslip.extensions.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
 from stickslip.extensions.explorer.model.layered import is_short
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
@@ -16,14 +16,10 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import si_unit
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
+from stickslip.problem import Problem
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.problem import Problem
-from stickslip.solution.interval import fronts_of
-from stickslip.solution.observables.energy.balance import energies, heat
-from stickslip.solution.observables.energy.ground import shaken, speed
-from stickslip.solution.observables.quadrature import FULL
-from stickslip.solution.solution import Solution
-from stickslip.solution.window import Window
+from stickslip.solution import Solution, Window, fronts_of
+from stickslip.solution.observables import FULL, energies, heat, shaken, speed
 
 POINTS = 600
 """Number of points of the curve."""

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from stickslip.foundation.quantities import LARGEST_WHOLE, Quantity
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 WIDE = 30.0
 """A logarithmic slider reaches from the value over this factor to the value times it."""

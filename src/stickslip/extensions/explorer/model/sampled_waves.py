@@ -19,12 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.evaluation import Readings
-from stickslip.solution.interval import choose_interval
-from stickslip.solution.observables.field import WaveInterval, check_known, many_places, slab_of
-from stickslip.solution.observables.waves import OfWave, Radiation, Sampled, Waves
-from stickslip.solution.solution import Solution
-from stickslip.solution.window import Window
+from stickslip.solution import Readings, Solution, Window, choose_interval
+from stickslip.solution.observables import OfWave, Radiation, Sampled, WaveInterval, Waves, check_known, many_places, slab_of
 
 
 class ShownInterval(NamedTuple):

@@ -22,11 +22,7 @@ from typing import Any, Self
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, gathered, nearest
-from stickslip.problem.scenarios import library
-from stickslip.problem.scenarios.entries import Source, typed_number
-from stickslip.problem.scenarios.parameter_paths import place_of
-from stickslip.problem.scenarios.scenario import Scenario, scenario_of
-from stickslip.problem.scenarios.schema import TABLES, kind_of
+from stickslip.problem.scenarios import TABLES, Scenario, Source, kind_of, library, place_of, scenario_of, typed_number
 
 CONTACT = "contact"
 """The table of scenario files that tells of a fault, which an extension adds: where it is not there, there are no faults."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.contact import Uniqueness, uniqueness_of
 from stickslip.extensions.explorer.model.answer import Answer, BodyCurves, RecordBehind, StateCurve, measured_of
 from stickslip.extensions.explorer.model.findings import Findings, key_numbers, marks_of, sentence
 from stickslip.extensions.explorer.model.layered import picture_of_layers
@@ -16,14 +16,12 @@ from stickslip.extensions.explorer.model.pictures import contact_picture, energy
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem import Problem, block_for, in_given_units
 from stickslip.problem.bodies import ElasticSlab, OfLayers
-from stickslip.problem.equivalent_block import block_for
-from stickslip.problem.given_units import in_given_units
-from stickslip.problem.problem import Problem
-from stickslip.problem.scenarios.scenario import Scenario, load_scenario
-from stickslip.run.check.examine import warnings_of
+from stickslip.problem.scenarios import Scenario, load_scenario
+from stickslip.run.check import warnings_of
 from stickslip.run.simulate import simulate
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 Told = Callable[[str], None]
 """A function that is told in one line how far a run is, some ten times a second. It raises `Stopped` to end the run there."""

@@ -21,9 +21,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.parameters import PRESSING
-from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter, parameter_paths, put_into, values_in
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem import PRESSING
+from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter, put_into, values_in
+from stickslip.problem.scenarios.parameter_paths import parameter_paths
 
 Told = Callable[[str], None]
 

@@ -17,7 +17,7 @@ from stickslip.figures.names import symbol
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import GREEK, for_readers
 from stickslip.friction import FromExpression
-from stickslip.friction.formula.text import RESERVED
+from stickslip.friction.formula import RESERVED
 from stickslip.problem.scenarios import library
 
 FIRST = "fig6-slab"

@@ -12,7 +12,7 @@ from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.explorer.model.solve import Told
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError, gathered
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios import Scenario
 
 Shown = TypeVar("Shown", Answer, FaultAnswer)
 News = Literal["setting", "answer", "fault", "progress", "pin", "cursor", "tour", "strip"]

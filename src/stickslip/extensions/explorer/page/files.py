@@ -22,9 +22,7 @@ from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.foundation.names import si_unit
 from stickslip.friction.custom.points import table_in_text
-from stickslip.problem.scenarios import library
-from stickslip.problem.scenarios.scenario import read_scenario
-from stickslip.problem.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
+from stickslip.problem.scenarios import LARGEST_SCENARIO_FILE, library, read_scenario, text_of
 
 TABLES = (".csv", ".txt", ".tsv", ".dat")
 """Suffixes of files that hold points."""

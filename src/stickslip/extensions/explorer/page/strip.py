@@ -32,8 +32,7 @@ from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import for_readers, readable_unit
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.scenarios.entries import typed_number
-from stickslip.problem.scenarios.parameter_paths import ParameterPath
+from stickslip.problem.scenarios import ParameterPath, typed_number
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
 LARGEST_POWER = 300.0

@@ -16,7 +16,7 @@ from stickslip.extensions.explorer.model.fault import FaultAnswer
 from stickslip.extensions.explorer.model.tour import TOUR, TourStep, tour_of
 from stickslip.extensions.explorer.page.components import Markup, asset
 from stickslip.extensions.explorer.page.explorer import Explorer
-from stickslip.problem.given_units import in_given_units
+from stickslip.problem import in_given_units
 
 
 def told_steps(steps: tuple[TourStep, ...] = TOUR) -> list[dict[str, str]]:

@@ -216,10 +216,10 @@ class Warming:
 
     def _warm(self) -> None:
         try:
-            from stickslip.engine.compile.cache import announce_by
+            from stickslip.engine import announce_by
             from stickslip.extensions.explorer.model.strip import has_strips, strip_of
             from stickslip.foundation.sealed_files import tell
-            from stickslip.problem.scenarios.scenario import load_scenario
+            from stickslip.problem.scenarios import load_scenario
             from stickslip.run.simulate import simulate
 
             announce_by(lambda text: self._say(f"{text[0].upper()}{text[1:]}."))

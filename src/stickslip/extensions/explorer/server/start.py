@@ -24,7 +24,7 @@ from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.extensions.explorer.server.desk import ThreadDesk
 from stickslip.extensions.explorer.server.serve import Endpoint, ExplorerServer
 from stickslip.foundation.errors import InputError
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios import Scenario
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "

@@ -11,7 +11,7 @@ from stickslip.extensions.inference.fit.model import Model
 from stickslip.extensions.inference.fit.turns import changes_of, felt
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.problem.loading import LoadingHistory
+from stickslip.problem import LoadingHistory
 
 NEAR = 3.0
 """A bend belongs to what happens at most this many samples away."""

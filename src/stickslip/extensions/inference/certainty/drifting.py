@@ -21,7 +21,7 @@ from stickslip.extensions.inference.fit.starting import shown_drift, slides
 from stickslip.extensions.inference.record.record import SHEAR
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 TRENDS = ("auto", "none")
 """What may be done about a drift: free it where it shows, or nothing."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.history.status import engine
+from stickslip.engine import engine
 from stickslip.extensions.inference.certainty.certainty import Certainty
 from stickslip.extensions.inference.certainty.kept_walk import NOT_KEPT, KeptWalk
 from stickslip.extensions.inference.fit.estimate import Estimate

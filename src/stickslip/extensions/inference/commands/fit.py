@@ -16,7 +16,7 @@ from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
     from stickslip.friction import Fit, Points, Smooth
-    from stickslip.problem.problem import Problem
+    from stickslip.problem import Problem
 
 MOST_JOINED = 2000
 """Largest number of points whose exact interpolation is searched for folds, to say how many there would be."""
@@ -90,7 +90,7 @@ def fit(
     from stickslip import friction
     from stickslip.cli.overrides import typed_columns, typed_values
     from stickslip.friction import Points
-    from stickslip.problem.scenarios.text_of_files import is_scenario_name
+    from stickslip.problem.scenarios import is_scenario_name
 
     if is_scenario_name(data):
         cure = "`stickslip infer SCENARIO DATA --free NAMES` follows a record with runs of a scenario"
@@ -104,7 +104,7 @@ def fit(
     points = Points.read(data, columns=typed_columns(column, "fit: --column"))
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
-        from stickslip.problem.scenarios.templates import with_law
+        from stickslip.problem.scenarios import with_law
 
         before = friction.Coulomb(0.6, 0.5)
         points.of_contact(before)
@@ -119,7 +119,7 @@ def fit(
     _show_result(result)
     text = None if out is None else _scenario(result, body, data, values)
     if text is not None:
-        from stickslip.problem.scenarios.scenario import read_scenario
+        from stickslip.problem.scenarios import read_scenario
 
         _show_uniqueness(result, read_scenario(text, str(out)).problem)
     announce(
@@ -158,7 +158,7 @@ def _strength(text: str) -> Any:
 
 def _scenario(result: Fit | Smooth, body: str, data: str, values: dict[str, Any]) -> str:
     """Return the text of a scenario with the law of a result, and with the result as comments at its head."""
-    from stickslip.problem.scenarios.templates import with_law
+    from stickslip.problem.scenarios import with_law
 
     rows = [f"  {name} = {value} {meaning}" for name, value, meaning in result.rows]
     return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes], values)
@@ -208,7 +208,7 @@ def _best(points: Points) -> Fit:
 
 def _show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:
     """Print whether the slip rate is unique under a law, and how many folds exact interpolation and the law have."""
-    from stickslip.contact.uniqueness import uniqueness_of
+    from stickslip.contact import uniqueness_of
 
     contact = uniqueness_of(problem)
     screen = console()
@@ -222,7 +222,7 @@ def _show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:
 
 def _folds_of_points(points: Points, problem: Problem) -> int | None:
     """Return the number of folds of the same problem with the points joined exactly, or None if they cannot be."""
-    from stickslip.contact.uniqueness import uniqueness_of
+    from stickslip.contact import uniqueness_of
     from stickslip.friction import FromTable
 
     if len(points) > MOST_JOINED or len(points.has) != 1:

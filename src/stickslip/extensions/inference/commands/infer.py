@@ -16,7 +16,7 @@ from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.extensions.inference.inference import Inference
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
@@ -177,7 +177,7 @@ def _records(data: list[str], column: list[str] | None) -> list[Any]:
 def _inferred(scenario: Any, data: list[Any], free: str, options: dict[str, Any]) -> Inference:
     from stickslip.extensions.inference.infer import infer as study
     from stickslip.extensions.inference.summary import as_options
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     with progress_line(f"{scenario.name}:") as report:
         try:
@@ -219,7 +219,7 @@ def _free_of(name: str, scenario: Scenario, free: str) -> str:
 
 def _typed(text: str | None) -> Any:
     """Return what was typed as a number if it is one."""
-    from stickslip.problem.scenarios.entries import typed_number
+    from stickslip.problem.scenarios import typed_number
 
     return None if text is None else typed_number(text)
 
@@ -234,7 +234,7 @@ def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
     """Return limits by name. Raises InputError."""
     from stickslip.foundation.arguments import shown
     from stickslip.foundation.axis import TypedRange
-    from stickslip.problem.scenarios.entries import typed_number
+    from stickslip.problem.scenarios import typed_number
 
     if not texts:
         return None

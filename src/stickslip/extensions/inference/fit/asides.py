@@ -15,7 +15,7 @@ from stickslip.extensions.inference.record.corners import EVENLY, corners_of, ju
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem.loading import PiecewiseLinear, Steps
+from stickslip.problem import PiecewiseLinear, Steps
 
 STEP, JUMP, RAMP = "record.step_", "record.jump_", "record.ramp"
 """Names: by how much a step of the drive, or a jump of the normal load, comes later than it seems, and how long jumps take (s)."""

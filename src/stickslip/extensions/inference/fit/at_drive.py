@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.show import brief
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 LONG, LEVEL = 2.0, 0.1
 """A torque is level if it spreads by less than this share of its median over so many two-way travel times (both 1)."""

@@ -19,7 +19,7 @@ from stickslip.extensions.inference.record.features import FEATURES, LEVELS, Sam
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 CYCLES = 6.0
 """Length of a run, in recurrence times of the record; the first events are skipped."""

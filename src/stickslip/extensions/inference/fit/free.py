@@ -11,7 +11,7 @@ from typing import Any
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 FARTHEST, FARTHEST_PURE = 1e3, 30.0
 """Largest factors between a positive number (with a unit, without) and its starting value, unless the user gives bounds."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.engine.history.history import Side
+from stickslip.engine import Side
 from stickslip.extensions.inference.fit.asides import moved
 from stickslip.extensions.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
 from stickslip.extensions.inference.fit.memory import Memory, ResidualBlock, independent
@@ -19,11 +19,11 @@ from stickslip.extensions.inference.record.record import SHEAR
 from stickslip.extensions.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
+from stickslip.run import uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import uninterrupted
-from stickslip.solution.observables.at_driver import fronts_at_driver
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
+from stickslip.solution.observables import fronts_at_driver
 
 OF_NO_ZERO = ("slip",)
 """Quantities with an arbitrary zero of the sensor: the mean of their residual is subtracted."""

@@ -20,9 +20,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Steps
-from stickslip.problem.parameters import pressed_body, put_many
-from stickslip.problem.problem import Problem
+from stickslip.problem import LoadingHistory, PiecewiseLinear, Problem, Steps, pressed_body, put_many
 
 SMALLEST_NOISE = 1e-9
 """Smallest noise, as a share of the range of a quantity: even a record without noise is rounded."""

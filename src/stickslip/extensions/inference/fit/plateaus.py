@@ -11,8 +11,7 @@ import numpy as np
 
 from stickslip.extensions.inference.fit.part import Part
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
+from stickslip.problem import LoadingHistory, Problem
 
 TAIL, LEAST = 0.3, 8
 """The plateau at a constant rate is the median over this last share of its samples; it needs at least so many samples."""

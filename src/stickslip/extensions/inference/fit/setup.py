@@ -23,9 +23,8 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
+from stickslip.problem import LoadingHistory, PiecewiseLinear, Problem
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
-from stickslip.problem.loading import LoadingHistory, PiecewiseLinear
-from stickslip.problem.problem import Problem
 
 STARTS = ("steady", "record", "problem")
 """How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""

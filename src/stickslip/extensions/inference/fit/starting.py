@@ -18,9 +18,8 @@ from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.show import brief
+from stickslip.problem import LoadingHistory, Problem
 from stickslip.problem.bodies import ElasticSlab
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
 
 COSINE = math.sqrt(math.pi**2 - 8.0)
 """Twice the standard deviation, in time, of the fall of a spring force along half a cosine of angular frequency 1."""

@@ -6,8 +6,7 @@ import numpy as np
 
 from stickslip.extensions.inference.record.resample import Jumps
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.loading import LoadingHistory
-from stickslip.problem.problem import Problem
+from stickslip.problem import LoadingHistory, Problem
 
 CHANGES = 0.1
 """A change of the pull rate counts if it is at least this share of the rate's range."""

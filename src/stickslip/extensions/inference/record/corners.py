@@ -14,7 +14,7 @@ from stickslip.extensions.inference.record.loading import ROUNDING
 from stickslip.extensions.inference.record.noise import noise_of, rounding_of
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Steps
+from stickslip.problem import LoadingHistory, PiecewiseLinear, Steps
 
 SHORT = 8
 """A part of a load point with at most this many samples belongs to the change of rate between the parts beside it."""

@@ -14,7 +14,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.show import brief
-from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Steps
+from stickslip.problem import LoadingHistory, PiecewiseLinear, Steps
 
 MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""

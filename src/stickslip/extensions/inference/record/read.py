@@ -21,7 +21,7 @@ from stickslip.foundation.headings import DRILL_FLOOR, TURNED, find, missing, na
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
-from stickslip.problem.scenarios.entries import typed_number
+from stickslip.problem.scenarios import typed_number
 
 LARGEST_FILE = 500_000_000
 """Largest file to read (bytes)."""

@@ -14,7 +14,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import QUANTITIES, TURNS, si_unit
 from stickslip.foundation.show import brief
-from stickslip.problem.problem import Problem
+from stickslip.problem import Problem
 
 SHEAR = ("friction", "shear_stress", "shear_force", "torque", "surface_torque")
 """Possible measures of the resistance; the first of them that a record has is fitted. The last is the torque at the drive."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import Side
+from stickslip.engine import Side
 from stickslip.extensions.inference.record.loading import GAP
 from stickslip.extensions.inference.record.noise import noise_of, rounding_of
 from stickslip.extensions.inference.record.record import Record

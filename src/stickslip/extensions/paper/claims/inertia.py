@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.contact.roots import sign_change
+from stickslip.contact import sign_change
 from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, claim, each, judge, verdict
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_block, as_slab
-from stickslip.problem.problem import Problem
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 LONG = YEAR
 """A rest of at least this time (s) counts as long: one year, against events of seconds."""

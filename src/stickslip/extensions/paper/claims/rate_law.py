@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.contact import uniqueness_of
 from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.friction import Coulomb, HyperbolicRate
+from stickslip.problem import Problem
 from stickslip.problem.bodies import as_slab
-from stickslip.problem.problem import Problem
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 SCAN = (1.0001, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 100.0)
 """Claim 13 is measured at these multiples of the critical alpha, and at alpha_c + 1e-6 s/m."""

@@ -6,16 +6,14 @@ import math
 
 import numpy as np
 
-from stickslip.contact.roots import sign_change
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.contact import Uniqueness, sign_change, uniqueness_of
 from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, claim, each, judge, verdict
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
+from stickslip.problem import SELECTION_RULES, Problem
 from stickslip.problem.bodies import as_slab
-from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 SO_FAR = "Known so far: four rules on the paper's cases; rules that follow from a physical regularisation are not in this report."
 """Limits of claims 11 and 12, added to their explanations."""

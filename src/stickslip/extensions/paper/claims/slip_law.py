@@ -11,8 +11,8 @@ from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.extensions.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import SinusoidalSlip
-from stickslip.problem.problem import Problem
-from stickslip.solution.solution import Solution
+from stickslip.problem import Problem
+from stickslip.solution import Solution
 
 MUCH = 0.25
 """A release of more than this share of the initial load counts as "much of its stress"."""

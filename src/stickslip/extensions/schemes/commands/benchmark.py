@@ -86,7 +86,7 @@ def _judge(
     from stickslip.cli.overrides import typed_columns
     from stickslip.extensions.schemes.benchmarks import benchmark_of, judge_benchmark
     from stickslip.extensions.schemes.summary import show_schemes, tables_of
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     asked = benchmark_of(file.stem if name is None else name)
     columns = typed_columns(column, "benchmark: --column")

@@ -11,7 +11,7 @@ from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.extensions.schemes.schemes import Schemes
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 CHOSEN = "Schemes, separated by commas: all for the numerical ones (if not given), contact-mass, lag, or other names."
 SEARCH = "How the contact looks for a slip rate: stick-first, continue, newton or fastest; stick-first if not given."
@@ -84,7 +84,7 @@ def _cells(text: str) -> list[int]:
 def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, courant: float | None) -> Schemes:
     from stickslip.extensions.schemes.run import SCHEMES
     from stickslip.extensions.schemes.schemes import schemes as study
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     typed = [name.strip() for name in scheme.split(",") if name.strip()]
     names = [one for name in typed for one in (SCHEMES if name == "all" else [name])]
@@ -96,7 +96,7 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
 def _judged(scenario: Scenario, paths: list[Path], column: list[str] | None) -> Schemes:
     from stickslip.cli.overrides import typed_columns
     from stickslip.extensions.schemes.benchmarks import judge_series
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     columns = typed_columns(column, "schemes: --column")
     with progress_line("schemes") as tell:

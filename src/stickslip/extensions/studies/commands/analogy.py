@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.extensions.studies.analogy import Analogy
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 BUNDLED = "block-or-slab"
 """The bundled scenario for this command."""
@@ -64,7 +64,7 @@ def analogy(
 def _study(scenario: Scenario, typed: list[str], within: float) -> Analogy:
     from stickslip.cli.overrides import read_axis
     from stickslip.extensions.studies.analogy import analogy as study
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     x, y = (read_axis(scenario.problem, text, "analogy: --map") for text in typed)
     with progress_line(f"{scenario.name}:") as report:

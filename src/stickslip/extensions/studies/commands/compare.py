@@ -63,10 +63,9 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.extensions.studies.compare import Comparison, distinct, title_of, under_each_rule
-    from stickslip.problem.run_quantities import check_rtol
-    from stickslip.problem.scenarios.schema import read_duration
-    from stickslip.run.progress import progress_line
-    from stickslip.run.source import read_source
+    from stickslip.problem import check_rtol
+    from stickslip.problem.scenarios import read_duration
+    from stickslip.run import progress_line, read_source
 
     if len(names) < 2 and not rules:
         cure = "--rules runs one under each selection rule; `stickslip new --list` lists the bundled ones"

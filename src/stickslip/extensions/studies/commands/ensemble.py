@@ -12,7 +12,7 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_targe
 
 if TYPE_CHECKING:
     from stickslip.extensions.studies.ensemble import Ensemble
-    from stickslip.problem.scenarios.scenario import Scenario
+    from stickslip.problem.scenarios import Scenario
 
 SIZE = "Largest disturbance of the initial load, as a share of the strength."
 SEED = "Seed of the random disturbances; the same seed gives the same members."
@@ -69,7 +69,7 @@ def ensemble(
 
 def _study(scenario: Scenario, members: int, size: float, seed: int, checkpoint: Path | None) -> Ensemble:
     from stickslip.extensions.studies.ensemble import ensemble as study
-    from stickslip.run.progress import progress_line
+    from stickslip.run import progress_line
 
     with progress_line(f"{scenario.name}:") as report:
         run = scenario.problem, scenario.duration, members, size, scenario.rtol

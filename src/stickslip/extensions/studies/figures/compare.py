@@ -13,11 +13,11 @@ from stickslip.figures.style import LINE_COLOURS, axis_text, nearly_flat, styled
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
-from stickslip.solution.evaluation import Curve, Readings
+from stickslip.solution import Curve, Readings
 
 if TYPE_CHECKING:
     from stickslip.extensions.studies.compare import Comparison
-    from stickslip.solution.solution import Solution
+    from stickslip.solution import Solution
 
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 """Line styles; the next one is taken when all colours are used up."""

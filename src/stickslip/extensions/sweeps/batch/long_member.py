@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.engine.history.slip_events import LAST_THIRD, rest_of, time_creeping, time_slipping_in
-from stickslip.engine.lanes.reduction import Reduced, fold_end
-from stickslip.engine.state.layout import Floats, Integers
-from stickslip.problem.run_codes import INTERRUPTED, Stop
-from stickslip.problem.scenarios.scenario import Scenario
-from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import RunOptions
-from stickslip.run.run_loop import Interrupts, run_loop
+from stickslip.engine import LAST_THIRD, Floats, Integers, rest_of, time_creeping, time_slipping_in
+from stickslip.engine.lanes import Reduced, fold_end
+from stickslip.problem import INTERRUPTED, Stop
+from stickslip.problem.scenarios import Scenario
+from stickslip.run import ExactRun, Interrupts, RunOptions
+from stickslip.run.run_loop import run_loop
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,18 +10,31 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from stickslip.engine.lanes.reduction import COLUMNS, OF_EVENTS, Reduced
-from stickslip.engine.lanes.runs import Group, engine_address, run_group
-from stickslip.engine.lanes.workspace import LARGEST_CAPACITY, LaneStage, new_workspace, table_of
-from stickslip.engine.memory.simd import WIDTH
-from stickslip.engine.on_demand import lend_part
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine import WIDTH, Floats, Integers, lend_part
+from stickslip.engine.lanes import (
+    COLUMNS,
+    LARGEST_CAPACITY,
+    OF_EVENTS,
+    Alike,
+    Group,
+    LaneStage,
+    Reduced,
+    Values,
+    alike,
+    are_fine,
+    engine_address,
+    groups,
+    member,
+    new_workspace,
+    run_group,
+    set_up,
+    table_of,
+    why_not,
+)
 from stickslip.extensions.sweeps.batch.long_member import run_alone
-from stickslip.extensions.sweeps.batch.setups import Alike, alike, set_up
-from stickslip.extensions.sweeps.batch.vectorised_problem import Values, are_fine, groups, member, why_not
 from stickslip.foundation.errors import InputError
-from stickslip.problem.run_codes import BAD_PARAMETERS, INTERRUPTED, Stop
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem import BAD_PARAMETERS, INTERRUPTED, Stop
+from stickslip.problem.scenarios import Scenario
 
 Part = TypeVar("Part")
 

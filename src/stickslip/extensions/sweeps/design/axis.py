@@ -18,8 +18,7 @@ from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import Given
 from stickslip.foundation.quantities import Choice, Quantity
-from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter
 
 Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""

@@ -16,8 +16,7 @@ from stickslip.extensions.sweeps.design.axis import LARGEST_AXIS, DesignAxis, Va
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.problem.scenarios.parameter_paths import ParameterPath, find_parameter
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter
 
 if TYPE_CHECKING:
     import pandas as pd

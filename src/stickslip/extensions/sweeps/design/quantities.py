@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.slip_events import share_sticking
+from stickslip.engine import share_sticking
 from stickslip.foundation.errors import InputError, nearest, some_of
 from stickslip.solution.observables.severity import severity
 
 if TYPE_CHECKING:
-    from stickslip.contact.uniqueness import Uniqueness
-    from stickslip.solution.solution import Solution
+    from stickslip.contact import Uniqueness
+    from stickslip.solution import Solution
 
 LISTED = "`stickslip sweep --help` lists all"
 """Where all quantities are."""
@@ -103,13 +103,13 @@ def _severity(solution: Solution) -> float:
 
 
 def _uniqueness(solution: Solution) -> Uniqueness:
-    from stickslip.contact.uniqueness import uniqueness_of
+    from stickslip.contact import uniqueness_of
 
     return uniqueness_of(solution.problem)
 
 
 def _irregular(solution: Solution) -> bool:
-    from stickslip.contact.regime import regime_of
+    from stickslip.contact import regime_of
 
     return regime_of(solution.problem) != "regular"
 

@@ -17,14 +17,11 @@ from stickslip.extensions.sweeps.design.axis import Values
 from stickslip.extensions.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.run_codes import BAD_PARAMETERS as REFUSED
-from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, Stop
-from stickslip.problem.run_status import STATUSES, Status
-from stickslip.problem.scenarios.entries import Source
-from stickslip.problem.scenarios.parameter_paths import ParameterPath, document_with
-from stickslip.problem.scenarios.scenario import Scenario, read_scenario, scenario_of
+from stickslip.problem import BAD_PARAMETERS as REFUSED
+from stickslip.problem import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status, Stop
+from stickslip.problem.scenarios import ParameterPath, Scenario, Source, document_with, read_scenario, scenario_of
 from stickslip.run.simulate import simulate
-from stickslip.solution.solution import Solution
+from stickslip.solution import Solution
 
 DECIDE = ("extensions/sweeps/batch", "extensions/sweeps/execution/chunk.py")
 """Folders and files of the package whose code decides the results of a member, beside that of its run."""

@@ -23,7 +23,7 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from stickslip.engine.history.status import engine
+from stickslip.engine import engine
 from stickslip.extensions.sweeps.execution.chunk import DECIDE, Runner, run_chunk
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError

@@ -19,11 +19,9 @@ from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION
-from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.problem.scenarios.source import solved_by_core
-from stickslip.solution.evaluation import CURVES
+from stickslip.problem import DURATION, Problem
+from stickslip.problem.scenarios import Scenario, load_scenario, read_scenario, solved_by_core
+from stickslip.solution import CURVES
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
 """Number of chunks into which a sweep is divided if no chunk size is given, and limits of their size (members).

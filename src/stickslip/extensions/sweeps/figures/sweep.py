@@ -24,8 +24,8 @@ from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import Units, shown_in
 from stickslip.foundation.place import Place
-from stickslip.problem.given_units import units_given
-from stickslip.problem.scenarios.scenario import read_scenario
+from stickslip.problem import units_given
+from stickslip.problem.scenarios import read_scenario
 
 
 @for_users

@@ -18,7 +18,7 @@ import zarr
 from zarr.storage import MemoryStore
 
 import stickslip
-from stickslip.engine.history.status import engine
+from stickslip.engine import engine
 from stickslip.extensions.sweeps.design.design import GRID, IN_WORDS
 from stickslip.extensions.sweeps.execution.chunk import DECIDE, MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.extensions.sweeps.execution.plan import Plan
@@ -28,8 +28,7 @@ from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import for_readers, in_files
 from stickslip.foundation.show import clean
-from stickslip.solution.files.netcdf import about_curves
-from stickslip.solution.files.zarr_store import FolderFormat, check_layout
+from stickslip.solution.files import FolderFormat, about_curves, check_layout
 
 FORMAT = FolderFormat("stickslip_sweep", 2)
 STATUS, REASON = "status", "reason"

@@ -37,7 +37,7 @@ from stickslip.extensions.sweeps.results.layout import (
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.errors import InputError, never_show
 from stickslip.foundation.locks import held
-from stickslip.solution.files.zarr_store import check_metadata, create, first_file_of, is_sound
+from stickslip.solution.files import check_metadata, create, first_file_of, is_sound
 
 
 class ResultStore:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.engine.history.history import Epoch, History, Positions
+from stickslip.engine import Epoch, History, Positions
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import ENERGY_NAMES, in_files
 from stickslip.problem.bodies import OfLayers, as_waves

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.history.history import History, Positions
+from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
 from stickslip.solution.observables.quadrature import Integrand, up_to
 

@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine.history.history import Epoch, History
-from stickslip.engine.input.forcing import inflow_of
-from stickslip.engine.state.layout import Floats
+from stickslip.engine import Epoch, Floats, History
+from stickslip.engine.input import inflow_of
 from stickslip.foundation.constants import RIGID
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.history.history import History, Positions
-from stickslip.engine.history.slip_events import SlipEvents, walk
-from stickslip.engine.history.turning_points import Turn
+from stickslip.engine import History, Positions, SlipEvents, Turn, walk
 from stickslip.foundation.arrays import Floats
 from stickslip.solution.observables.quadrature import between
 

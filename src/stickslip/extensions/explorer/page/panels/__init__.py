@@ -13,7 +13,7 @@ from stickslip.extensions.explorer.page.panels.units import share_axis, units_of
 from stickslip.extensions.explorer.page.stage import Stage
 from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, limits
 from stickslip.foundation.given import shown_in
-from stickslip.problem.given_units import units_given
+from stickslip.problem import units_given
 
 NOTHING: dict[str, Columns] = {
     "pinned": {name: [] for name in COLUMNS},

@@ -6,10 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.contact.rules.selection import levels
-from stickslip.contact.slopes import FASTEST as FASTEST_SEARCHED
-from stickslip.contact.slopes import Pieces
-from stickslip.contact.turns import find_turns, folds_of
+from stickslip.contact import FASTEST as FASTEST_SEARCHED
+from stickslip.contact import Pieces, find_turns, folds_of, levels
 from stickslip.engine.compiled_formula import compile_formula, keep_with
 from stickslip.engine.input.branch_table import is_algebraic, table_of_branches
 from stickslip.engine.input.limits import set_lumping, wait_for_creep
@@ -25,17 +23,15 @@ from stickslip.engine.input.prepare import (
 )
 from stickslip.engine.lanes.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, FoundBranches, Resistances, search_branches
 from stickslip.engine.lanes.runs import fill_constants
+from stickslip.engine.lanes.vectorised_problem import Values, member, vectorised_problem
 from stickslip.engine.lanes.workspace import Setups
 from stickslip.engine.state.layout import BranchRow, Counts, Floats, Integers, LawPiece, Params, State
-from stickslip.extensions.sweeps.batch.vectorised_problem import Values, member, vectorised_problem
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
-from stickslip.friction.formula.bounds import bends_one_way
-from stickslip.friction.formula.differences import difference
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import default_event_rate
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.friction.formula import bends_one_way, difference
+from stickslip.problem import Problem, default_event_rate
+from stickslip.problem.scenarios import Scenario
 
 PARTS = 4
 """Parts into which the interval of a fold is cut: few, because many folds are found together."""

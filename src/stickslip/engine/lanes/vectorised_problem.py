@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.rules.selection import OF_LEVELS
+from stickslip.contact import OF_LEVELS
 from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.input.branch_table import is_algebraic
 from stickslip.engine.lanes.reduction import COLUMNS
@@ -24,12 +24,20 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity, quantities_of
+from stickslip.problem import (
+    DURATION,
+    LARGEST_RTOL,
+    LARGEST_SHARE,
+    MOST_ROUND_TRIPS,
+    RTOL,
+    Problem,
+    check_round_trips,
+    check_rtol,
+    check_shortest_event,
+    put_many,
+)
 from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics, BodyWithWaves, ElasticSlab, TorsionalString, as_waves
-from stickslip.problem.limits import LARGEST_SHARE, MOST_ROUND_TRIPS, check_round_trips, check_shortest_event
-from stickslip.problem.parameters import put_many
-from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
-from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.problem.scenarios import Scenario
 
 Values = Mapping[str, Floats]
 """Numbers in SI, one for each member, by key such as "friction.alpha"."""
