@@ -119,5 +119,8 @@ def no_results(path: Path) -> InputError:
     from stickslip.foundation.zarr_folder import LARGEST_METADATA, METADATA
 
     if os.path.lexists(path / METADATA):
-        read_bounded(path / METADATA, LARGEST_METADATA)
+        try:
+            read_bounded(path / METADATA, LARGEST_METADATA)
+        except (InputError, OSError) as error:
+            return InputError(f"{path}: {METADATA}: {error}")
     return InputError(f"{path}: is a folder that holds no results of stickslip")
