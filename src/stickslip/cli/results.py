@@ -79,7 +79,7 @@ class WholeRun(RunResults):
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
-        pictures.check_problem(self.solution.problem, where)
+        pictures.check_problem(self.solution.problem, "show")
 
     @override
     def summarise(self, *, everything: bool = False) -> None:
