@@ -98,6 +98,24 @@ def test_a_load_point_that_moves_as_no_servo_does_is_followed_as_it_is() -> None
     assert corners_of(made, rate.rate) is None
 
 
+def test_a_step_there_and_back_is_kept_however_short_it_is_beside_the_rest() -> None:
+    """Ten seconds at a hundred times the rate, between hundreds of seconds at one rate: two corners, where they were made."""
+    time = np.arange(0.0, 700.0, 0.25)
+    moved = 1e-6 * time + 99e-6 * np.clip(time - 500.0, 0.0, 10.0)
+    made = ss.studies.Record.read({"time (s)": time, "load point (m)": moved, "friction": np.full(len(time), 0.6)})
+    found = corners_of(made, ss.loading.Steps((0.0, 500.0, 510.0), (1e-6, 1e-4, 1e-6)))
+    assert found is not None
+    np.testing.assert_allclose(found.rate.times[1:], (500.0, 510.0), atol=1e-6)
+    np.testing.assert_allclose(found.rate.values, (1e-6, 1e-4, 1e-6), rtol=1e-9)
+
+
+def test_what_is_too_short_to_be_seen_between_parts_of_one_rate_is_no_corner() -> None:
+    time = np.arange(0.0, 700.0, 0.25)
+    moved = 1e-6 * time + 99e-6 * np.clip(time - 500.0, 0.0, 0.5)
+    made = ss.studies.Record.read({"time (s)": time, "load point (m)": moved, "friction": np.full(len(time), 0.6)})
+    assert corners_of(made, ss.loading.Steps((0.0, 500.0, 500.5), (1e-6, 1e-4, 1e-6))) is None
+
+
 def test_a_servo_leaves_the_lines_through_the_load_point_where_they_are_unless_the_machine_was_told_them() -> None:
     corners = Corners(STEPS, (0.01, 0.01), 0.0, 0.05, seen=False, keeps=False)
     clock = np.arange(0.0, 120.0, 0.2)

@@ -98,6 +98,8 @@ def _collapsed(rate: Steps, clock: Floats) -> list[_Change]:
     found = []
     for i, j in pairwise(_plateaus(count, lasts, values)):
         begin, end, before, after = float(ends[i]), float(starts[j]), float(values[i]), float(values[j])
+        if before == after:  # something too short to be seen between two parts of one rate: no step moves as far
+            return []
         at = end - (float(values[i + 1 : j] @ lasts[i + 1 : j]) - before * (end - begin)) / (after - before)
         if not begin - (end - begin) <= at <= end + (end - begin):
             return []
@@ -108,7 +110,8 @@ def _collapsed(rate: Steps, clock: Floats) -> list[_Change]:
 def _plateaus(count: NDArray[np.intp], lasts: Floats, values: Floats) -> list[int]:
     """Return the numbers of the parts that are neither short nor much shorter than the parts beside them.
 
-    A part whose rate is nearly that of a part beside it, as that of the end of an approach, may be longer.
+    A part whose rate is nearly that of a part beside it, as that of the end of an approach, may be longer. One between two parts of
+    nearly the same rate is on no way from one rate to another: it is a step there and back, however short it is beside them.
     """
     least = CLEAR * float(np.max(np.abs(values)))
     kept = [i for i in range(len(lasts)) if count[i] > SHORT or i in (0, len(lasts) - 1)]
@@ -116,6 +119,8 @@ def _plateaus(count: NDArray[np.intp], lasts: Floats, values: Floats) -> list[in
         beside = [max(lasts[i], lasts[j]) for i, j in zip(kept[:-2], kept[2:], strict=True)]
         change = np.abs(np.diff(values[kept]))
         share = lasts[kept[1:-1]] / beside * np.where(np.minimum(change[1:], change[:-1]) > least, 1.0, NEARLY)
+        there_and_back = np.abs(values[kept[2:]] - values[kept[:-2]]) <= least
+        share[there_and_back & (np.minimum(change[1:], change[:-1]) > least)] = np.inf
         if share.min() > SHARE:
             break
         del kept[1 + int(np.argmin(share))]
