@@ -148,14 +148,15 @@ def test_commands_and_tables_of_a_stranger_are_like_our_own(answers: list[tuple[
     assert "did you mean 'spectrum'?" in lines[4]
 
 
+def look_again() -> None:
+    """Forget what extensions there are, and what they add."""
+    for cached in (extension.found, extension.tables, extension._public):
+        cached.cache_clear()
+
+
 @contextmanager
 def installed_in(folder: Path) -> Iterator[None]:
     """Let this process look for extensions again, in a further folder, until the end of the block."""
-
-    def look_again() -> None:
-        for cached in (extension.found, extension.tables, extension._public):
-            cached.cache_clear()
-
     sys.path.insert(0, str(folder))
     look_again()
     try:
@@ -289,7 +290,7 @@ def bad(tmp_path: Path) -> Iterator[Callable[[str], None]]:
 
     def installed(code: str) -> None:
         install(tmp_path, "bad", code, "other = other:EXTENSION")
-        extension.found.cache_clear()
+        look_again()
 
     with installed_in(tmp_path):
         yield installed
@@ -320,6 +321,38 @@ def test_an_extension_that_fails_when_it_is_asked_adds_nothing(bad: Callable[[st
     assert "Mine" not in groups
 
 
+ASKED: dict[str, Callable[[], object]] = {
+    "solvers": lambda: ss.simulate("fig6-slab", 1.0, seed=1),
+    "tables": lambda: ss.load_scenario("fig6-slab"),
+    "readers": lambda: ss.open_solution("nothing.nc4"),
+    "commands": app._all_groups,
+    "figures": lambda: dir(ss.simulate("fig6-slab", 1.0).plot),
+    "public": lambda: dir(ss),
+}
+"""Something that asks each method of an extension."""
+
+
+@pytest.mark.parametrize("given", ["None", "3", "{'a': 3}", "[3]", "'abc'", "{3: 'a:b'}", "1 / 0"])
+@pytest.mark.parametrize("slot", ASKED)
+def test_an_extension_that_answers_with_what_is_no_answer_adds_nothing(
+    bad: Callable[[str], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slot: str, given: str
+) -> None:
+    """Whatever it is, it is told in one line, and all else goes on as it does without the extension."""
+    monkeypatch.chdir(tmp_path)
+
+    def said() -> str:
+        try:
+            return str(ASKED[slot]())
+        except ss.InputError as error:
+            return str(error)
+
+    without = said()
+    bad(f"{HEAD}    def {slot}(self, *kinds):\n        return {given}\n{END}")
+    why = "ZeroDivisionError" if "/" in given else rf"TypeError: {slot}\(\) must return a (list|dict) of .*, not "
+    with pytest.warns(InputWarning, match=rf"^the extension 'other' cannot say which .*s.* it adds \({why}"):
+        assert said() == without
+
+
 def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None]) -> None:
     bad(COMMAND)
     with pytest.raises(ss.InputError, match="two extensions, or one and the core, have a command 'check': uninstall one"):
@@ -335,7 +368,8 @@ def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[s
     ],
 )
 def test_a_table_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None], table: str, message: str) -> None:
-    bad(f"{HEAD}    def tables(self):\n        return {{'{table}': None}}\n{END}")
+    made = "from stickslip.problem.scenarios.table import ScenarioTable\n" + HEAD
+    bad(f"{made}    def tables(self):\n        return {{'{table}': ScenarioTable()}}\n{END}")
     with pytest.raises(ss.InputError, match=f"^{message}$"):
         ss.load_scenario("fig6-slab")
 

@@ -13,7 +13,7 @@ from stickslip.foundation.given import shown_in
 def expanded(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that takes an option for each field of those of its parameters that are dataclasses."""
     hints = get_type_hints(command, include_extras=True)
-    hints.pop("return")
+    hints.pop("return", None)
     taken = signature(command).parameters
 
     def called(**typed: Any) -> None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from stickslip.extension import extensions
+from stickslip.extension import members
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
@@ -96,7 +96,7 @@ class Reader:
 
 def special_solvers() -> list[SolverKind]:
     """Return the solvers of all extensions."""
-    return [solver for extension in extensions() for solver in extension.solvers()]
+    return list(members("solvers", SolverKind))
 
 
 def special_solver_of(source: Any) -> SolverKind | None:
@@ -111,7 +111,7 @@ def reader_of(path: Path) -> Reader | None:
     """Return the reader of the extension whose results a path holds; None if it holds none that an extension reads."""
     if path.suffix.lower() in FILES_OF_CORE and not path.is_dir():
         return None
-    return next((one for extension in extensions() for one in extension.readers() if one.is_in(path)), None)
+    return next((one for one in members("readers", Reader) if one.is_in(path)), None)
 
 
 def no_results(path: Path) -> InputError:
