@@ -3,13 +3,8 @@
 An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the six questions
 that the core asks; each is asked when its answer is needed, and imports what it needs then, so that a run does not load what it
 does not use. The extensions of stickslip are the folders of `stickslip/extensions`; those of others are named by the entry points
-of the group `stickslip.extensions`:
-
-    [project.entry-points."stickslip.extensions"]
-    spectra = "stickslip_spectra:EXTENSION"
-
-The core knows no extension by its name, and an extension knows another one only through the core. docs/extensions.md shows two that
-are complete.
+of the group `stickslip.extensions`. The core knows no extension by its name, and an extension knows another one only through the
+core. docs/extensions.md shows two that are complete.
 """
 
 from __future__ import annotations
@@ -130,14 +125,15 @@ def found() -> Found:
             left_out.append(LeftOut(name, missing.replace("which is", "which are") if len(lacks) > 1 else missing, there.pop(name)))
     for one in left_out:
         if one.extension is None or origins.get(one.name):
-            _warn(f"the extension '{one.name}' is left out: {one.why}")
+            from stickslip.foundation.errors import warn
+
+            warn(f"the extension '{one.name}' is left out: {one.why}")
     return Found(there, origins, tuple(left_out))
 
 
 def _own() -> dict[str, Extension]:
     """Return the extensions whose folders there are."""
-    folders = sorted(Path(__file__).with_name("extensions").iterdir())
-    names = [folder.name for folder in folders if (folder / "__init__.py").is_file()]
+    names = [one.name for one in sorted(Path(__file__).with_name("extensions").iterdir()) if (one / "__init__.py").is_file()]
     return {name: import_module(f"{GROUP}.{name}").EXTENSION for name in names}
 
 
@@ -190,29 +186,19 @@ def _in_one_line(error: BaseException) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-def _warn(message: str) -> None:
-    from stickslip.foundation.errors import warn
-
-    warn(message)
-
-
 def _asked(extension: Extension, slot: str, fits: Callable[[Any], bool], *kinds: type) -> Any:
-    """Return what an extension answers in one of its methods, whose members are what `fits` says.
-
-    One of another package that cannot answer, or answers with anything else, adds nothing there, with a warning.
-    """
-    is_own = not found().origins[extension.name]
-    what, returned = ANSWERS[slot]
-    of = "".join(f" of {kind.__name__}" for kind in kinds)
+    """Return what a method of an extension answers; of another package nothing, with a warning, if it or a member does not fit."""
     try:
         given = getattr(extension, slot)(*kinds)
-        if not is_own and not _is_answer(given, slot, fits):
-            raise TypeError(f"{slot}() must return {returned}, not {given!r:.60}")
+        if found().origins[extension.name] and not _is_answer(given, slot, fits):
+            raise TypeError(f"{slot}() must return {ANSWERS[slot][1]}, not {given!r:.60}")
         return given
     except Exception as error:  # whatever another package raises
-        if is_own:
+        if not found().origins[extension.name]:
             raise
-        _warn(f"the extension '{extension.name}' cannot say which {what}s{of} it adds ({_in_one_line(error)})")
+        from stickslip.foundation.errors import warn
+
+        warn(f"the extension '{extension.name}' cannot say which {ANSWERS[slot][0]}s it adds ({_in_one_line(error)})")
         return {}
 
 
@@ -223,9 +209,8 @@ def _is_answer(given: Any, slot: str, fits: Callable[[Any], bool]) -> bool:
 
 
 def members(slot: str, kind: type[T]) -> Iterator[T]:
-    """Yield what all extensions add as "solvers" or "readers"; each is asked when what the ones before it add is used up."""
-    for extension in extensions():
-        yield from _asked(extension, slot, lambda one: isinstance(one, kind))
+    """Return what all extensions add as "solvers" or "readers"; each is asked when what the ones before it add is used up."""
+    return (one for extension in extensions() for one in _asked(extension, slot, lambda given: isinstance(given, kind)))
 
 
 def _gathered(slot: str, fits: Callable[[Any], bool], *kinds: type) -> dict[str, Any]:
@@ -237,8 +222,8 @@ def _gathered(slot: str, fits: Callable[[Any], bool], *kinds: type) -> dict[str,
             if name in all_of_them:
                 from stickslip.foundation.errors import InputError
 
-                both = f"the extensions '{owners[name]}' and '{extension.name}' both add the {ANSWERS[slot][0]} '{name}'"
-                raise InputError(f"{both}: uninstall one")
+                both = f"'{owners[name]}' and '{extension.name}' both add the {ANSWERS[slot][0]} '{name}'"
+                raise InputError(f"the extensions {both}: uninstall one")
             all_of_them[name], owners[name] = one, extension.name
     return all_of_them
 

@@ -353,6 +353,20 @@ def test_an_extension_that_answers_with_what_is_no_answer_adds_nothing(
         assert said() == without
 
 
+def test_a_command_without_types_takes_what_its_defaults_are(tmp_path: Path) -> None:
+    code = f"def chart(what, count=3, name=None):\n    print(repr(what), repr(count), name)\n{HEAD}"
+    install(tmp_path, "plain", f"{code}    def commands(self): return {{'Mine': (chart,)}}\n{END}", "other = other:EXTENSION")
+    given = run(tmp_path, ["chart", "4"], ["chart", "4", "--count", "5", "--name", "six"], ["chart", "4", "--count", "x"])
+    assert [(code, out) for code, out, _ in given] == [(0, "'4' 3 None\n"), (0, "'4' 5 six\n"), (2, "")]
+
+
+@pytest.mark.usefixtures("strangers")
+@pytest.mark.parametrize("explore", [ss.explore, app.COMMANDS["explore"]], ids=["notebook", "command"])
+def test_the_explorer_refuses_problems_of_others_in_one_line(site: Path, explore: Callable[[str], object]) -> None:
+    with pytest.raises(ss.InputError, match=r"^explore: row has a \[row\], for which there are `stickslip run`"):
+        explore(str(site / "row.toml"))
+
+
 def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None]) -> None:
     bad(COMMAND)
     with pytest.raises(ss.InputError, match="two extensions, or one and the core, have a command 'check': uninstall one"):

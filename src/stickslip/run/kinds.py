@@ -7,6 +7,7 @@ makes of a scenario, or an object of an extension. It is asked once, here, by th
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,8 +28,6 @@ ALL_TAKE = frozenset({"duration", "progress", "checkpoint", "checkpoint_every"})
 """Options that each solver takes."""
 FILES_OF_CORE = (".nc", ".csv", ".parquet")
 """Suffixes of results that the core reads itself."""
-
-
 Run_co = TypeVar("Run_co", covariant=True)
 
 
@@ -56,7 +55,6 @@ class SolverKind:
     """How the command line runs and shows it; None for the plain way: `PlainRun`."""
     examine: Callable[[Scenario], Examination] | None = None
     """What can be said of a scenario before it is run; None if nothing but what is given."""
-
     what: str = ""
     """What it solves, for messages: "a PlanarSlab"."""
 
@@ -115,12 +113,13 @@ def reader_of(path: Path) -> Reader | None:
 
 
 def no_results(path: Path) -> InputError:
-    """Return the error for a folder that no reader reads; if its metadata cannot be read, with the reason."""
+    """Return the error for a folder that no reader reads: whose it is, or why its metadata cannot be read."""
     from stickslip.foundation.zarr_folder import LARGEST_METADATA, METADATA
 
     if os.path.lexists(path / METADATA):
         try:
-            read_bounded(path / METADATA, LARGEST_METADATA)
+            if kind := re.search(rb'"(stickslip_\w+)"', read_bounded(path / METADATA, LARGEST_METADATA)):
+                return InputError(f"{path}: holds results of an extension that is not installed, '{kind[1].decode()[:60]}'")
         except (InputError, OSError) as error:
             return InputError(f"{path}: {METADATA}: {error}")
     return InputError(f"{path}: is a folder that holds no results of stickslip")
