@@ -104,8 +104,7 @@ def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any
         raise InputError(f"export: {path} holds {reader.what}, which is written at its own times: {what}")
     if not hasattr(run := reader.open(path), "to_csv"):
         raise InputError(f"export: {path} holds {reader.what}, which has no table")
-    run.to_csv(file)
-    announce(file)
+    announce(run.to_csv(file) or file)
 
 
 def _source(run: str, duration: str | None) -> RunSource:
