@@ -353,6 +353,35 @@ def test_an_extension_that_answers_with_what_is_no_answer_adds_nothing(
         assert said() == without
 
 
+KEPT = """
+from pathlib import Path
+from stickslip.run.kinds import Reader
+class Run:
+    def __init__(self, path): self.path = path
+class Table(Run):
+    def to_csv(self, path): Path(path).write_text("a")
+class KeptReader(Reader):
+    what = "what is kept"
+    def is_in(self, path): return path.suffix in (".run", ".table")
+    def open(self, path): return Table(path) if path.suffix == ".table" else Run(path)
+"""
+
+
+def test_results_of_a_stranger_are_exported_if_they_have_a_table(tmp_path: Path) -> None:
+    code = f"{KEPT}{HEAD}    def readers(self): return [KeptReader()]\n{END}"
+    install(tmp_path, "kept", code, "other = other:EXTENSION")
+    given = run(
+        tmp_path, ["export", "a.table", "a.csv"], ["export", "a.run", "b.csv"], ["show", "a.run"], ["run", "--resume", "a.run"]
+    )
+    assert given[0] == (0, "written: a.csv\n", "")
+    assert [one[:2] for one in given[1:]] == [(2, "")] * 3
+    assert [err for _, _, err in given[1:]] == [
+        "stickslip: export: a.run holds what is kept, which has no table\n",
+        "stickslip: a.run: holds what is kept, which is not shown\n",
+        "stickslip: run: --resume continues a run, not what is kept\n",
+    ]
+
+
 def test_a_command_without_types_takes_what_its_defaults_are(tmp_path: Path) -> None:
     code = f"def chart(what, count=3, name=None):\n    print(repr(what), repr(count), name)\n{HEAD}"
     install(tmp_path, "plain", f"{code}    def commands(self): return {{'Mine': (chart,)}}\n{END}", "other = other:EXTENSION")
