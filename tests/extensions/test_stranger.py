@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,9 @@ import stickslip as ss
 from stickslip import extension
 from stickslip.cli import app, mistyped
 from stickslip.cli.installation import extensions_there
+from stickslip.cli.results import DONE, PlainRun
 from stickslip.foundation.errors import InputWarning
+from stickslip.problem import Status
 from tests.docs.pages import ROOT, Block, blocks_of, missing_lines
 
 PAGE = blocks_of(ROOT / "docs" / "extensions.md")
@@ -380,6 +383,12 @@ def test_results_of_a_stranger_are_exported_if_they_have_a_table(tmp_path: Path)
         "stickslip: a.run: holds what is kept, which is not shown\n",
         "stickslip: run: --resume continues a run, not what is kept\n",
     ]
+
+
+def test_a_run_of_a_stranger_may_have_a_status_of_its_own() -> None:
+    stopped = Status("stopped", "it was stopped", ok=False)
+    found = [PlainRun(ss.load_scenario("fig6-slab"), SimpleNamespace(status=given)).status for given in (stopped, "fine", None)]
+    assert found == [stopped, DONE, DONE]
 
 
 def test_a_command_without_types_takes_what_its_defaults_are(tmp_path: Path) -> None:
