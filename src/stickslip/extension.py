@@ -3,20 +3,15 @@
 An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the six questions
 that the core asks; each is asked when its answer is needed, and imports what it needs then, so that a run does not load what it
 does not use. The extensions of stickslip are the folders of `stickslip/extensions`; those of others are named by the entry points
-of the group `stickslip.extensions`:
-
-    [project.entry-points."stickslip.extensions"]
-    spectra = "stickslip_spectra:EXTENSION"
-
-The core knows no extension by its name, and an extension knows another one only through the core. docs/extensions.md shows two that
-are complete.
+of the group `stickslip.extensions`. The core knows no extension by its name, and an extension knows another one only through the
+core. docs/extensions.md shows two that are complete.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
@@ -34,6 +29,15 @@ Command = Callable[..., None]
 Drawing = Callable[..., Any]
 """A figure: a function that draws a result, and takes the keywords `ax`, `figure`, `size` and `dpi` that it understands."""
 T = TypeVar("T")
+ANSWERS = {
+    "solvers": ("solver", "a list of SolverKind"),
+    "tables": ("table", "a dict of ScenarioTable by name"),
+    "readers": ("reader", "a list of Reader"),
+    "commands": ("command", "a dict of lists of functions by heading"),
+    "figures": ("figure", "a dict of functions by name"),
+    "public": ("public name", 'a dict of "module:name" by name'),
+}
+"""What each method of an extension adds, and what it returns."""
 
 
 class Extension:
@@ -121,14 +125,15 @@ def found() -> Found:
             left_out.append(LeftOut(name, missing.replace("which is", "which are") if len(lacks) > 1 else missing, there.pop(name)))
     for one in left_out:
         if one.extension is None or origins.get(one.name):
-            _warn(f"the extension '{one.name}' is left out: {one.why}")
+            from stickslip.foundation.errors import warn
+
+            warn(f"the extension '{one.name}' is left out: {one.why}")
     return Found(there, origins, tuple(left_out))
 
 
 def _own() -> dict[str, Extension]:
     """Return the extensions whose folders there are."""
-    folders = sorted(Path(__file__).with_name("extensions").iterdir())
-    names = [folder.name for folder in folders if (folder / "__init__.py").is_file()]
+    names = [one.name for one in sorted(Path(__file__).with_name("extensions").iterdir()) if (one / "__init__.py").is_file()]
     return {name: import_module(f"{GROUP}.{name}").EXTENSION for name in names}
 
 
@@ -181,35 +186,44 @@ def _in_one_line(error: BaseException) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-def _warn(message: str) -> None:
-    from stickslip.foundation.errors import warn
-
-    warn(message)
-
-
-def _asked(extension: Extension, ask: Callable[[Extension], Mapping[str, T]], what: str) -> Mapping[str, T]:
-    """Return what an extension answers; one of another package that cannot answer adds nothing of the kind, with a warning."""
+def _asked(extension: Extension, slot: str, fits: Callable[[Any], bool], *kinds: type) -> Any:
+    """Return what a method of an extension answers; of another package nothing, with a warning, if it or a member does not fit."""
     try:
-        return ask(extension)
+        given = getattr(extension, slot)(*kinds)
+        if found().origins[extension.name] and not _is_answer(given, slot, fits):
+            raise TypeError(f"{slot}() must return {ANSWERS[slot][1]}, not {given!r:.60}")
+        return given
     except Exception as error:  # whatever another package raises
         if not found().origins[extension.name]:
             raise
-        _warn(f"the extension '{extension.name}' cannot say which {what}s it adds ({_in_one_line(error)})")
+        from stickslip.foundation.errors import warn
+
+        warn(f"the extension '{extension.name}' cannot say which {ANSWERS[slot][0]}s it adds ({_in_one_line(error)})")
         return {}
 
 
-def _gathered(ask: Callable[[Extension], Mapping[str, T]], what: str) -> dict[str, T]:
+def _is_answer(given: Any, slot: str, fits: Callable[[Any], bool]) -> bool:
+    if slot in ("solvers", "readers"):
+        return isinstance(given, Sequence) and not isinstance(given, str) and all(map(fits, given))
+    return isinstance(given, Mapping) and all(isinstance(name, str) and fits(one) for name, one in given.items())
+
+
+def members(slot: str, kind: type[T]) -> Iterator[T]:
+    """Return what all extensions add as "solvers" or "readers"; each is asked when what the ones before it add is used up."""
+    return (one for extension in extensions() for one in _asked(extension, slot, lambda given: isinstance(given, kind)))
+
+
+def _gathered(slot: str, fits: Callable[[Any], bool], *kinds: type) -> dict[str, Any]:
     """Return what all extensions add, by its name. Raises InputError if two add the same name."""
-    all_of_them: dict[str, T] = {}
+    all_of_them: dict[str, Any] = {}
     owners: dict[str, str] = {}
     for extension in extensions():
-        for name, one in _asked(extension, ask, what).items():
+        for name, one in _asked(extension, slot, fits, *kinds).items():
             if name in all_of_them:
                 from stickslip.foundation.errors import InputError
 
-                raise InputError(
-                    f"the extensions '{owners[name]}' and '{extension.name}' both add the {what} '{name}': uninstall one"
-                )
+                both = f"'{owners[name]}' and '{extension.name}' both add the {ANSWERS[slot][0]} '{name}'"
+                raise InputError(f"the extensions {both}: uninstall one")
             all_of_them[name], owners[name] = one, extension.name
     return all_of_them
 
@@ -217,12 +231,14 @@ def _gathered(ask: Callable[[Extension], Mapping[str, T]], what: str) -> dict[st
 @cache
 def tables() -> Mapping[str, ScenarioTable]:
     """Return the tables that extensions add to scenario files, by their names."""
-    return _gathered(lambda one: one.tables(), "table")
+    from stickslip.problem.scenarios import ScenarioTable
+
+    return _gathered("tables", lambda one: isinstance(one, ScenarioTable))
 
 
 @cache
 def _public() -> Mapping[str, str]:
-    return _gathered(lambda one: one.public(), "public name")
+    return _gathered("public", lambda home: isinstance(home, str) and home.count(":") == 1)
 
 
 def public_names(package: str) -> Mapping[str, str]:
@@ -236,7 +252,9 @@ def commands() -> Mapping[str, list[Command]]:
     """Return the commands that extensions add, by their heading."""
     by_heading: dict[str, list[Command]] = {}
     for extension in extensions():
-        for heading, added in _asked(extension, lambda one: one.commands(), "command").items():
+        for heading, added in _asked(
+            extension, "commands", lambda group: isinstance(group, Sequence) and all(map(callable, group))
+        ).items():
             by_heading.setdefault(heading, []).extend(added)
     return by_heading
 
@@ -257,7 +275,7 @@ def command_left_out(name: str) -> str:
 
 def figures_of(kind: type) -> Mapping[str, Drawing]:
     """Return the figures that extensions add to a class of results, by their names."""
-    return _gathered(lambda one: one.figures(kind), f"figure of {kind.__name__}")
+    return _gathered("figures", callable, kind)
 
 
 def home_of(where: str) -> Any:

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,9 @@ import stickslip as ss
 from stickslip import extension
 from stickslip.cli import app, mistyped
 from stickslip.cli.installation import extensions_there
+from stickslip.cli.results import DONE, PlainRun
 from stickslip.foundation.errors import InputWarning
+from stickslip.problem import Status
 from tests.docs.pages import ROOT, Block, blocks_of, missing_lines
 
 PAGE = blocks_of(ROOT / "docs" / "extensions.md")
@@ -148,14 +151,15 @@ def test_commands_and_tables_of_a_stranger_are_like_our_own(answers: list[tuple[
     assert "did you mean 'spectrum'?" in lines[4]
 
 
+def look_again() -> None:
+    """Forget what extensions there are, and what they add."""
+    for cached in (extension.found, extension.tables, extension._public):
+        cached.cache_clear()
+
+
 @contextmanager
 def installed_in(folder: Path) -> Iterator[None]:
     """Let this process look for extensions again, in a further folder, until the end of the block."""
-
-    def look_again() -> None:
-        for cached in (extension.found, extension.tables, extension._public):
-            cached.cache_clear()
-
     sys.path.insert(0, str(folder))
     look_again()
     try:
@@ -289,7 +293,7 @@ def bad(tmp_path: Path) -> Iterator[Callable[[str], None]]:
 
     def installed(code: str) -> None:
         install(tmp_path, "bad", code, "other = other:EXTENSION")
-        extension.found.cache_clear()
+        look_again()
 
     with installed_in(tmp_path):
         yield installed
@@ -320,6 +324,87 @@ def test_an_extension_that_fails_when_it_is_asked_adds_nothing(bad: Callable[[st
     assert "Mine" not in groups
 
 
+ASKED: dict[str, Callable[[], object]] = {
+    "solvers": lambda: ss.simulate("fig6-slab", 1.0, seed=1),
+    "tables": lambda: ss.load_scenario("fig6-slab"),
+    "readers": lambda: ss.open_solution("nothing.nc4"),
+    "commands": app._all_groups,
+    "figures": lambda: dir(ss.simulate("fig6-slab", 1.0).plot),
+    "public": lambda: dir(ss),
+}
+"""Something that asks each method of an extension."""
+
+
+@pytest.mark.parametrize("given", ["None", "3", "{'a': 3}", "[3]", "'abc'", "{3: 'a:b'}", "1 / 0"])
+@pytest.mark.parametrize("slot", ASKED)
+def test_an_extension_that_answers_with_what_is_no_answer_adds_nothing(
+    bad: Callable[[str], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slot: str, given: str
+) -> None:
+    """Whatever it is, it is told in one line, and all else goes on as it does without the extension."""
+    monkeypatch.chdir(tmp_path)
+
+    def said() -> str:
+        try:
+            return str(ASKED[slot]())
+        except ss.InputError as error:
+            return str(error)
+
+    without = said()
+    bad(f"{HEAD}    def {slot}(self, *kinds):\n        return {given}\n{END}")
+    why = "ZeroDivisionError" if "/" in given else rf"TypeError: {slot}\(\) must return a (list|dict) of .*, not "
+    with pytest.warns(InputWarning, match=rf"^the extension 'other' cannot say which .*s.* it adds \({why}"):
+        assert said() == without
+
+
+KEPT = """
+from pathlib import Path
+from stickslip.run.kinds import Reader
+class Run:
+    def __init__(self, path): self.path = path
+class Table(Run):
+    def to_csv(self, path): Path(path).write_text("a")
+class KeptReader(Reader):
+    what = "what is kept"
+    def is_in(self, path): return path.suffix in (".run", ".table")
+    def open(self, path): return Table(path) if path.suffix == ".table" else Run(path)
+"""
+
+
+def test_results_of_a_stranger_are_exported_if_they_have_a_table(tmp_path: Path) -> None:
+    code = f"{KEPT}{HEAD}    def readers(self): return [KeptReader()]\n{END}"
+    install(tmp_path, "kept", code, "other = other:EXTENSION")
+    given = run(
+        tmp_path, ["export", "a.table", "a.csv"], ["export", "a.run", "b.csv"], ["show", "a.run"], ["run", "--resume", "a.run"]
+    )
+    assert given[0] == (0, "written: a.csv\n", "")
+    assert [one[:2] for one in given[1:]] == [(2, "")] * 3
+    assert [err for _, _, err in given[1:]] == [
+        "stickslip: export: a.run holds what is kept, which has no table\n",
+        "stickslip: a.run: holds what is kept, which is not shown\n",
+        "stickslip: run: --resume continues a run, not what is kept\n",
+    ]
+
+
+def test_a_run_of_a_stranger_may_have_a_status_of_its_own() -> None:
+    stopped = Status("stopped", "it was stopped", ok=False)
+    found = [PlainRun(ss.load_scenario("fig6-slab"), SimpleNamespace(status=given)).status for given in (stopped, "fine", None)]
+    assert found == [stopped, DONE, DONE]
+
+
+def test_a_command_without_types_takes_what_its_defaults_are(tmp_path: Path) -> None:
+    code = f"def chart(what, count=3, name=None):\n    print(repr(what), repr(count), name)\n{HEAD}"
+    install(tmp_path, "plain", f"{code}    def commands(self): return {{'Mine': (chart,)}}\n{END}", "other = other:EXTENSION")
+    given = run(tmp_path, ["chart", "4"], ["chart", "4", "--count", "5", "--name", "six"], ["chart", "4", "--count", "x"])
+    assert [(code, out) for code, out, _ in given] == [(0, "'4' 3 None\n"), (0, "'4' 5 six\n"), (2, "")]
+
+
+@pytest.mark.usefixtures("strangers")
+@pytest.mark.parametrize("explore", [ss.explore, app.COMMANDS["explore"]], ids=["notebook", "command"])
+def test_the_explorer_refuses_problems_of_others_in_one_line(site: Path, explore: Callable[[str], object]) -> None:
+    with pytest.raises(ss.InputError, match=r"^explore: row has a \[row\], for which there are `stickslip run`"):
+        explore(str(site / "row.toml"))
+
+
 def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None]) -> None:
     bad(COMMAND)
     with pytest.raises(ss.InputError, match="two extensions, or one and the core, have a command 'check': uninstall one"):
@@ -335,7 +420,8 @@ def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[s
     ],
 )
 def test_a_table_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None], table: str, message: str) -> None:
-    bad(f"{HEAD}    def tables(self):\n        return {{'{table}': None}}\n{END}")
+    made = "from stickslip.problem.scenarios.table import ScenarioTable\n" + HEAD
+    bad(f"{made}    def tables(self):\n        return {{'{table}': ScenarioTable()}}\n{END}")
     with pytest.raises(ss.InputError, match=f"^{message}$"):
         ss.load_scenario("fig6-slab")
 

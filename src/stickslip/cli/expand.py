@@ -12,9 +12,8 @@ from stickslip.foundation.given import shown_in
 
 def expanded(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that takes an option for each field of those of its parameters that are dataclasses."""
-    hints = get_type_hints(command, include_extras=True)
-    hints.pop("return")
-    taken = signature(command).parameters
+    known, taken = get_type_hints(command, include_extras=True), signature(command).parameters
+    hints = {name: known.get(name, str if p.default in (Parameter.empty, None) else type(p.default)) for name, p in taken.items()}
 
     def called(**typed: Any) -> None:
         with shown_in({}):  # each command shows results in the units of its own problem

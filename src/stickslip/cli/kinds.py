@@ -11,7 +11,7 @@ from typing_extensions import override
 
 from stickslip.cli.results import EventsOfRun, PlainRun, RunResults, WholeRun
 from stickslip.foundation.errors import InputError
-from stickslip.run import progress_line, reader_of, special_solver_of
+from stickslip.run import no_results, progress_line, reader_of, special_solver_of
 
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
@@ -46,6 +46,8 @@ def kind_of_run(request: Request) -> KindOfRun:
     if request.resume is not None:
         if (reader := reader_of(request.resume)) is not None:
             return reader.on_command_line()
+        if request.resume.is_dir():
+            raise no_results(request.resume)
         from stickslip.solution.files import is_catalogue
 
         return EventsOnly() if is_catalogue(request.resume) else RunOfHistory()

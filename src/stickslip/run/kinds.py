@@ -7,12 +7,13 @@ makes of a scenario, or an object of an extension. It is asked once, here, by th
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from stickslip.extension import extensions
+from stickslip.extension import members
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
@@ -27,8 +28,6 @@ ALL_TAKE = frozenset({"duration", "progress", "checkpoint", "checkpoint_every"})
 """Options that each solver takes."""
 FILES_OF_CORE = (".nc", ".csv", ".parquet")
 """Suffixes of results that the core reads itself."""
-
-
 Run_co = TypeVar("Run_co", covariant=True)
 
 
@@ -56,7 +55,6 @@ class SolverKind:
     """How the command line runs and shows it; None for the plain way: `PlainRun`."""
     examine: Callable[[Scenario], Examination] | None = None
     """What can be said of a scenario before it is run; None if nothing but what is given."""
-
     what: str = ""
     """What it solves, for messages: "a PlanarSlab"."""
 
@@ -96,7 +94,7 @@ class Reader:
 
 def special_solvers() -> list[SolverKind]:
     """Return the solvers of all extensions."""
-    return [solver for extension in extensions() for solver in extension.solvers()]
+    return list(members("solvers", SolverKind))
 
 
 def special_solver_of(source: Any) -> SolverKind | None:
@@ -111,16 +109,17 @@ def reader_of(path: Path) -> Reader | None:
     """Return the reader of the extension whose results a path holds; None if it holds none that an extension reads."""
     if path.suffix.lower() in FILES_OF_CORE and not path.is_dir():
         return None
-    return next((one for extension in extensions() for one in extension.readers() if one.is_in(path)), None)
+    return next((one for one in members("readers", Reader) if one.is_in(path)), None)
 
 
 def no_results(path: Path) -> InputError:
-    """Return the error for a folder that no reader reads; if its metadata cannot be read, with the reason."""
+    """Return the error for a folder that no reader reads: whose it is, or why its metadata cannot be read."""
     from stickslip.foundation.zarr_folder import LARGEST_METADATA, METADATA
 
     if os.path.lexists(path / METADATA):
         try:
-            read_bounded(path / METADATA, LARGEST_METADATA)
+            if kind := re.search(rb'"(stickslip_\w+)"', read_bounded(path / METADATA, LARGEST_METADATA)):
+                return InputError(f"{path}: holds results of an extension that is not installed, '{kind[1].decode()[:60]}'")
         except (InputError, OSError) as error:
             return InputError(f"{path}: {METADATA}: {error}")
     return InputError(f"{path}: is a folder that holds no results of stickslip")

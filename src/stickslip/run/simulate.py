@@ -200,6 +200,6 @@ EXACT = SolverKind(
     lambda _: True,
     simulate_exactly,
     ALL_TAKE | {"rtol", "creep_rtol", "shortest_event", "max_events", "max_pieces", "selection", "title", "description"},
-    "{} is for {}: a single contact is known at all times",
+    "{} is for {}, and this is a single contact: leave it out",
 )
 """The exact solver of a contact that slips as a whole: of every problem of the core."""

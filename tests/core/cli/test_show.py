@@ -150,6 +150,30 @@ def test_what_cannot_be_shown_is_told_in_one_line(
     assert sorted(tmp_path.iterdir()) == before
 
 
+@pytest.mark.parametrize("command_line", [["show"], ["run", "--resume"]])
+@pytest.mark.parametrize(
+    ("metadata", "message"),
+    [
+        (
+            '{"attributes": {"title": "a", "stickslip_spectra": 1}}',
+            "holds results of an extension that is not installed",
+        ),
+        ('{"attributes": {"title": "of another program"}}', "is a folder that holds no results of stickslip"),
+        ('{"attributes": 3}', "is a folder that holds no results of stickslip"),
+        ("[" * 100_000, "is a folder that holds no results of stickslip"),
+        ("", "is a folder that holds no results of stickslip"),
+    ],
+)
+def test_a_folder_that_nobody_reads_is_told_apart_from_that_of_an_extension_that_is_missing(
+    command: Command, tmp_path: Path, command_line: list[str], metadata: str, message: str
+):
+    (tmp_path / "kept.zarr").mkdir()
+    (tmp_path / "kept.zarr" / "zarr.json").write_text(metadata, encoding="utf-8")
+    with pytest.raises(ss.InputError, match=message):
+        ss.open_solution(tmp_path / "kept.zarr")
+    assert command(*command_line, "kept.zarr").refusal.startswith(f"kept.zarr: {message}")
+
+
 def test_results_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     for name in ("a.nc", "a.csv", "a.toml"):
         (tmp_path / name).touch()

@@ -102,7 +102,9 @@ def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any
     if wrong or file.suffix.lower() in OF_SCEC:
         what = f"leave out {wrong[0]}" if wrong else f"write .csv or .nc, not {file.suffix.lower()}"
         raise InputError(f"export: {path} holds {reader.what}, which is written at its own times: {what}")
-    announce(reader.open(path).to_csv(file))
+    if not hasattr(run := reader.open(path), "to_csv"):
+        raise InputError(f"export: {path} holds {reader.what}, which has no table")
+    announce(run.to_csv(file) or file)
 
 
 def _source(run: str, duration: str | None) -> RunSource:

@@ -69,16 +69,16 @@ def explore(
     Exit code: 0 ended by Ctrl-C, 2 unusable input.
     """
     from stickslip.cli.overrides import load
+    from stickslip.extensions.explorer.model.setting import Setting, explorable
     from stickslip.extensions.explorer.notebook import check_extra
 
     check_extra("explore")
     if static is not None:
         _write(static, scenario, changes, record)
         return
-    loaded = load(scenario or FIRST, "explore", changes, any_kind=True)
+    loaded = explorable(load(scenario or FIRST, "explore", changes, any_kind=True))
     if not loaded.is_of_core and (loaded.to_solve.is_plane or record is not None):
         raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
-    from stickslip.extensions.explorer.model.setting import Setting
     from stickslip.extensions.explorer.server.serve import Endpoint
     from stickslip.extensions.explorer.server.start import start
 

@@ -311,7 +311,9 @@ def _read_keys(keys: Mapping[str, Key], raw: Mapping[str, Any], source: Source, 
     for name, value in raw.items():
         if name not in keys:
             place = f"[{table}] {_named(name)}" if table else f"[{_named(name)}]" if isinstance(value, dict) else _named(name)
-            raise InputError(f"{source.file}: {place} is unknown; {_hint(name, table, keys)}")
+            hint = _hint(name, table, keys)
+            of_whom = " to stickslip and its extensions here" if place == f"[{name}]" and hint.startswith("allowed") else ""
+            raise InputError(f"{source.file}: {place} is unknown{of_whom}; {hint}")
     found = {name: key.read(raw[name], DocumentPlace(source, table, name)) for name, key in keys.items() if name in raw}
     for name, key in keys.items():
         if found.setdefault(name, key.default) is MISSING:

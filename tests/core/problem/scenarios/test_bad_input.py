@@ -119,3 +119,11 @@ def test_bad_files_are_refused_in_one_line(tmp_path: Path) -> None:
         load_scenario(file)
     file.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
     assert load_scenario(str(file)).name == "a"
+
+
+def test_a_table_of_an_extension_that_is_not_there_is_unknown_to_all_extensions() -> None:
+    """Whoever is handed a scenario of somebody with one more extension is told where to look."""
+    with pytest.raises(InputError, match=r"^my\.toml: \[seismometer\] is unknown to stickslip and its extensions here; allowed: "):
+        read_scenario(GOOD + "\n[seismometer]\ndistance = 1.0\n", "my.toml")
+    with pytest.raises(InputError, match=r"^my\.toml: seismometer is unknown; allowed: "):
+        read_scenario("seismometer = 1.0\n" + GOOD, "my.toml")

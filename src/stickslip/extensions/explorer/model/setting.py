@@ -22,7 +22,17 @@ from typing import Any, Self
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, gathered, nearest
-from stickslip.problem.scenarios import TABLES, Scenario, Source, kind_of, library, place_of, scenario_of, typed_number
+from stickslip.problem.scenarios import (
+    TABLES,
+    Scenario,
+    Source,
+    kind_of,
+    library,
+    place_of,
+    scenario_of,
+    solved_by_core,
+    typed_number,
+)
 
 CONTACT = "contact"
 """The table of scenario files that tells of a fault, which an extension adds: where it is not there, there are no faults."""
@@ -32,6 +42,11 @@ DEEPEST = 5
 
 MOST_NODES = 1024
 """Largest number of nodes of a fault that a page shows."""
+
+
+def explorable(scenario: Scenario) -> Scenario:
+    """Return a scenario if pages show runs of its kind: those of the core, and faults. Raises InputError."""
+    return scenario if scenario.table(CONTACT) is not None else solved_by_core("explore", scenario)
 
 
 def leaves_of(document: Mapping[str, Any]) -> dict[str, Any]:
