@@ -16,7 +16,7 @@ from stickslip.run.find import (
 from stickslip.run.kinds import (
     ALL_TAKE,  # Options that each solver takes.
     FILES_OF_CORE,  # Suffixes of results that the core reads itself.
-    Reader,  # Reads what an extension leaves in folders, or in files of its own; only those that it `is_in`.
+    Reader,  # Reads what an extension leaves in folders, or in files of its own.
     SolverKind,  # One of the solvers of `simulate`, and the options that it takes.
     no_results,  # Return the error for a folder that no reader reads; if its metadata cannot be read, with the reason.
     reader_of,  # Return the reader of the extension whose results a path holds; None if it holds none that an extension reads.

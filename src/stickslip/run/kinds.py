@@ -27,8 +27,6 @@ ALL_TAKE = frozenset({"duration", "progress", "checkpoint", "checkpoint_every"})
 """Options that each solver takes."""
 FILES_OF_CORE = (".nc", ".csv", ".parquet")
 """Suffixes of results that the core reads itself."""
-
-
 Run_co = TypeVar("Run_co", covariant=True)
 
 
@@ -51,12 +49,11 @@ class SolverKind:
     takes: frozenset[str]
     """Names of fields of `RunOptions`, of options of its own, and "selection", which replaces the problem's."""
     refusal: str
-    """The message for any other option; the first braces stand for its name, the second for what it is for."""
+    """The message for any other option; the first braces stand for its name, the second, if there are any, for what takes it."""
     on_command_line: Callable[[], KindOfRun] | None = None
     """How the command line runs and shows it; None for the plain way: `PlainRun`."""
     examine: Callable[[Scenario], Examination] | None = None
     """What can be said of a scenario before it is run; None if nothing but what is given."""
-
     what: str = ""
     """What it solves, for messages: "a PlanarSlab"."""
 
@@ -68,7 +65,7 @@ class SolverKind:
 
 
 class Reader:
-    """Reads what an extension leaves in folders, or in files of its own; only those that it `is_in`."""
+    """Reads what an extension leaves in folders, or in files of its own."""
 
     what: str
     """What it reads, for messages: "a sweep"."""
