@@ -21,7 +21,7 @@ from stickslip.engine.history.history import (
     Side,  # "left" or "right": which limit is taken at a shock.
 )
 from stickslip.engine.history.reach import (
-    SAME,  # Relative difference of two displacements that is rounding.
+    SAME_REACH,  # Relative difference of two displacements that is rounding.
     # The displacement from the start of a run (m, or rad) at its end, and the largest one in size with its sign and time (s).
     Reach,
     largest_of,  # Return what the largest displacement is called where slip has this unit.
@@ -52,7 +52,7 @@ from stickslip.engine.history.status import (
     ARRAYS,  # Names of the arrays in a checkpoint.
     Checkpoint,  # Copies of everything that changes in a run, except its history (see `layout`).
     # Return the key of the code that decides the result of a run; a run that continues with other code may differ in its digits.
-    engine,
+    engine_key,
 )
 from stickslip.engine.history.tables import (
     SHOCK_COLUMNS,  # Units of the columns of the table of shocks, as `names.si_unit` understands them.
@@ -91,7 +91,7 @@ __all__ = [
     "LAST_THIRD",
     "NOT_YET",
     "NO_LEAPS",
-    "SAME",
+    "SAME_REACH",
     "SHOCK_COLUMNS",
     "SPARE",
     "START",
@@ -118,7 +118,7 @@ __all__ = [
     "check_history",
     "creep_note",
     "creep_table",
-    "engine",
+    "engine_key",
     "history_table",
     "kernel",
     "largest_of",

@@ -52,7 +52,7 @@ from stickslip.run.run_loop import (
 from stickslip.run.source import (
     RunSource,  # A run to compare or to export: its name, and a function that runs or reads it, with a callback for its progress.
     # Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
-    read_source,
+    run_source,
 )
 from stickslip.run.study import (
     RunsCompared,  # The result of a study that compares several runs over the time that all of them cover.
@@ -92,10 +92,10 @@ __all__ = [
     "no_results",
     "options_of",
     "progress_line",
-    "read_source",
     "reader_of",
     "reporting",
     "resume_run",
+    "run_source",
     "run_to_end",
     "special_solver_of",
     "steady",
