@@ -320,6 +320,23 @@ def test_an_extension_that_fails_when_it_is_asked_adds_nothing(bad: Callable[[st
     assert "Mine" not in groups
 
 
+UNDER_ALL = """    def commands(self):
+        def named(name):
+            def look(): ...
+            look.__name__ = name
+            return look
+        return {heading: (named(f"look{n}"),) for n, heading in enumerate(HEADINGS)}
+"""
+
+
+def test_a_command_may_stand_under_any_heading_of_the_help(bad: Callable[[str], None]) -> None:
+    headings = [*app.OF_CORE, *app.LAST, "My own"]
+    bad(HEAD + UNDER_ALL.replace("HEADINGS", repr(headings)) + END)
+    groups = app._all_groups()
+    assert [groups[heading][-1].__name__ for heading in headings] == [f"look{n}" for n in range(len(headings))]
+    assert list(groups)[-1] == list(app.LAST)[-1]
+
+
 def test_a_command_that_is_there_already_is_refused_in_one_line(bad: Callable[[str], None]) -> None:
     bad(COMMAND)
     with pytest.raises(ss.InputError, match="two extensions, or one and the core, have a command 'check': uninstall one"):
