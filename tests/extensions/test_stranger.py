@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -248,6 +249,9 @@ def test_a_row_of_blocks_slips_as_far_as_it_is_pulled(site: Path) -> None:
             ss.simulate(row, **wrong)
     with pytest.raises(ss.InputError, match=r"has a \[row\], for which there are"):
         ss.uniqueness(row)
+    with_both = replace(row, tables=(("station", extension.tables()["station"].kind()()), *row.tables))
+    with pytest.raises(ss.InputError, match=r"has a \[row\], for which there are .* leave out \[row\]"):
+        ss.uniqueness(with_both)
 
 
 @pytest.mark.usefixtures("strangers")
