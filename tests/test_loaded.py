@@ -13,7 +13,7 @@ import stickslip
 
 PACKAGE = Path(stickslip.__file__).parent
 MOST = {"simulate": 25_000, "uniqueness": 13_600}
-"""Largest number of lines of the package that may be loaded; measured are 24 769 and 13 330. Most of them are those of the engine's
+"""Largest number of lines of the package that may be loaded; measured are 24 582 and 13 322. Most of them are those of the engine's
 loop, of the law and of the body: what few runs need is imported when it is used."""
 BELOW = ("foundation", "friction", "problem", "contact")
 """Rooms below the engine, all of whose files must do without it and without the compiler."""

@@ -20,7 +20,9 @@ from stickslip.friction import LAWS, FrictionLaw
 from stickslip.problem.loading import HISTORIES
 
 NAMES: dict[str, Any] = (
-    vars(ss.friction) | vars(ss.loading) | {name: getattr(ss, name) for name in ("ElasticSlab", "SpringBlock", "Problem")}
+    {name: getattr(ss.friction, name) for name in ss.friction.__all__}
+    | vars(ss.loading)
+    | {name: getattr(ss, name) for name in ("ElasticSlab", "SpringBlock", "Problem")}
 )
 ROUGH = 5.1e-6
 """Largest relative error of a number with six digits."""

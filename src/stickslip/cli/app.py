@@ -109,7 +109,8 @@ LAST: dict[str, tuple[Command, ...]] = {"This installation": (doctor,)}
 def _all_groups() -> dict[str, tuple[Command, ...]]:
     """Return the functions of all commands, by their heading in the help. Raises InputError if two have one name."""
     added = commands_of_extensions()
-    groups = {heading: (*OF_CORE.get(heading, ()), *added.get(heading, ())) for heading in (*OF_CORE, *added)} | LAST
+    headings, of_core = [*OF_CORE, *(heading for heading in added if heading not in LAST), *LAST], OF_CORE | LAST
+    groups = {heading: (*of_core.get(heading, ()), *added.get(heading, ())) for heading in headings}
     names = [command.__name__ for group in groups.values() for command in group]
     if twice := sorted({name for name in names if names.count(name) > 1}):
         raise InputError(f"two extensions, or one and the core, have a command '{twice[0]}': uninstall one")

@@ -31,7 +31,7 @@ from stickslip.problem.scenarios import (
     with_values,
 )
 
-Reader = Callable[[Any, str, str], Any]
+OptionReader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""
 STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
@@ -82,12 +82,12 @@ def load_with(
     return replace(loaded, **replaced)
 
 
-def read(reader: Reader, value: Any, command: str, option: str, default: Any = None) -> Any:
+def read(reader: OptionReader, value: Any, command: str, option: str, default: Any = None) -> Any:
     """Return the value of an option, or the default if it is None. Raises InputError, which names the command and the option."""
     return default if value is None else reader(value, command, f"--{option.replace('_', '-')}")
 
 
-def _readers(problem: Problem) -> dict[str, tuple[str, Reader]]:
+def _readers(problem: Problem) -> dict[str, tuple[str, OptionReader]]:
     """Return by option the field of a scenario that it replaces, and the function that reads it."""
     return {
         "duration": ("duration", read_duration),

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from stickslip.run import Catalogue
     from stickslip.solution import Solution
 
-
 DONE = Status("finished", "the run is finished", ok=True)
 """The status of a run that has none."""
 
@@ -41,7 +40,7 @@ class Results(ABC):
 
     @abstractmethod
     def summarise(self, *, everything: bool = False) -> None:
-        """Print the summary on standard output; of a run `everything` that is known of its proof, waves and predictability."""
+        """Print the summary; with `everything`, also what is known of the proof of a run, its waves and its predictability."""
 
     @abstractmethod
     def draw(self, pictures: Pictures) -> list[Path]:

@@ -44,7 +44,7 @@ from stickslip.contact.rules.loop import (
 )
 from stickslip.contact.rules.selection import (
     OF_LEVELS,  # Names of the rules that need nothing but `levels`: a batch supports them.
-    Branches,
+    Branches,  # The stable branches of a contact, slowest first.
     # Return the largest load of stick, and the smallest and largest load of each branch under a rule, for any number of contacts.
     levels,
     rule_of,  # Return the selection rule of a problem.
@@ -66,7 +66,7 @@ from stickslip.contact.slopes import (
     Pieces,
 )
 from stickslip.contact.steady import (
-    proven_slidings,  # Find the same, with a proof for laws with a state if there is one; a proof takes from 0.3 s to some seconds.
+    proven_slidings,  # Find what `steady_slidings` does, with proof for laws with a state where there is one (0.3 s and more).
     # Return the fastest slip rate (m/s, without its sign) of steady sliding at another pull rate (m/s); None if there is none.
     slip_rate_at,
     # Find the steady sliding of a contact under the loading of a problem (at the start if it varies), and its stability.

@@ -61,7 +61,7 @@ def steady_slidings(problem: Problem) -> SteadySlidings:
 
 @lru_cache(maxsize=64)
 def proven_slidings(problem: Problem) -> SteadySlidings:
-    """Find the same, with a proof for laws with a state if there is one; a proof takes from 0.3 s to some seconds."""
+    """Find what `steady_slidings` does, with proof for laws with a state where there is one, in 0.3 s to some seconds."""
     return _Steady(problem, proves=True).found() if problem.friction.states else steady_slidings(problem)
 
 

@@ -18,10 +18,10 @@ from stickslip.engine.history.history import (
     Epoch,  # A moment without rounding: whole round trips (a block's are periods) since t = 0, and an offset in s.
     History,  # The pieces of a run in order of time.
     Positions,  # Times located in the history: each lies at a place xi in a piece, or in a rest that was not recorded.
-    Side,
+    Side,  # "left" or "right": which limit is taken at a shock.
 )
 from stickslip.engine.history.reach import (
-    SAME,  # Relative difference of two displacements that is rounding.
+    SAME_REACH,  # Relative difference of two displacements that is rounding.
     # The displacement from the start of a run (m, or rad) at its end, and the largest one in size with its sign and time (s).
     Reach,
     largest_of,  # Return what the largest displacement is called where slip has this unit.
@@ -39,7 +39,7 @@ from stickslip.engine.history.slip_events import (
     rest_of,
     share_sticking,  # Return the share (1) of sticking in the last third of a run.
     time_creeping,  # Return the time (s) between two others that leaps over creep take beyond their first, recorded round trips.
-    time_slipping_in,  # Do what `time_slipping` does for the table of a history.
+    time_slipping_in,  # Return how long (s) the contact slips between two times, from the table of a history.
     # Return a table of `Turn`: the points of |slip rate| (m/s) from piece `begin` on; events begin and end at rest if they can.
     walk,
 )
@@ -52,7 +52,7 @@ from stickslip.engine.history.status import (
     ARRAYS,  # Names of the arrays in a checkpoint.
     Checkpoint,  # Copies of everything that changes in a run, except its history (see `layout`).
     # Return the key of the code that decides the result of a run; a run that continues with other code may differ in its digits.
-    engine,
+    engine_key,
 )
 from stickslip.engine.history.tables import (
     SHOCK_COLUMNS,  # Units of the columns of the table of shocks, as `names.si_unit` understands them.
@@ -79,9 +79,9 @@ from stickslip.engine.session import (
 )
 from stickslip.engine.state.layout import (
     TERMS,  # Coefficients of every polynomial and series (1): the orders 0 to ORDER.
-    Floats,
+    Floats,  # An array of float64.
     HistoryPiece,  # Hold one piece of the history: a step of the contact, with load and slip rate as polynomials in xi on [0, 1].
-    Integers,
+    Integers,  # An array of int64.
     LadderCell,  # Hold one cell of a body of layers (`waves.ladder`); loads are minus the reference strength.
     Store,  # Hold a history.
 )
@@ -91,7 +91,7 @@ __all__ = [
     "LAST_THIRD",
     "NOT_YET",
     "NO_LEAPS",
-    "SAME",
+    "SAME_REACH",
     "SHOCK_COLUMNS",
     "SPARE",
     "START",
@@ -118,7 +118,7 @@ __all__ = [
     "check_history",
     "creep_note",
     "creep_table",
-    "engine",
+    "engine_key",
     "history_table",
     "kernel",
     "largest_of",

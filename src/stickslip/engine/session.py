@@ -15,7 +15,7 @@ import numpy as np
 from stickslip.engine.creep.schedule import CreepLeaps
 from stickslip.engine.history.history import NO_LEAPS, History
 from stickslip.engine.history.phase_index import standing_behind
-from stickslip.engine.history.status import Checkpoint, engine, merging_note, rounding_note, strips_note
+from stickslip.engine.history.status import Checkpoint, engine_key, merging_note, rounding_note, strips_note
 from stickslip.engine.input.branch_table import renewed
 from stickslip.engine.input.limits import lumping_note, split_time
 from stickslip.engine.input.prepare import prepare
@@ -289,7 +289,7 @@ class Session(Generic[Options]):
         """Return a checkpoint of the present state."""
         stick_to = np.array([self.params.stick_to])
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
-        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, engine(), self.waves.copy())
+        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, engine_key(), self.waves.copy())
 
     def checkpoint(self) -> Checkpoint:
         """Return the checkpoint where this run, or a longer one, would continue."""

@@ -6,7 +6,8 @@
 - `names`, `given`: what each quantity is called, its symbol and unit, and the units in which results are shown.
 - `show`: numbers with units, tables and dataclasses as text for people.
 - `axis`, `other_values`: a parameter with its range, and problems with other numbers.
-- `atomic_write`, `netcdf_file`, `zarr_folder`, `locks`: files and folders that are whole or not there.
+- `atomic_write`, `netcdf_file`, `zarr_folder`, `locks`, `sealed_files`: files and folders that are whole or not there.
 - `record_files`, `text_columns`, `named_columns`, `headings`, `marks`, `columns`, `unit_doubts`: tables of measurements.
-- `determined`, `arrays`, `constants`, `place`, `synonyms`, `memory`, `lazy_names`: what many rooms share.
+- `lazy_names`, `classes_by_kind`, `code_key`: names and classes that are imported when they are used, and a hash of code.
+- `determined`, `arrays`, `constants`, `place`, `synonyms`, `memory`: what many rooms share.
 """

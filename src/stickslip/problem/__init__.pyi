@@ -32,7 +32,7 @@ from stickslip.problem.limits import (
     check_shortest_event,  # Check a shortest event (s; None is automatic) that `simulate` takes.
     # Return the tolerance of leaps over creep in a run: the given or the automatic one, or 0 if there are no leaps.
     creep_tolerance,
-    leaps_but_for_pull,  # Return the same, whatever the pull rate is, which may differ between the members of a batch.
+    leaps_but_for_pull,  # Return what `leaps_over` does, whatever the pull rate, which may differ between members of a batch.
     leaps_over,  # Return what a run of a problem may leap over.
     lumps_by_itself,  # Return True if events are lumped automatically.
 )
@@ -83,14 +83,14 @@ from stickslip.problem.run_codes import (
     Stop,  # Say why the engine returned.
 )
 from stickslip.problem.run_quantities import (
-    CHECKPOINT_INTERVAL,
-    CREEP_RTOL,
-    DURATION,
+    CHECKPOINT_INTERVAL,  # Declares the wall-clock time (s) between two checkpoints.
+    CREEP_RTOL,  # Declares the error of slip of leaps over creep.
+    DURATION,  # Declares how long to simulate (s).
     # Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z.
     EVENT_SHARE,
     LARGEST_RTOL,  # Largest relative tolerance of a run.
-    RTOL,
-    SHORTEST_EVENT,
+    RTOL,  # Declares the relative tolerance of a run.
+    SHORTEST_EVENT,  # Declares the length (s) below which slip events are lumped.
     RunNumbers,  # The numbers of a run, which its solver takes: how long and how accurately, and how much it may keep.
     check_event_rate,  # Return the slip rate (m/s) that defines slip events, or None, which stands for the default of the problem.
     check_rtol,  # Return a relative tolerance as a float.
@@ -98,9 +98,9 @@ from stickslip.problem.run_quantities import (
     default_event_rate,
 )
 from stickslip.problem.run_status import (
-    SHORT_OF_MEMORY,  # How its message begins in the second case.
+    SHORT_OF_MEMORY,  # How the message of that status begins where memory is short.
     STATUSES,  # Status for each code: see `run_codes`.
-    TOO_MANY,  # The name of its status.
+    TOO_MANY,  # The name of the status of a run whose history is full, or whose memory is short.
     Crowd,  # A history that has reached its limit of pieces, or the share of the memory that it may take.
     # The end of a run: the name of the status, a message, and `ok`, which is true if the run got as far as it was meant to.
     Status,
@@ -112,8 +112,8 @@ from stickslip.problem.selection_rule import (
     # The loads at which a contact leaves stick, and between which it stays on each branch: excesses over the static strength
     # (Pa).
     SelectionTable,
-    names,  # Return the names of all rules, first the built-in ones and then the registered ones.
-    registered,  # Rules that users have registered, by name.
+    names,  # Return the names of all selection rules, first the built-in ones and then the registered ones.
+    registered,  # Selection rules that users have registered, by name.
 )
 from stickslip.problem.start import (
     loading_rate,  # Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).

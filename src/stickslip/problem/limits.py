@@ -44,7 +44,7 @@ def leaps_over(problem: Problem) -> Over:
 
 
 def leaps_but_for_pull(problem: Problem) -> Over:
-    """Return the same, whatever the pull rate is, which may differ between the members of a batch."""
+    """Return what `leaps_over` does, whatever the pull rate is, which may differ between the members of a batch."""
     if not missing_for_creep(problem):
         return "creep"
     if swings_as_it_creeps(problem):

@@ -23,9 +23,9 @@ class Status:
 
 
 TOO_MANY = "too many pieces"
-"""The name of its status."""
+"""The name of the status of a run whose history is full, or whose memory is short."""
 SHORT_OF_MEMORY = "memory is short"
-"""How its message begins in the second case."""
+"""How the message of that status begins where memory is short."""
 MOST_WORTH_ASKING = 10_000_000
 """Largest number of pieces that a message proposes to allow: 4 GB."""
 GROWING = 2.0

@@ -16,7 +16,7 @@ from stickslip.run.find import (
 from stickslip.run.kinds import (
     ALL_TAKE,  # Options that each solver takes.
     FILES_OF_CORE,  # Suffixes of results that the core reads itself.
-    Reader,  # Reads what an extension leaves in folders, or in files of its own; only those that it `is_in`.
+    Reader,  # Reads what an extension leaves in folders, or in files of its own.
     SolverKind,  # One of the solvers of `simulate`, and the options that it takes.
     no_results,  # Return the error for a folder that no reader reads; if its metadata cannot be read, with the reason.
     reader_of,  # Return the reader of the extension whose results a path holds; None if it holds none that an extension reads.
@@ -52,7 +52,7 @@ from stickslip.run.run_loop import (
 from stickslip.run.source import (
     RunSource,  # A run to compare or to export: its name, and a function that runs or reads it, with a callback for its progress.
     # Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
-    read_source,
+    run_source,
 )
 from stickslip.run.study import (
     RunsCompared,  # The result of a study that compares several runs over the time that all of them cover.
@@ -92,10 +92,10 @@ __all__ = [
     "no_results",
     "options_of",
     "progress_line",
-    "read_source",
     "reader_of",
     "reporting",
     "resume_run",
+    "run_source",
     "run_to_end",
     "special_solver_of",
     "steady",

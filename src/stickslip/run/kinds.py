@@ -50,7 +50,7 @@ class SolverKind:
     takes: frozenset[str]
     """Names of fields of `RunOptions`, of options of its own, and "selection", which replaces the problem's."""
     refusal: str
-    """The message for any other option; the first braces stand for its name, the second for what it is for."""
+    """The message for any other option; the first braces stand for its name, the second, if there are any, for what takes it."""
     on_command_line: Callable[[], KindOfRun] | None = None
     """How the command line runs and shows it; None for the plain way: `PlainRun`."""
     examine: Callable[[Scenario], Examination] | None = None
@@ -66,7 +66,7 @@ class SolverKind:
 
 
 class Reader:
-    """Reads what an extension leaves in folders, or in files of its own; only those that it `is_in`."""
+    """Reads what an extension leaves in folders, or in files of its own."""
 
     what: str
     """What it reads, for messages: "a sweep"."""

@@ -29,10 +29,9 @@ from stickslip.problem import (
     check_rtol,
     check_shortest_event,
 )
-from stickslip.problem.scenarios import read_source
+from stickslip.problem.scenarios import Scenario, read_source
 
 if TYPE_CHECKING:
-    from stickslip.problem.scenarios import Scenario
     from stickslip.solution import Solution
 
 RTOL = 1e-10
@@ -148,7 +147,7 @@ def options_of(source: Any, **given: Any) -> RunOptions:
 
     The source is a scenario, a problem, or what the solver of an extension solves.
     """
-    if hasattr(source, "duration"):
+    if isinstance(source, Scenario):
         return RunOptions.of(source, **given)
     return RunOptions(**({"duration": None} | _not_none(given)))
 

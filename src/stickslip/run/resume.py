@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from stickslip.engine import Reach, check_checkpoint, engine
+from stickslip.engine import Reach, check_checkpoint, engine_key
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -153,10 +153,10 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
     checkpoint = stopped.checkpoint
     if checkpoint is None:
         raise InputError(f"{path}: cannot be resumed: it does not hold the state of the engine; run it again from the start")
-    if checkpoint.engine != engine():
+    if checkpoint.engine != engine_key():
         raise InputError(
-            f"{path}: cannot be resumed: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
-            " which would go on in other digits; run it again from the start"
+            f"{path}: cannot be resumed: another version of stickslip's engine made it ({checkpoint.engine}, this is"
+            f" {engine_key()}), which would go on in other digits; run it again from the start"
         )
     check_checkpoint(checkpoint, stopped.history, path, rtol=stopped.rtol, shortest_event=stopped.shortest_event)
     run = ExactRun.at_checkpoint(stopped.history, checkpoint, options)

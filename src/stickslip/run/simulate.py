@@ -178,9 +178,8 @@ def check_option_names(of_solver: Mapping[str, object]) -> None:
     if of_solver:
         known = {name: None for solver in special_solvers() for name in sorted(solver.takes)}
         parameters = [one for one in signature(simulate).parameters.values() if one.kind is not one.VAR_KEYWORD]
-        more = [
-            Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in known if name not in signature(simulate).parameters
-        ]
+        others = [name for name in known if name not in signature(simulate).parameters]
+        more = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in others]
         check_names("simulate", [*parameters, *more], (None,), of_solver)
 
 

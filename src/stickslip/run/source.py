@@ -26,7 +26,7 @@ class RunSource(NamedTuple):
     solution: Callable[[Progress | None], Solution]
 
 
-def read_source(
+def run_source(
     source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None, who: str = "compare"
 ) -> RunSource:
     """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.

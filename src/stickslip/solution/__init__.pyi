@@ -5,7 +5,7 @@ from stickslip.solution.accessors import (
 )
 from stickslip.solution.evaluation import (
     CURVES,  # Quantities that every run can draw against time.
-    Curve,
+    Curve,  # The names of curves, as types.
     Readings,  # Values of a run at given times.
     times_of,  # Return times in s, given as numbers or as texts with a unit such as "3 ms".
 )

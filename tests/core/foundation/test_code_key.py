@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.engine.history.status import DECIDE, engine
+from stickslip.engine.history.status import DECIDE, engine_key
 from stickslip.foundation import code_key
 from stickslip.foundation.code_key import PACKAGE, key_of, key_of_files, key_of_folders
 from stickslip.foundation.sealed_files import read_sealed, write_sealed
@@ -164,8 +164,8 @@ def test_the_key_of_a_checkpoint_is_of_what_is_executed_in_every_folder_that_dec
 def test_a_checkpoint_has_the_key_of_all_these_folders_and_of_those_that_an_extension_adds() -> None:
     from stickslip.engine.compile.cache import SOURCES
 
-    assert engine() == key_of_folders(DECIDE, SOURCES)
-    assert engine("foundation") == key_of_folders((*DECIDE, "foundation"), SOURCES) != engine()
+    assert engine_key() == key_of_folders(DECIDE, SOURCES)
+    assert engine_key("foundation") == key_of_folders((*DECIDE, "foundation"), SOURCES) != engine_key()
     assert all((PACKAGE / name).is_dir() for name in DECIDE)
 
 

@@ -110,10 +110,10 @@ def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any
 def _source(run: str, duration: str | None) -> RunSource:
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.problem.scenarios import read_duration
-    from stickslip.run import read_source
+    from stickslip.run import run_source
 
     length = read(read_duration, duration, "export", "duration")
-    return read_source(load(run, "export") if run == STDIN else run, length, who="export")
+    return run_source(load(run, "export") if run == STDIN else run, length, who="export")
 
 
 def _leave(solution: Solution) -> None:

@@ -17,7 +17,7 @@ from stickslip.foundation.atomic_write import check_replaceable, write_atomicall
 from stickslip.foundation.errors import InputError, warn
 
 CATALOGUES = (".csv", ".parquet", ".nc")
-"""File suffixes of catalogues, those of `io.catalogue_rows`, which takes long to import."""
+"""File suffixes of catalogues, those of `solution.files.catalogue_rows`, which takes long to import."""
 LARGE = 10_000_000
 """The size of a file is reported from this size (bytes) on."""
 DPI = 200.0

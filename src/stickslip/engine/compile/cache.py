@@ -37,16 +37,8 @@ LOOK_AFTER = 10_000_000
 NOT_COMPILED = ("cache.py", "lock.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 COMPILED_FOLDERS = (
-    *(
-        "engine/compile",
-        "engine/contact",
-        "engine/contact_step",
-        "engine/folds",
-        "engine/formula_code",
-        "engine/lanes",
-        "engine/memory",
-    ),
-    *("engine/radau", "engine/series", "engine/state", "engine/waves", "friction/formula/operations"),
+    *("engine/compile", "engine/contact", "engine/contact_step", "engine/folds", "engine/formula_code", "engine/lanes"),
+    *("engine/memory", "engine/radau", "engine/series", "engine/state", "engine/waves", "friction/formula/operations"),
 )
 """Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""
 COMPILED_FILES = (

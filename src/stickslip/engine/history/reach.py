@@ -13,7 +13,7 @@ from stickslip.problem import Problem
 
 DIGITS = 8
 """Number of significant digits of a slip in a summary, as in its tables."""
-SAME = 1e-9
+SAME_REACH = 1e-9
 """Relative difference of two displacements that is rounding."""
 
 
@@ -40,7 +40,7 @@ class Reach:
             return f"{now}, {largest} {shown_slip(0.0, unit)}: nothing slips"
         if problem.initial_slip:
             now += f", {shown_slip(self.end, unit, digits)} from the start"
-        if abs(self.largest - self.end) <= SAME * abs(self.largest):
+        if abs(self.largest - self.end) <= SAME_REACH * abs(self.largest):
             return f"{now}, which is the {largest}"
         return f"{now}; {largest} {shown_slip(self.largest, unit, digits)}, at {brief(self.time, 's')}"
 

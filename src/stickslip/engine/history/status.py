@@ -37,7 +37,7 @@ ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engi
 
 
 @cache
-def engine(*beside: str) -> str:
+def engine_key(*beside: str) -> str:
     """Return the key of the code that decides the result of a run; a run that continues with other code may differ in its digits.
 
     `beside` are folders of an extension whose code decides its results, too. Comments, docstrings and the layout of lines leave the

@@ -4,7 +4,7 @@ from stickslip.engine.lanes.reduction import (
     COLUMNS,  # Names of these numbers, in the order of their columns in a table of results.
     OF_EVENTS,  # Columns that need slip events.
     Reduced,  # Hold the numbers that are kept of each run, in SI units; NaN where a run has none.
-    # Do what `fold_whole` does for a history of which only the last pieces are known, but keep what all pieces determine.
+    # Write the numbers that describe a run of which only the last pieces are known, but keep what all pieces determine.
     fold_end,
 )
 from stickslip.engine.lanes.runs import (
@@ -28,7 +28,7 @@ from stickslip.engine.lanes.vectorised_problem import (
     why_not,  # Return in one line why a batch cannot run a scenario with these parameters and quantities; "" if it can.
 )
 from stickslip.engine.lanes.workspace import (
-    LARGEST_CAPACITY,
+    LARGEST_CAPACITY,  # Largest room of a lane in pieces of history; a member that needs more is run by itself.
     LaneStage,  # Say what a lane is doing.
     new_workspace,  # Return the workspace of one thread.
     # Return the addresses of the tables that the first member uses in each lane, and their strides from member to member (bytes).

@@ -83,9 +83,7 @@ class Run(MemoryRecord):
 
     load: Floats = floats_inside(TERMS)  # Pa or N: the present piece of load, as a polynomial in xi
     local: Floats = floats_inside(TERMS)  # Pa or N: load from the present place on, in units of the series; zero beyond the degree
-    load_along_slip: Floats = floats_inside(
-        TERMS
-    )  # Pa or N: the same as seen in the direction of slip, minus the reference strength
+    load_along_slip: Floats = floats_inside(TERMS)  # Pa or N: the same in the direction of slip, minus the reference strength
     state_jet: Floats = floats_inside(STATES * TERMS)  # behind it, series of the states over an explicit step, or an implicit one
     jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the series
     centres: Floats = floats_inside(TERMS)  # values that the series writes right after itself, for `radii`

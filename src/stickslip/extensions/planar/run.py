@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -69,10 +68,6 @@ class PlanarReport(NamedTuple):
         needs = f"needs {number(self.memory / 1e9, 2)} GB"
         doing = [needs] if math.isnan(self.fastest) else [moving, *how_fast(self.pace, self.left)]
         return ", ".join([how_far(self.time, self.duration), *doing])
-
-
-PlanarProgress = Callable[[PlanarReport], object]
-"""A function that is called with a `PlanarReport` before the start, after each frame, and ten times a second between two frames."""
 
 
 def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:

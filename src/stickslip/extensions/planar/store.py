@@ -1,6 +1,6 @@
 """Write the run of a planar slab into a folder of zarr while it continues, and continue it from there.
 
-`planar_layout.py` says what the folder holds. A checkpoint is the file `state.nc` in it, from which the run continues; echoes are
+`store_layout.py` says what the folder holds. A checkpoint is the file `state.nc` in it, from which the run continues; echoes are
 found again from what the contact has sent. The file is replaced as a whole, after the frames and waves up to it are on the disk.
 What the folder holds beyond it, or half of it, is written again by the run that continues.
 """

@@ -20,7 +20,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.problem import DURATION, Problem, check_rtol, default_event_rate
 from stickslip.problem.scenarios import Scenario, load_scenario, solved_by_core
-from stickslip.run import Study, TextProgress, read_source, telling
+from stickslip.run import Study, TextProgress, run_source, telling
 from stickslip.solution import Solution
 from stickslip.solution.files import read_solution
 from stickslip.solution.observables import Pulses, extreme_tractions
@@ -175,7 +175,7 @@ def compare(
         check_rtol(rtol, "compare", "rtol")
     lasts = None if duration is None else DURATION.check("compare", "duration", duration)
     ruled = under_each_rule(sources) if rules else []
-    read = [read_source(source, lasts, rtol) for source in ruled or sources]
+    read = [run_source(source, lasts, rtol) for source in ruled or sources]
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):
         raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")
@@ -217,7 +217,7 @@ def _under(problem: Problem, rule: str) -> Problem:
 
 
 def _scenario_of(source: str | Path | Scenario | Solution) -> Scenario:
-    """Return the scenario of a source that `read_source` takes."""
+    """Return the scenario of a source that `run_source` takes."""
     if isinstance(source, Solution):
         return source.scenario()
     if not isinstance(source, Scenario) and Path(str(source)).suffix == ".nc":

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stickslip.engine import engine
+from stickslip.engine import engine_key
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.problem import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, Problem
@@ -59,7 +59,7 @@ class KeptRuns:
         held_there = (found.problem, found.asked_duration, found.rtol, found.max_events, found.creep_rtol, found.shortest_event)
         if held_there != wanted:
             raise InputError(f"{path}: is a run of another {self.who}: choose another folder, or remove this one")
-        if found.checkpoint is None or found.checkpoint.engine != engine():
+        if found.checkpoint is None or found.checkpoint.engine != engine_key():
             raise InputError(f"{path}: another version of stickslip's engine made it: choose another folder, or remove this one")
         full = found.status == STATUSES[FULL_HISTORY] and len(found.history) < options.most_pieces
         if not full and found.status.name not in STOPPED:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from stickslip.engine import SAME, largest_of, shown_slip
+from stickslip.engine import SAME_REACH, largest_of, shown_slip
 from stickslip.foundation.names import name_of
 from stickslip.solution import Solution
 
@@ -26,7 +26,7 @@ def _of_one_kind(runs: Mapping[str, Solution], unit: str) -> str:
 
 def _range(values: Mapping[str, float], unit: str) -> str:
     """Return the smallest and the largest of some slips in words, each with the names that it belongs to."""
-    near = SAME * max(map(abs, values.values()))
+    near = SAME_REACH * max(map(abs, values.values()))
 
     def told(end: float) -> str:
         names = [name for name, value in values.items() if abs(value - end) <= near]

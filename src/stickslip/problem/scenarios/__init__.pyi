@@ -9,7 +9,7 @@ from stickslip.problem.scenarios.entries import (
     typed_number,  # Return a text as a number if it is one, otherwise the text without leading and trailing spaces.
 )
 from stickslip.problem.scenarios.parameter_paths import (
-    YES_OR_NO,
+    YES_OR_NO,  # Declares a parameter that is true or false.
     # A parameter of a scenario: its place in the file, and its declaration as a quantity or as one of several words.
     ParameterPath,
     document_with,  # Return the document of a scenario, in SI, with other values of parameters.

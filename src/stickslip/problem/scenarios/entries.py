@@ -26,9 +26,9 @@ from stickslip.foundation.quantities import (
 class Source(NamedTuple):
     """The origin of a document: its name in messages and, for a document in a file, the folder of its data files.
 
-    `most_nodes` is the largest number of nodes of a [contact] that whoever reads the document can use; a contact with more of them
-    is refused before it is made. `load_unit` is the unit of the body's loads once that is known: laws and loading then have its
-    units.
+    `most_nodes` is the largest number of nodes that whoever reads the document can use: a table of an extension with more is
+    refused before anything is made of it. `load_unit` is the unit of the body's loads once it is known: laws and loading then have
+    its units.
     """
 
     file: str

@@ -227,6 +227,7 @@ def _with_tables(plain: Scenario, document: Mapping[str, Any], source: Source) -
         needless = next((key for key in document["run"] if table.run_keys is not None and key not in table.run_keys), None)
         if needless is not None:
             raise InputError(f"{source.file}: [run] {needless} {table.why_no_others}: leave it out")
+        table.name = name
         entries = read_table(name, table.kind(), document[name], source)
         found = found.with_table(name, table.read(entries, plain.problem, source))
     for name, table in given.items():

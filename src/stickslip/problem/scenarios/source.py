@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 def solved_by_core(who: str, scenario: Scenario) -> Scenario:
     """Return a scenario if its own problem is solved, as all but runs need it. Raises InputError, which begins with `who`."""
     if not scenario.is_of_core:
-        name, table = next((name, tables()[name]) for name, _ in scenario.tables)
+        made = ((name, tables()[name]) for name, value in scenario.tables if tables()[name].problem(value, scenario) is not None)
+        name, table = next(made)
         uses = "for which there are `stickslip run`, `check`, `show` and ss.simulate"
         raise InputError(f"{who}: {scenario.name} has a {table.what.format(name)}, {uses}: {table.instead.format(name)}")
     return scenario

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 
 class ScenarioTable:
-    """What a table of an extension holds, and what it means. The default is a dataclass whose declared fields are the keys."""
+    """What a table of an extension holds, and what it means; by default, a dataclass whose declared fields are the keys."""
 
     name: str
-    """The name of the table in files."""
+    """The name of the table in files: when a file is read, that under which the extension adds it."""
     what = "[{}]"
     """What a scenario that has it, and is of a kind of its own, is said to have; braces stand for its name."""
     instead = "leave out [{}] for the problem of a single contact"
@@ -35,9 +35,13 @@ class ScenarioTable:
     why_no_others = "has no effect with this table"
     """Why [run] may have no other key."""
 
+    def __init__(self, kind: type | None = None) -> None:
+        self._kind = kind
+
     def kind(self) -> type:
-        """Return the class whose declared quantities are keys of the table."""
-        raise NotImplementedError
+        """Return the class whose declared quantities are keys of the table: the one that was given."""
+        assert self._kind is not None
+        return self._kind
 
     def other_keys(self) -> Mapping[str, Key]:
         """Return its keys that are no quantities."""

@@ -17,8 +17,8 @@ from stickslip.solution.files.netcdf import (
     FORMAT,  # Version of the file layout below; a file with another version is refused.
     about_curves,  # Return the attributes units and long_name of each curve of a run, and of its time.
     is_catalogue,  # Return True if a file is the checkpoint of a catalogue.
-    origin,  # Return those attributes of `provenance` that take no computation.
-    read,  # Read a file of stickslip whose version is stored in the attribute `kind`.
+    origin,  # Return the attributes that say where a run comes from, but for those that take a computation.
+    read,  # Read a netCDF file of stickslip whose version is stored in the attribute `kind`.
     read_solution,  # Read a solution from a netCDF file, and raise InputError, as `open_solution` does.
     # Write only what `open_solution` and `resume` need of a run under way, without curves and tables, to save time.
     save_checkpoint,

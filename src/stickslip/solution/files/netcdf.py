@@ -61,7 +61,7 @@ DRAWN_POINTS = 2000
 """Number of evenly spaced times of the stored curves, besides the breaking points: enough for a figure."""
 
 AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",), ("wave_rows", "cells", "terms"))
-"""Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""
+"""Names of the dimensions of a checkpoint's arrays, in the order of `ARRAYS`."""
 
 
 def about_curves(problem: Problem) -> dict[str, dict[str, str]]:

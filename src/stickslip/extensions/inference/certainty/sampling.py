@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine import engine
+from stickslip.engine import engine_key
 from stickslip.extensions.inference.certainty.certainty import Certainty
 from stickslip.extensions.inference.certainty.kept_walk import NOT_KEPT, KeptWalk
 from stickslip.extensions.inference.fit.estimate import Estimate
@@ -114,7 +114,7 @@ def sample(
     if before is None:
         factor = np.empty(0) if jumps is None else jumps.factor
         own = found.searched, begin, factor, posterior.tempered, *found.model.limits, found.model.rtol, found.loss
-        keep = keep.of(*own, seed, count, engine(*DECIDE))
+        keep = keep.of(*own, seed, count, engine_key(*DECIDE))
         if (taken := keep.read(new.shape, library.State)) is not None:
             done, state = len(taken[0]), taken[1]
             new[:done] = taken[0]

@@ -65,7 +65,7 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
     from stickslip.extensions.studies.compare import Comparison, distinct, title_of, under_each_rule
     from stickslip.problem import check_rtol
     from stickslip.problem.scenarios import read_duration
-    from stickslip.run import progress_line, read_source
+    from stickslip.run import progress_line, run_source
 
     if len(names) < 2 and not rules:
         cure = "--rules runs one under each selection rule; `stickslip new --list` lists the bundled ones"
@@ -74,7 +74,7 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
     tolerance = read(check_rtol, rtol, "compare", "rtol")
     given = [load(name, "compare") if name == STDIN else name for name in names]
     chosen = under_each_rule(given) if rules else []
-    sources = [read_source(one, length, tolerance) for one in chosen or given]
+    sources = [run_source(one, length, tolerance) for one in chosen or given]
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
         with progress_line(f"{name}:") as report:

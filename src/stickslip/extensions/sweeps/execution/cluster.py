@@ -23,7 +23,7 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from stickslip.engine import engine
+from stickslip.engine import engine_key
 from stickslip.extensions.sweeps.execution.chunk import DECIDE, Runner, run_chunk
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
@@ -172,7 +172,7 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
     def send() -> list[Future]:
         room = max(LEAST, AHEAD * sum(client.nthreads().values())) - len(numbers)
         more = list(islice(waiting, max(room, 0)))
-        sent = [client.submit(_run_checked, run, chunk, engine(*DECIDE), pure=False, retries=RETRIES) for _, chunk in more]
+        sent = [client.submit(_run_checked, run, chunk, engine_key(*DECIDE), pure=False, retries=RETRIES) for _, chunk in more]
         numbers.update(zip(sent, (number for number, _ in more), strict=True))
         return sent
 
@@ -201,7 +201,7 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
 
 def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, expected: str) -> Result:
     """Run a chunk on the worker, after checking that it has the expected version of the engine. Raises InputError."""
-    if engine(*DECIDE) != expected:
+    if engine_key(*DECIDE) != expected:
         raise InputError("sweep: a worker of the cluster has another version of stickslip: install the same everywhere")
     return run(chunk)
 

@@ -18,7 +18,7 @@ import zarr
 from zarr.storage import MemoryStore
 
 import stickslip
-from stickslip.engine import engine
+from stickslip.engine import engine_key
 from stickslip.extensions.sweeps.design.design import GRID, IN_WORDS
 from stickslip.extensions.sweeps.execution.chunk import DECIDE, MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.extensions.sweeps.execution.plan import Plan
@@ -114,7 +114,7 @@ def attributes(plan: Plan) -> dict[str, Any]:
         "Conventions": "CF-1.11",
         "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
-        "engine": engine(*DECIDE),
+        "engine": engine_key(*DECIDE),
         "references": PAPER,
         "scenario": plan.work.text,
         "selection_rule": scenario.problem.rule,
