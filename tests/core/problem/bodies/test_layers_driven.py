@@ -50,6 +50,7 @@ def same_inside(run: ss.Solution, known: ss.Solution, x: Floats, lasting: float)
         np.testing.assert_allclose(energy[name], of_slab[name], rtol=1e-9, atol=1e-10 * size, err_msg=name)
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("shares", [(0.2, 0.8), (0.3, 0.4, 0.3), (1.0,)])
 @pytest.mark.parametrize("mass", [0.0, MASS])
 @pytest.mark.parametrize("name", MOVES)
@@ -132,6 +133,7 @@ def drawn(seed: int) -> tuple[ss.Problem, list[Chain], float, dict[str, Any]]:
     return ss.Problem(body, LAW, **loading), chains, fine, start
 
 
+@pytest.mark.sampled(every=4)  # every third one is joined
 @pytest.mark.parametrize("seed", range(18))
 def test_layers_drawn_at_random_move_as_their_waves_do_and_keep_energy(seed: int) -> None:
     problem, chains, time, start = drawn(seed)
