@@ -172,6 +172,7 @@ def test_rest_is_leapt_over_between_changes_once_drag_has_taken_the_waves(counts
     assert float(energy.damped[-1]) > 0.5 * abs(float(energy.stored[-1]))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["driver", "driver under a tone", "ground in parabolas", "ground of a tone"])
 @pytest.mark.parametrize("stop", [0.3, 1.7, 3.2])
 def test_a_run_that_is_taken_up_again_has_every_bit(name: str, stop: float, tmp_path: Path) -> None:
