@@ -104,7 +104,7 @@ def shown(opened: Shown) -> Iterator[Shown]:
 def test_nothing_plays_by_itself_where_less_motion_is_preferred(opened: Shown) -> None:
     """Before the page is touched by any other test."""
     opened.page.wait_for_timeout(100)
-    assert opened.cursor() == 0.0
+    assert opened.model("cursor:slip", "location") == 0.0
     assert opened.page.get_by_role("button", name="Play", exact=True).is_visible()
 
 
