@@ -99,6 +99,7 @@ def without(name: str) -> Iterator[Path]:
         place = Path(folder)
         shutil.copytree(PACKAGE, place / "src/stickslip", ignore=_but(PACKAGE / "extensions", name))
         shutil.copytree(ROOT / "tests", place / "tests", ignore=_but(ROOT / "tests/extensions", name))
+        shutil.copytree(ROOT / "benchmarks", place / "benchmarks")  # wrong engines and composed laws, for tests of the core
         shutil.copy(ROOT / "pyproject.toml", place)
         for file in (place / "tests").glob("test_*.py"):
             file.unlink()

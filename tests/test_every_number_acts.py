@@ -212,7 +212,7 @@ def silent(problem: ss.Problem) -> Iterator[str]:
             yield name
 
 
-@pytest.mark.sampled(every=8)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_every_number_of_a_problem_acts_or_is_refused(name: str) -> None:
     assert list(silent(PROBLEMS[name])) == []

@@ -83,6 +83,7 @@ def test_slow_sliding_of_a_string_at_a_tenth_of_its_length_grows_at_the_rate_of_
     assert sliding.growth == pytest.approx(exact_root(body, normal, felt, 0.672 + 0j).real, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("rate", GROWTHS)
 def test_fast_sliding_of_two_slabs_grows_as_slowly_as_the_exact_root_does(rate: float):
     """To 1e-6 of the growth rate, beyond 1e-15 of the root: at 500 m/s it swings 5e9 times as fast as it grows."""
@@ -157,6 +158,7 @@ def test_no_verdict_on_layers_drawn_at_random_contradicts_its_growth_rate_or_a_r
         check_motion(body, *drawn_law(draw, body), seed)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(6))
 def test_as_many_roots_are_counted_as_are_found(seed: int):
     """On small bodies with a mass, beyond lines with few roots: all of them, each once, by the secant method from 6 000 places."""

@@ -54,6 +54,7 @@ PULLS: dict[str, Any] = {
 }
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("shares", [(1.0,), (0.2, 0.8), (0.3, 0.4, 0.3)])
 @pytest.mark.parametrize("pull", PULLS)
 @pytest.mark.parametrize("name", CASES)
@@ -179,8 +180,9 @@ def of_trapezium(
     return moves
 
 
-@pytest.mark.parametrize("gain", [0.0, 0.4])
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("gain", [0.0, 0.4])
 def test_layers_with_contrast_move_as_an_own_program_says(seed: int, gain: float, monkeypatch: pytest.MonkeyPatch) -> None:
     draw = np.random.default_rng([91, seed])
     cells, time, normal, stress, pull = draw.integers(1, 4, 2), 0.01, 1e7, 5.9e6, 0.4
@@ -207,6 +209,7 @@ def test_layers_with_contrast_move_as_an_own_program_says(seed: int, gain: float
     assert errors[1] < 0.4 * errors[0]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("stop", [1.7, 9.3, 13.7])
 def test_a_run_that_is_taken_up_again_has_every_bit(stop: float, tmp_path: Path) -> None:
     body = ss.LayeredSlab(

@@ -64,6 +64,7 @@ def test_merged_pieces_of_a_machine_above_collars_are_fewer_and_tell_the_same() 
     assert known.rounding_note == ""
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("seed", [0, 2, 4])
 def test_merged_pieces_of_random_layers_tell_the_same(seed: int) -> None:
     problem = layers(np.random.default_rng(seed))
@@ -95,14 +96,15 @@ def test_energies_balance_where_pieces_are_merged() -> None:
     assert float(np.abs(energy.balance).max()) < 1e-9 * float(energy.heat.max())
 
 
-def test_a_run_with_merged_pieces_is_taken_up_again_bit_for_bit(tmp_path: Path) -> None:
-    for shortest in (None, "2 ms"):
-        whole = ss.simulate(machine_above_collars(), 34.0, shortest_event=shortest)
-        file = tmp_path / "part.nc"
-        ss.simulate(machine_above_collars(), 31.3, shortest_event=shortest).to_netcdf(file)
-        again = ss.resume(file, 34.0)
-        assert isinstance(again, ss.Solution)
-        assert np.array_equal(again.history.store.pieces, whole.history.store.pieces)
+@pytest.mark.sampled(every=2)
+@pytest.mark.parametrize("shortest", [None, "2 ms"])
+def test_a_run_with_merged_pieces_is_taken_up_again_bit_for_bit(shortest: str | None, tmp_path: Path) -> None:
+    whole = ss.simulate(machine_above_collars(), 34.0, shortest_event=shortest)
+    file = tmp_path / "part.nc"
+    ss.simulate(machine_above_collars(), 31.3, shortest_event=shortest).to_netcdf(file)
+    again = ss.resume(file, 34.0)
+    assert isinstance(again, ss.Solution)
+    assert np.array_equal(again.history.store.pieces, whole.history.store.pieces)
 
 
 def test_lumped_pieces_are_few_and_right_on_average() -> None:

@@ -101,6 +101,13 @@ def shown(opened: Shown) -> Iterator[Shown]:
     assert opened.watched.faults == []
 
 
+def test_nothing_plays_by_itself_where_less_motion_is_preferred(opened: Shown) -> None:
+    """Before the page is touched by any other test."""
+    opened.page.wait_for_timeout(100)
+    assert opened.model("cursor:slip", "location") == 0.0
+    assert opened.page.get_by_role("button", name="Play", exact=True).is_visible()
+
+
 def test_a_page_opens_with_the_papers_slab_and_all_its_panels(shown: Shown) -> None:
     assert shown.said("Irregular").startswith("Irregular: several slip rates at some loads; alpha = 1 s/m is 5.102 times")
     for panel in PANELS:
