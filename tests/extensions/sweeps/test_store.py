@@ -256,7 +256,7 @@ def test_another_sweep_is_refused(store: Path, whole: dict[str, bytes], asked: d
 def test_another_scenario_and_another_version_are_refused(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ss.InputError, match="was made from another scenario"):
         ss.sweep("second-event-maxwell", VARY, out=store, **SAVED)
-    monkeypatch.setattr("stickslip.extensions.sweeps.results.layout.engine", lambda *_: "another")
+    monkeypatch.setattr("stickslip.extensions.sweeps.results.layout.engine_key", lambda *_: "another")
     with pytest.raises(ss.InputError, match=r"was made by another version of stickslip \('\w+', this is 'another'\)"):
         sweep(store)
 
