@@ -3,8 +3,8 @@
 An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the six questions
 that the core asks; each is asked when its answer is needed, and imports what it needs then, so that a run does not load what it
 does not use. The extensions of stickslip are the folders of `stickslip/extensions`; those of others are named by the entry points
-of the group `stickslip.extensions`. The core knows no extension by its name, and an extension knows another one only through the
-core. docs/extensions.md shows two that are complete.
+of the group `stickslip.extensions`. The core knows no extension by its name, and an extension knows another one only if it
+says so, in `needs` or `uses`. docs/extensions.md shows two that are complete.
 """
 
 from __future__ import annotations

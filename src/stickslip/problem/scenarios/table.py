@@ -6,6 +6,7 @@ the core: what is solved is then what `ScenarioTable.problem` returns, and a sol
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from importlib.resources.abc import Traversable
@@ -67,7 +68,8 @@ class ScenarioTable:
 
     def whole(self) -> frozenset[str]:
         """Return the names of its parameters that count, and are whole numbers."""
-        return frozenset(one.name for one in fields(self.kind()) if str(one.type).startswith("int"))
+        # an annotation is a type or its text, and names in the text may be there for type checkers only: it is not evaluated
+        return frozenset(one.name for one in fields(self.kind()) if "int" in re.findall(r"\w+", str(one.type)))
 
     def pressed(self, value: Any, factor: float) -> Any:
         """Return a value for a problem whose normal load, and all loads, are `factor` times as large."""
