@@ -1,13 +1,19 @@
 # What others take from engine. Each name is imported when it is first used; all else is the room's own.
 
-from stickslip.engine.compile.cache import (
-    announce_by,  # Show messages about compilation with the given function instead of on standard error.
+from stickslip.engine.compile.code import (
+    announce_by,  # Say that something is compiled by the given function instead of on standard error.
 )
 from stickslip.engine.compile.kernels import (
-    kernel,  # Return a function of the engine in compiled form, with its machine code kept in the cache.
+    entry,  # Return a function of the engine that compiled code and Python call.
+    kernel,  # Return a function of the engine that compiled code calls.
 )
-from stickslip.engine.compile.numba_privates import (
-    WHY_PLAIN,  # Why numba's public compiler is used; empty if the faster way works.
+from stickslip.engine.compile.signature import (
+    Flags1,  # Arrays with their number of dimensions, which machine code must know; their numbers lie without gaps, as in C.
+    Floats1,
+    Floats2,
+    Floats3,
+    Floats4,
+    Integers1,
 )
 from stickslip.engine.compile.uncompiled import (
     UNCOMPILED,  # True if kernels run as plain Python.
@@ -97,14 +103,19 @@ __all__ = [
     "START",
     "TERMS",
     "UNCOMPILED",
-    "WHY_PLAIN",
     "WIDTH",
     "Checkpoint",
     "Epoch",
+    "Flags1",
     "Floats",
+    "Floats1",
+    "Floats2",
+    "Floats3",
+    "Floats4",
     "History",
     "HistoryPiece",
     "Integers",
+    "Integers1",
     "LadderCell",
     "Positions",
     "Reach",
@@ -119,6 +130,7 @@ __all__ = [
     "creep_note",
     "creep_table",
     "engine_key",
+    "entry",
     "history_table",
     "kernel",
     "largest_of",

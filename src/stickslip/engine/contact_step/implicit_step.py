@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.kernels import entry, kernel
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, record
@@ -135,7 +135,7 @@ def stick_with_state(run: Run, xi_to: float) -> bool:
     return True
 
 
-@kernel
+@entry
 def implicit_steps(memory: int, task: int, xi_to: float) -> float:
     """Take an implicit step up to the place xi_to at most; return 0 if a contact at rest needs none."""
     if task == Task.SLIP_IMPLICITLY:

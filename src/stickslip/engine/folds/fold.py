@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.kernels import entry, kernel
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.contact.pieces import note_degree, phase_at
 from stickslip.engine.contact.pressing import own_states, press
@@ -249,7 +249,7 @@ def leave_moving_branch(run: Run) -> None:
         run.counts.at_fold = NearFold.PASSING
 
 
-@kernel
+@entry
 def folds(memory: int, task: int, way: float) -> float:
     """Lead slip over the given way (in xi) to a fold or away from one: see `Task`."""
     run = borrow(memory)

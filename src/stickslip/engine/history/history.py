@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.kernels import entry
+from stickslip.engine.compile.signature import Floats1, Integers1
 from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.history.series import integrals_at, values_at
 from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 Side = Literal["left", "right"]
 
 
-@kernel
-def add_up(values: Floats, past: Integers, sums: Floats) -> None:
+@entry
+def add_up(values: Floats1, past: Integers1, sums: Floats1) -> None:
     """Add up consecutive groups of values, term by term: group n ends before index past[n] and begins where group n - 1 ends."""
     begin = 0
     for n in range(len(past)):

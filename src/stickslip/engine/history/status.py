@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from functools import cache
 
-from stickslip.engine.compile.cache import SOURCES
+from stickslip.engine.compile.code import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers
 from stickslip.engine.state.workspace import NO_WAVES
 from stickslip.foundation.code_key import key_of_folders

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.kernels import entry, kernel
 from stickslip.engine.contact.pieces import phase_at
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
@@ -148,7 +148,7 @@ def move_machine(run: Run, pace: float) -> bool:
     return 2.0 * before * next_term <= (1.0 - along) * params.tolerance * changes
 
 
-@kernel
+@entry
 def driver(memory: int, task: int, number: float) -> float:
     """Add what a machine sends to the piece of load; return the share of the piece that is kept."""
     return drive(borrow(memory))

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.kernels import entry, kernel
 from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, fill, restrict, total
@@ -277,7 +277,7 @@ def is_settled(run: Run) -> bool:
     return True
 
 
-@kernel
+@entry
 def ladder(memory: int, task: int, number: float) -> float:
     """Serve a body of layers: see `Task`."""
     return serve(borrow(memory), task, number)

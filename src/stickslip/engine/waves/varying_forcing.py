@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.compile.kernels import entry, kernel
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at
@@ -285,7 +285,7 @@ def largest_sine_up(begin: float, end: float) -> float:
     return 1.0 if peak <= end else max(math.sin(begin), math.sin(end))
 
 
-@kernel
+@entry
 def loading_history(memory: int, task: int, number: float) -> float:
     """Serve a loading that varies: see `Task`.
 
