@@ -114,9 +114,9 @@ def engine() -> Iterator[Finding]:
         slow = "STICKSLIP_UNCOMPILED is set, so that runs take a hundred times longer or more: unset it"
         yield Finding("machine code", "not used", slow)
         return
-    from stickslip.engine.compile.code import NAME, why_not_shipped
-    from stickslip.engine.compile.processor import PROCESSOR
     from stickslip.foundation.code_key import SHIPPED
+    from stickslip.foundation.kernels.code import NAME, why_not_shipped
+    from stickslip.foundation.kernels.processor import PROCESSOR
 
     came = len(list((SHIPPED / NAME).glob("*.o")))
     if came:

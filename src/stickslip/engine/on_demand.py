@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.compile.lock import made_once
-from stickslip.engine.compile.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.constants import RIGID
+from stickslip.foundation.kernels.lock import made_once
+from stickslip.foundation.kernels.uncompiled import UNCOMPILED, handle_of
 
 PARTS = {
     EnginePart.IMPLICIT_STEPS: "contact_step.implicit_step",

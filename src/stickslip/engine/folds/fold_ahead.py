@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import entry, kernel
-from stickslip.engine.memory.addresses import room_for
 from stickslip.engine.series.polynomial import NONE
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
 
 REVERSED = 14
 """Order of the reversed series (1): rounding grows with it, to 1e-13 here."""

@@ -17,9 +17,9 @@ from typing import Any
 import llvmlite.binding as llvm
 import llvmlite.ir as ir
 
-from stickslip.engine.compile.code import Kept, loaded
-from stickslip.engine.compile.processor import PROCESSOR
-from stickslip.engine.memory.simd import WIDTH
+from stickslip.foundation.kernels.code import Kept, loaded
+from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.processor import PROCESSOR
 
 VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 FUSED = ("contract",)

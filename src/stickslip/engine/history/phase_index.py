@@ -13,9 +13,9 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import entry, kernel
-from stickslip.engine.compile.signature import Integers1
 from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.signature import Integers1
 
 NOTHING = -1
 """Marks a phase without a recorded piece."""

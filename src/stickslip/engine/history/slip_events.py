@@ -7,15 +7,15 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import entry, kernel
-from stickslip.engine.compile.signature import Floats1, Integers1, Integers2
 from stickslip.engine.history.history import History, Positions
 from stickslip.engine.history.turning_points import FULL, Known, SearchMemory, Spare, Turn, search_history, turns_in
-from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.pointers import record_at
+from stickslip.foundation.kernels.memory.records import MemoryRecord
+from stickslip.foundation.kernels.signature import Floats1, Integers1, Integers2
 from stickslip.problem import default_event_rate
 
 LAST_THIRD = 2.0 / 3.0

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from stickslip.engine.compile.kernels import entry, kernel
-from stickslip.engine.compile.signature import Floats1, Floats2, Floats3, Integers1
-from stickslip.engine.memory.addresses import ahead, bits_of, call_value, float_of, floats, room_for
 from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import branches_in
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, bits_of, call_value, float_of, floats, room_for
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Integers1
 
 MOST_BRANCHES = 4
 """Room of tables for branches."""

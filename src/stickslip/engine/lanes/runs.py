@@ -11,8 +11,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.compile.kernels import entry, inlined, kernel
-from stickslip.engine.compile.signature import Floats2, Floats3, Integers1, Integers2
 from stickslip.engine.history.slip_events import EventTurns, events_in, group_turns
 from stickslip.engine.history.turning_points import FULL, Known, Search, Spare, Turn, find_turns, known_in, spare_in, turns_in
 from stickslip.engine.lanes.lanes import Side, Waits, step_side_by_side
@@ -28,11 +26,13 @@ from stickslip.engine.lanes.reduction import (
 )
 from stickslip.engine.lanes.workspace import LaneStage, Setups, Workspace
 from stickslip.engine.loop import run_until
-from stickslip.engine.memory.addresses import CallAt, ahead, call_prepare, floats, integers
-from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
-from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
+from stickslip.foundation.kernels.kernels import entry, inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import CallAt, ahead, call_prepare, floats, integers
+from stickslip.foundation.kernels.memory.pointers import numbers_of, whole_numbers_of
+from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.signature import Floats2, Floats3, Integers1, Integers2
 from stickslip.problem import BAD_PARAMETERS, Stop
 
 BUDGET = 200_000

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.compile.uncompiled import MATHS, UNCOMPILED
-from stickslip.engine.memory.simd import power_of_two
+from stickslip.foundation.kernels.memory.simd import power_of_two
+from stickslip.foundation.kernels.uncompiled import MATHS, UNCOMPILED
 
 maths: Any = MATHS if UNCOMPILED else math
 

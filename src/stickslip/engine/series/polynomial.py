@@ -12,11 +12,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import entry, inlined, kernel
-from stickslip.engine.compile.signature import Floats1
-from stickslip.engine.memory.addresses import room_for
-from stickslip.engine.memory.simd import fused
 from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.kernels.kernels import entry, inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
+from stickslip.foundation.kernels.memory.simd import fused
+from stickslip.foundation.kernels.signature import Floats1
 
 Floats = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.foundation.kernels.kernels import kernel
 
 STAGES = 9
 """Number of Radau points in a step (1), which gives order 17 at the ends of steps and 10 between them."""

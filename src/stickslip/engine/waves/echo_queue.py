@@ -14,15 +14,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import entry, kernel
-from stickslip.engine.compile.signature import Integers1
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.contact.far_end import is_rigid
-from stickslip.engine.memory.addresses import bits_of
 from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.merged_creep import plan_group
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import bits_of
+from stickslip.foundation.kernels.signature import Integers1
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import entry, kernel
 from stickslip.engine.contact.pressing import tone_along
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import entry, kernel
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Kernels: functions of the engine of which machine code is made when the package is built (`engine.build`).
+"""Kernels: functions of which machine code is made when the package is built (`engine.build`).
 
 Compiled code calls them by name. Python calls those that are an `entry`, through ctypes, which lets other threads go on meanwhile.
 """
@@ -10,16 +10,16 @@ from ctypes import CFUNCTYPE
 from functools import cached_property
 from typing import Any, ClassVar, TypeVar
 
-from stickslip.engine.compile.code import address_of_entry
-from stickslip.engine.compile.lock import LOCK
-from stickslip.engine.compile.signature import flattened, signature_of
-from stickslip.engine.compile.uncompiled import UNCOMPILED, as_python
+from stickslip.foundation.kernels.code import address_of_entry
+from stickslip.foundation.kernels.lock import LOCK
+from stickslip.foundation.kernels.signature import flattened, signature_of
+from stickslip.foundation.kernels.uncompiled import UNCOMPILED, as_python
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 class Kernel:
-    """A function of the engine, which compiled code calls; one that `is_inlined` is put in place wherever it is called."""
+    """A function that compiled code calls; one that `is_inlined` is put in place wherever it is called."""
 
     def __init__(self, function: Callable[..., Any], is_inlined: bool = False) -> None:
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
@@ -67,7 +67,7 @@ class Entry(Kernel):
 
 
 def kernel(function: F) -> F:
-    """Return a function of the engine that compiled code calls."""
+    """Return a function that compiled code calls."""
     return as_python(function) if UNCOMPILED else Kernel(function)  # type: ignore[return-value] # called as what it stands for
 
 
@@ -77,5 +77,5 @@ def inlined(function: F) -> F:
 
 
 def entry(function: F) -> F:
-    """Return a function of the engine that compiled code and Python call."""
+    """Return a function that compiled code and Python call."""
     return as_python(function) if UNCOMPILED else Entry(function)  # type: ignore[return-value]

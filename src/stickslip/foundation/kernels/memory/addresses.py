@@ -1,6 +1,6 @@
 """Addresses and bits, which compiled code reads, writes and calls.
 
-The functions here are plain Python, for an engine without compiler; machine code has rules of its own for them (`engine.build`).
+The functions here are plain Python, for use without compiler; machine code has rules of its own for them (`kernels.compiler`).
 The engine calls formulas and parts of itself through their addresses, so that a new law compiles nothing of the engine.
 """
 
@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.engine.compile.uncompiled import Pointer, call, pointer_at
+from stickslip.foundation.kernels.uncompiled import Pointer, call, pointer_at
 
 
 class CallAt:
@@ -21,7 +21,7 @@ class CallAt:
     """
 
     known: ClassVar[list[CallAt]] = []
-    """All such functions, for which `engine.build` has rules."""
+    """All such functions, for which `kernels.compiler` has rules."""
 
     def __init__(self, kinds: str, result: str = "") -> None:
         self.kinds, self.result = kinds, result

@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Self, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.uncompiled import Pointer, pointer_at
+from stickslip.foundation.kernels.uncompiled import Pointer, pointer_at
 
 Floats = NDArray[np.float64]
 

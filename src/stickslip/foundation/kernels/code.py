@@ -3,8 +3,8 @@
 Machine code is executed. The folder of the cache must therefore belong to this user alone (see `private_folder`); without such a
 folder each process compiles for itself. What came with the package is as safe as the package.
 
-Every file carries a checksum (`sealed_files`), because nobody else checks what is loaded: of 300 machine codes with one wrong bit 30
-ended the process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is made again.
+Every file carries a checksum (`sealed_files`), because nobody else checks what is loaded: of 300 machine codes with one wrong bit
+30 ended the process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is made again.
 
 The names of the folders contain the key of all code that is compiled (`code_key`), so that an edited kernel never meets its old
 machine code, and an edited comment, docstring or line break leaves it as it is; and what processor it is for.
@@ -25,9 +25,9 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
-from stickslip.engine.compile.processor import PROCESSOR
 from stickslip.foundation.code_key import PACKAGE, SHIPPED, key_of_files
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.processor import PROCESSOR
 from stickslip.foundation.private_folder import private_folder
 from stickslip.foundation.sealed_files import cache_root, read_sealed, tell, write_sealed
 
@@ -36,8 +36,8 @@ LARGEST_CACHE = 500_000_000
 LOOK_AFTER = 10_000_000
 """The size of the cache is looked at again after a process has written this many bytes, so that a long one keeps the bound."""
 COMPILED_FOLDERS = (
-    *("engine/build", "engine/compile", "engine/contact", "engine/contact_step", "engine/folds", "engine/formula_code"),
-    *("engine/lanes", "engine/memory", "engine/radau", "engine/series", "engine/state", "engine/waves"),
+    *("engine/contact", "engine/contact_step", "engine/folds", "engine/formula_code", "engine/lanes", "engine/radau"),
+    *("engine/series", "engine/state", "engine/waves", "foundation/kernels"),
     "friction/formula/operations",
 )
 """Folders of the package whose files all enter the key, because they hold compiled functions or write them."""
@@ -198,7 +198,7 @@ def made_now(entry: Any) -> bytes:
     """Return the machine code of an entry, after a line that says why it has to be made."""
     announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
     try:
-        from stickslip.engine.build.objects import object_of
+        from stickslip.foundation.kernels.compiler.objects import object_of
     except ImportError as error:
         raise InputError(
             f"{why_not_shipped()}, and the compiler that would make it is missing ({error}): pip install 'stickslip[compiler]'"

@@ -2,7 +2,7 @@
 
 A function written for floats serves lanes as well. Compiled for lanes, it computes in each lane exactly what it computes for a
 float, bit for bit. It must not contain decisions (if, while) that depend on lanes. Here are the operations that Python lacks, as
-plain Python for floats; machine code has rules of its own for them, and for lanes (`engine.build`).
+plain Python for floats; machine code has rules of its own for them, and for lanes (`kernels.compiler`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.compile.processor import PROCESSOR
+from stickslip.foundation.kernels.processor import PROCESSOR
 
 WIDTH = PROCESSOR.lanes
 """Number of lanes."""

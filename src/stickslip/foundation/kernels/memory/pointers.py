@@ -4,7 +4,7 @@ A record may lie in memory as it is, or in lanes: then each of its places holds 
 Compiled code sees such memory in two ways. `all_lanes(record)(address).rate` is a number in every lane: the processor works on all
 at once. `one_lane(record)(address)[n].rate` is the number of lane n. A row of floats is indexed in both.
 
-The functions here are plain Python, for an engine without compiler; machine code has rules of its own for them (`engine.build`).
+The functions here are plain Python, for use without compiler; machine code has rules of its own for them (`kernels.compiler`).
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from __future__ import annotations
 from enum import Enum, auto
 from typing import Any, ClassVar
 
-from stickslip.engine.compile.uncompiled import Pointer
-from stickslip.engine.memory.records import FLOATS, INTEGERS, AddressOf, MemoryRecord
+from stickslip.foundation.kernels.memory.records import FLOATS, INTEGERS, AddressOf, MemoryRecord
+from stickslip.foundation.kernels.uncompiled import Pointer
 
 
 class View(Enum):
@@ -32,7 +32,7 @@ class SeenAs:
     """A function for compiled code that sees memory as `kind`: given as an array, an address, a pointer or a record."""
 
     known: ClassVar[list[SeenAs]] = []
-    """All such functions, for which `engine.build` has rules."""
+    """All such functions, for which `kernels.compiler` has rules."""
 
     def __init__(self, kind: AddressOf | type[MemoryRecord], view: View = View.PLAIN) -> None:
         self.kind, self.view = kind, view

@@ -1,9 +1,9 @@
 """Let numba write the code of one function after the other, for a module that is optimised once.
 
 By default numba makes machine code of every function, and optimises each one together with all functions that it calls, again at
-every level of calls. Here a function becomes typed code and nothing more; only the whole that an entry needs is linked, optimised and
-turned into machine code. That takes a third of the time, and gives the same bits. It builds on classes of numba that are not public:
-where one of them is missing or has changed, each function is compiled as numba does by default (`WHY_PLAIN`).
+every level of calls. Here a function becomes typed code and nothing more; only the whole that an entry needs is linked, optimised
+and turned into machine code. That takes a third of the time, and gives the same bits. It builds on classes of numba that are not
+public: where one of them is missing, each function is compiled as numba does by default (`WHY_PLAIN`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import llvmlite.binding as llvm
 from numba import cfunc, njit, types
 from numba.extending import models, register_model, typeof_impl
 
-from stickslip.engine.compile.kernels import Kernel
+from stickslip.foundation.kernels.kernels import Kernel
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "_nrt": False}
 """Options of all kernels: divisions by zero give infinity or NaN as in numpy, and a product and a sum may be fused into one."""
@@ -65,8 +65,8 @@ if not WHY_PLAIN:
         def finalize(self) -> None:
             """Close the library without linking anything.
 
-            The linkage is weak: a linker may drop a function of linkage "linkonce" that nobody has asked for yet, and a part that is
-            linked later may ask for it.
+            The linkage is weak: a linker may drop a function of linkage "linkonce" that nobody has asked for yet, and a part that
+            is linked later may ask for it.
             """
             self._raise_if_finalized()
             set_linkage(self._final_module, {llvm.Linkage.external, llvm.Linkage.linkonce_odr}, llvm.Linkage.weak_odr)
