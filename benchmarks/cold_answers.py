@@ -132,7 +132,8 @@ def measured(
     """Ask each command in each tree and each peer in turn, so that what else the machine does meets all of them alike."""
     times = {command: [Times() for _ in trees] for command in commands}
     beside: dict[Peer, list[float]] = {peer: [] for peer in peers}
-    for _ in range(repeats):
+    for turn in range(repeats):
+        print(f"turn {turn + 1} of {repeats}", file=sys.stderr, flush=True)  # noqa: T201 - a script
         for command, each in times.items():
             for tree, found in zip(trees, each, strict=True):
                 ask(command, tree, found)
