@@ -64,7 +64,8 @@ class Times:
 
 def answered(command: Sequence[str], folder: str, **variables: str) -> float:
     """Return the processor time of a Python process that answers. Raises SystemExit with its last line if it fails."""
-    done = fresh.run([sys.executable, *command], folder, os.environ | variables)
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    done = fresh.run([sys.executable, *command], folder, kept | variables)
     if done.code:
         raise SystemExit(f"{' '.join(command)}: {done.last_line}")
     return done.spent
