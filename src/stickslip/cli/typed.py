@@ -81,8 +81,8 @@ def typed(parameter: Any) -> Any:
 
 def is_plain(kind: Any, given: Any) -> bool:
     """Return True if a value of this kind is there already, or if a text is one as it is usually typed."""
-    if not isinstance(given, str) or not given.isprintable():
-        return kind in (str, int, float, Path) and isinstance(given, kind) and not isinstance(given, str)
+    if not isinstance(given, str):
+        return kind in (int, float, Path) and isinstance(given, kind)
     if kind is Path:  # typer refuses what cannot be read
         return os.access(given, os.R_OK) or not os.access(given, os.F_OK)
     return kind is str or (kind in NUMBERS and NUMBERS[kind].fullmatch(given) is not None)
