@@ -132,7 +132,7 @@ def sweep(
 
         with FORMAT.reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
-    if (found.status == NOT_RUN).all():
+    if (found.status.values == NOT_RUN).all():
         announce(out)
         raise KeyboardInterrupt
     if figure is not None:
@@ -141,7 +141,7 @@ def sweep(
     if spent is not None:
         show_slowest(plan, spent)
     announce(out, figure)
-    if (found.status == NOT_RUN).any():
+    if (found.status.values == NOT_RUN).any():
         raise KeyboardInterrupt
     raise typer.Exit(code)
 
