@@ -6,20 +6,18 @@ Bounds need not be sharp. Those of `Enclosure` and `on_discs` include rounding; 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.differences import slope_formula
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
 from stickslip.friction.formula.operations import operation_of
-from stickslip.friction.formula.operations.enclosures import Rule
-from stickslip.friction.formula.operations.hyperbolic import logistic
+from stickslip.friction.formula.operations.enclosures import ORDERS
 from stickslip.friction.formula.operations.sets import EVERYTHING, Disc, Interval
+from stickslip.friction.formula.tape import Formulas, enclose_cells, tape_of
 
 
 def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: Interval) -> Interval:
@@ -51,63 +49,32 @@ def _number(node: Expression, numbers: Mapping[str, Any]) -> Any:
 
 
 class Enclosure:
-    """Bounds of a formula's Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
+    """Bounds of formulas' Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
 
-    Slip (m) and the law's numbers are single ones, have one entry for each member, or are intervals of such. What does not depend
-    on the slip rate is worked out once.
+    `numbers` holds the law's numbers by name. They and the slip (m) are single ones, have one entry for each member, or are
+    intervals of such. `formula` is the place of each member's formula in `trees`.
     """
 
-    def __init__(self, tree: Expression, numbers: Mapping[str, Any], slip: Any) -> None:
+    def __init__(self, trees: tuple[Expression, ...], numbers: Mapping[str, Any], slip: Any, formula: Any = 0) -> None:
         """Raise InputError for a formula with a state."""
-        self._steps = _steps(tree)
-        self._still: list[Floats | None] = []
-        with np.errstate(all="ignore"):
-            for node, rule, places in self._steps:
-                arguments = [self._still[place] for place in places]
-                if node is RATE or any(argument is None for argument in arguments):
-                    self._still.append(None)
-                elif rule is not None:
-                    self._still.append(rule(node, *arguments))
-                else:
-                    self._still.append(_ends(slip if node is SLIP else _number(node, numbers)).reshape(2, 1, -1))
+        tape = tape_of(trees, tuple(numbers))
+        given = [_ends(one).reshape(2, -1) for one in (*numbers.values(), slip)]
+        members = max(np.size(formula), *(one.shape[1] for one in given))
+        low, high = np.stack([np.broadcast_to(one, (2, members)) for one in given], axis=-1)
+        of = np.broadcast_to(np.asarray(formula, np.int64), members)
+        room = np.empty((int(np.max(np.diff(tape.first))), 2 * ORDERS))
+        numbers_of_members = np.ascontiguousarray(low), np.ascontiguousarray(high)
+        self.formulas = Formulas(*tape, np.ascontiguousarray(of), *numbers_of_members, room, np.full(1, -1))
 
     def on(self, low: Floats, high: Floats, member: Any = 0) -> Floats:
-        """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`.
+        """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`; shape (2, 3, cells).
 
-        They are an array as in `operations.enclosures`: low and high ends of mu, dmu/dv (s/m) and half of d2mu/dv2 (s2/m2), of
-        which those at the end may be left out if they are 0.
+        They are low and high ends of mu, dmu/dv (s/m) and half of d2mu/dv2 (s2/m2).
         """
-        one = np.ones_like(low)
-        rate = np.array([[low, one], [high, one]])
-        found: list[Floats] = []
-        with np.errstate(all="ignore"):
-            for (node, rule, places), still in zip(self._steps, self._still, strict=True):
-                if still is not None:
-                    found.append(still if still.shape[2] == 1 else still[:, :, member])
-                else:
-                    found.append(rate if rule is None else rule(node, *(found[place] for place in places)))
-        return found[-1]
-
-
-@lru_cache(maxsize=256)
-def _steps(tree: Expression) -> tuple[tuple[Expression, Rule | None, tuple[int, ...]], ...]:
-    """Return the nodes of a formula in order, each with its rule and the places of its arguments."""
-    made: dict[Expression, Expression] = {}
-    for node in nodes_of(tree):
-        arguments = tuple(made[argument] for argument in node.arguments)
-        copy = Expression(node.operation, arguments, node.name, node.value)
-        made[node] = operation_of(copy).bounded(copy) if arguments else {SLIP: SLIP, RATE: RATE}.get(node, node)
-    nodes = nodes_of(made[tree])
-    if not {*STATES}.isdisjoint(nodes):
-        raise InputError("the friction law has a state of its own: its slip rate is no root of the contact equation")
-    place = {node: k for k, node in enumerate(nodes)}
-    return tuple((node, _rule(node), tuple(place[argument] for argument in node.arguments)) for node in nodes)
-
-
-def _rule(node: Expression) -> Rule | None:
-    if node.operation == "logistic":
-        return logistic
-    return operation_of(node).taylor if node.arguments else None
+        found = np.empty((len(low), 2 * ORDERS))
+        members = np.ascontiguousarray(np.broadcast_to(np.asarray(member, np.int64), low.shape))
+        enclose_cells(*self.formulas, members, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
+        return found.T.reshape(2, ORDERS, -1)
 
 
 def bends_one_way(tree: Expression, numbers: Mapping[str, Any], slip: Interval) -> bool:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import LIBRARY, function, outward
+from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, outward
 from stickslip.friction.formula.operations.operation import (
     LARGEST_EXPONENT,
     TINIEST,
@@ -52,10 +53,17 @@ def _exp_slope(end: Any, a: Change) -> Any:
         return end * a.slope
 
 
-def _exp_slopes(a: Floats) -> tuple[Floats, Floats]:
-    """Return bounds of f' and f''/2 of an exponential on an interval."""
-    value = outward(np.exp(a), LIBRARY)
-    return value, 0.5 * value
+@exact
+def _exp_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = outward(math.exp(w[i, 0]), math.exp(w[i, 3]), LIBRARY)
+    chain(w, n, i, p, (low, high), (low, high), (0.5 * low, 0.5 * high))
+
+
+@exact
+def _expm1_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = outward(math.expm1(w[i, 0]), math.expm1(w[i, 3]), LIBRARY)
+    a, b = outward(math.exp(w[i, 0]), math.exp(w[i, 3]), LIBRARY)
+    chain(w, n, i, p, (max(low, -1.0), max(high, -1.0)), (a, b), (0.5 * a, 0.5 * b))
 
 
 def _exp_disc(a: Disc) -> Disc:
@@ -121,7 +129,7 @@ EXP = Operation(
     slope=_exp_slope,
     slope_formula=lambda node, da: node * da,
     bounds=growing(np.exp),
-    taylor=function(growing(np.exp), lambda value, a: (value, 0.5 * value)),
+    taylor=_exp_series,
     disc=_exp_disc,
     order_zero=_exp_order_zero,
     derivative=_exp_derivative,
@@ -164,7 +172,7 @@ EXPM1 = Operation(
     slope=lambda end, a: _exp_slope(np.exp(a.value), a),
     slope_formula=lambda node, da: exp_of(node) * da,
     bounds=growing(np.expm1),
-    taylor=function(growing(np.expm1), lambda value, a: _exp_slopes(a), within=(-1.0, np.inf)),
+    taylor=_expm1_series,
     disc=_expm1_disc,
     order_zero=_expm1_order_zero,
     derivative=lambda writer, node, da: f"{writer.coefficient(exp_of(node), 0)} * {da}",

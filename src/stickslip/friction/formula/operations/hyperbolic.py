@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import Expression, nodes_of
-from stickslip.friction.formula.operations.enclosures import LIBRARY, function, multiply, negative, outward, square
+from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain, multiply, outward, square
 from stickslip.friction.formula.operations.operation import Change, Levels, Operation, Radius, Recurrence, SeriesWriter
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
@@ -45,31 +45,45 @@ def _tanh_disc(a: Disc) -> Disc:
     return Disc(centre, np.fmin(near, far), 0.0).rounded(OF_FUNCTION)
 
 
-def _falling(function: Callable[[Floats], Floats], a: Floats, error: float) -> Floats:
-    """Bound a function that falls from 1 to 0 with the magnitude of its argument."""
-    sizes = np.array([np.maximum(-a[0], a[1]), np.maximum(np.maximum(a[0], -a[1]), 0.0)])
-    return np.minimum(outward(function(sizes), error), 1.0)
+@exact
+def _sizes(a: float, b: float) -> Ends:
+    """Return the largest and the smallest magnitude in an interval."""
+    return max(-a, b), max(max(a, -b), 0.0)
 
 
-def _across(x: Floats) -> Floats:
+@exact
+def _across(x: float) -> float:
     """Return 1 / cosh(x)**2 for x >= 0."""
-    e = np.exp(-2.0 * np.minimum(x, 1e3))
+    e = math.exp(-2.0 * min(x, 1e3))
     return 4.0 * e / ((1.0 + e) * (1.0 + e))
 
 
-def _tanh_slopes(value: Floats, a: Floats) -> tuple[Floats, Floats]:
-    slope = _falling(_across, a, 4.0 * LIBRARY)
-    return slope, negative(multiply(value, slope))
+@exact
+def _across_on(a: float, b: float) -> Ends:
+    """Return the bounds of 1 / cosh(x)**2, which falls with the magnitude of x."""
+    largest, smallest = _sizes(a, b)
+    low, high = outward(_across(largest), _across(smallest), 4.0 * LIBRARY)
+    return min(low, 1.0), min(high, 1.0)
 
 
-def _logistic_slopes(_: Floats, a: Floats) -> tuple[Floats, Floats]:
-    half = outward(np.tanh(0.5 * a), LIBRARY)
-    slope = 0.25 * _falling(_across, 0.5 * a, 4.0 * LIBRARY)
-    return negative(slope), 0.5 * multiply(half, slope)
+@exact
+def _tanh_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = outward(math.tanh(w[i, 0]), math.tanh(w[i, 3]), LIBRARY)
+    low, high = max(low, -1.0), min(high, 1.0)
+    a, b = _across_on(w[i, 0], w[i, 3])
+    less, more = multiply(low, high, a, b)
+    chain(w, n, i, p, (low, high), (a, b), (-more, -less))
 
 
-logistic = function(lambda _, a: 1.0 / (1.0 + np.exp(a[::-1])), _logistic_slopes, 2.0 * LIBRARY, within=(0.0, 1.0))
-"""The rule of `Operation.taylor` for 1 / (1 + exp(a)), which is no operation of its own but in `Operation.bounded`."""
+@exact
+def logistic(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    """Write the coefficients of 1 / (1 + exp(a)), which is no operation of its own but in `Operation.bounded`."""
+    low, high = outward(1.0 / (1.0 + math.exp(w[i, 3])), 1.0 / (1.0 + math.exp(w[i, 0])), 2.0 * LIBRARY)
+    a, b = _across_on(0.5 * w[i, 0], 0.5 * w[i, 3])
+    a, b = 0.25 * a, 0.25 * b
+    c, d = outward(math.tanh(0.5 * w[i, 0]), math.tanh(0.5 * w[i, 3]), LIBRARY)
+    less, more = multiply(c, d, a, b)
+    chain(w, n, i, p, (max(low, 0.0), min(high, 1.0)), (-b, -a), (0.5 * less, 0.5 * more))
 
 
 def tanh_difference(value: float, now: float, step: float) -> float:
@@ -102,7 +116,7 @@ TANH = Operation(
     slope=_tanh_slope,
     slope_formula=lambda node, da: (1.0 - node * node) * da,
     bounds=growing(np.tanh),
-    taylor=function(growing(np.tanh), _tanh_slopes, within=(-1.0, 1.0)),
+    taylor=_tanh_series,
     disc=_tanh_disc,
     order_zero=_tanh_order_zero,
     derivative=_tanh_derivative,
@@ -133,9 +147,16 @@ def _arcsinh_step(start: Any, end: Any, a: Change) -> Any:
     return np.where(np.maximum(p, q) > 1e150, end - start, step)
 
 
-def _arcsinh_slopes(_: Floats, a: Floats) -> tuple[Floats, Floats]:
-    slope = _falling(lambda x: 1.0 / np.hypot(1.0, x), a, 2.0 * LIBRARY)
-    return slope, -0.5 * multiply(a, multiply(square(slope), slope))[::-1]
+@exact
+def _arcsinh_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    largest, smallest = _sizes(w[i, 0], w[i, 3])
+    a, b = outward(1.0 / math.hypot(1.0, largest), 1.0 / math.hypot(1.0, smallest), 2.0 * LIBRARY)
+    a, b = min(a, 1.0), min(b, 1.0)
+    c, d = square(a, b)
+    c, d = multiply(c, d, a, b)
+    less, more = multiply(w[i, 0], w[i, 3], c, d)
+    value = outward(math.asinh(w[i, 0]), math.asinh(w[i, 3]), LIBRARY)
+    chain(w, n, i, p, value, (a, b), (-0.5 * more, -0.5 * less))
 
 
 def arcsinh_difference(reference: float, now: float, step: float) -> float:
@@ -170,7 +191,7 @@ ARCSINH = Operation(
     slope=lambda end, a: a.slope / np.hypot(1.0, a.value),
     slope_formula=lambda node, da: da / root_of(node),
     bounds=growing(np.arcsinh),
-    taylor=function(growing(np.arcsinh), _arcsinh_slopes),
+    taylor=_arcsinh_series,
     # its derivative 1 / sqrt((z - i)(z + i)) has its singularities at i and -i
     disc=lambda a: Disc(np.arcsinh(a.centre), -np.log1p(-a.radius / np.hypot(1.0, a.centre)), 0.0).rounded(OF_FUNCTION),
     order_zero=_arcsinh_order_zero,

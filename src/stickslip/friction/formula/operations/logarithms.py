@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import ONE_STEP, function, of_positive, outward, square
+from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, chain, of_positive, outward, rounded, square
 from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
@@ -20,10 +21,29 @@ def log_difference(reference: float, now: float, step: float) -> float:
     return math.log(now / reference)
 
 
-def _slopes(a: Floats) -> tuple[Floats, Floats]:
-    """Return bounds of f' and f''/2 of a logarithm."""
-    inverse = of_positive(a)
-    return inverse, -0.5 * square(inverse)[::-1]
+@exact
+def _log_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = -math.inf, math.inf
+    if w[i, 3] >= 0.0:
+        low, high = outward(math.log(max(w[i, 0], 0.0)), math.log(w[i, 3]), LIBRARY)
+    _by_inverse(w, n, i, p, low, high, w[i, 0], w[i, 3])
+
+
+@exact
+def _log1p_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = -math.inf, math.inf
+    if w[i, 3] >= -1.0:
+        low, high = outward(math.log1p(max(w[i, 0], -1.0)), math.log1p(w[i, 3]), LIBRARY)
+    a, b = rounded(1.0 + w[i, 0], 1.0 + w[i, 3], ONE_STEP)
+    _by_inverse(w, n, i, p, low, high, a, b)
+
+
+@exact
+def _by_inverse(w: Floats, n: int, i: int, p: int, low: float, high: float, a: float, b: float) -> None:
+    """Write the coefficients of a logarithm between `low` and `high`, whose derivative is 1 / [a, b]."""
+    c, d = of_positive(a, b)
+    less, more = square(c, d)
+    chain(w, n, i, p, (low, high), (c, d), (-0.5 * more, -0.5 * less))
 
 
 def _coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
@@ -43,7 +63,7 @@ LOG = Operation(
     slope=lambda end, a: a.slope / a.value,
     slope_formula=lambda node, da: da / node.arguments[0],
     bounds=growing(np.log, least=0.0),
-    taylor=function(growing(np.log, least=0.0), lambda value, a: _slopes(a)),
+    taylor=_log_series,
     disc=lambda a: Disc(np.log(a.centre), a.turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log_order_zero,
     derivative=lambda writer, node, da: f"{da} / {writer.coefficient(node.arguments[0], 0)}",
@@ -68,7 +88,7 @@ LOG1P = Operation(
     slope=lambda end, a: a.slope / (1.0 + a.value),
     slope_formula=lambda node, da: da / (1.0 + node.arguments[0]),
     bounds=growing(np.log1p, least=-1.0),
-    taylor=function(growing(np.log1p, least=-1.0), lambda value, a: _slopes(outward(1.0 + a, ONE_STEP, 0.0))),
+    taylor=_log1p_series,
     disc=lambda a: Disc(np.log1p(a.centre), Disc(1.0 + a.centre, a.radius, 0.0).turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log1p_order_zero,
     derivative=lambda writer, node, da: f"{da} / (1.0 + {writer.coefficient(node.arguments[0], 0)})",

@@ -17,7 +17,6 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import Expression, as_expression
-from stickslip.friction.formula.operations.enclosures import Rule
 from stickslip.friction.formula.operations.sets import Disc
 
 LARGEST_EXPONENT = 150.0
@@ -201,8 +200,8 @@ class Operation:
     """The formula of its derivative: from the node, and the formula of each argument's derivative."""
     bounds: Callable[..., Floats]
     """Bounds of its value: from the node and the interval of each argument, both ends as one array. They leave out rounding."""
-    taylor: Rule
-    """Its Taylor coefficients by the slip rate as intervals, rounding included: from the node and those of its arguments."""
+    taylor: Callable[..., None]
+    """Its Taylor coefficients by the slip rate as intervals, rounding included: see `operations.enclosures`."""
     disc: Callable[..., Disc]
     """The disc that holds its values, rounding included: from that of each argument."""
     order_zero: Callable[[Levels, Expression], Mapping[str, str]]

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.compiled import exact
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, Expression, depends_on
-from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, chain, function, multiply, of_positive, outward
+from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, multiply, of_positive, outward, rounded
 from stickslip.friction.formula.operations.operation import (
     BallsWriter,
     Change,
@@ -58,17 +59,27 @@ def _pow_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
     return unless(a[0] < 0.0, hull(*(np.power(base, exponent) for base in a for exponent in b)))
 
 
-def _pow_taylor(node: Expression, a: Floats, b: Floats) -> Floats:
-    """Return the coefficients of a power; with an exponent that varies it is `bounded` as an exponential."""
+@exact
+def _power(a: float, b: float, c: float, d: float) -> Ends:
+    """Return [a, b] to the power of [c, d]."""
+    e, f, g, h = math.pow(a, c), math.pow(a, d), math.pow(b, c), math.pow(b, d)
+    if a < 0.0 or math.isnan(e) or math.isnan(f) or math.isnan(g) or math.isnan(h):
+        return -math.inf, math.inf
+    return outward(min(min(e, f), min(g, h)), max(max(e, f), max(g, h)), 2.0 * LIBRARY)
 
-    def power(exponent: Floats) -> Floats:
-        return outward(_pow_bounds(node, a[:, :1], exponent), 2.0 * LIBRARY)
 
-    def slopes() -> tuple[Floats, Floats]:
-        less, twice_less = (outward(b - k, ONE_STEP, 0.0) for k in (1.0, 2.0))
-        return multiply(b, power(less)), 0.5 * multiply(multiply(b, less), power(twice_less))
-
-    return chain(power(b), slopes, a)
+@exact
+def _pow_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    """Write the coefficients of a power; with an exponent that varies it is `bounded` as an exponential."""
+    a, b, c, d = w[i, 0], w[i, 3], w[j, 0], w[j, 3]
+    less, more = rounded(c - 1.0, d - 1.0, ONE_STEP)
+    least, most = rounded(c - 2.0, d - 2.0, ONE_STEP)
+    low, high = _power(a, b, less, more)
+    first = multiply(c, d, low, high)
+    low, high = _power(a, b, least, most)
+    least, most = multiply(c, d, less, more)
+    low, high = multiply(least, most, low, high)
+    chain(w, n, i, p, _power(a, b, c, d), first, (0.5 * low, 0.5 * high))
 
 
 def _pow_bounded(node: Expression) -> Expression:
@@ -143,7 +154,7 @@ POW = Operation(
     slope=lambda end, a, b: chained(b.reference * np.power(a.value, b.reference - 1.0), a.slope),
     slope_formula=lambda node, da, _: node.arguments[1] * node.arguments[0] ** (node.arguments[1] - 1.0) * da,
     bounds=_pow_bounds,
-    taylor=_pow_taylor,
+    taylor=_pow_series,
     bounded=_pow_bounded,
     disc=_pow_disc,
     unit=_pow_unit,
@@ -167,9 +178,15 @@ def _sqrt_step(start: Any, end: Any, a: Change) -> Any:
     return np.divide(a.step, start + end, where=np.asarray(start + end) > 0, out=np.zeros(np.shape(end)))
 
 
-def _sqrt_slopes(value: Floats, a: Floats) -> tuple[Floats, Floats]:
-    slope = of_positive(2.0 * value)
-    return slope, -0.25 * multiply(slope, of_positive(a))[::-1]
+@exact
+def _sqrt_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = -math.inf, math.inf
+    if w[i, 3] >= 0.0:
+        low, high = outward(math.sqrt(max(w[i, 0], 0.0)), math.sqrt(w[i, 3]), LIBRARY)
+    a, b = of_positive(2.0 * low, 2.0 * high)
+    c, d = of_positive(w[i, 0], w[i, 3])
+    less, more = multiply(a, b, c, d)
+    chain(w, n, i, p, (low, high), (a, b), (-0.25 * more, -0.25 * less))
 
 
 def _sqrt_disc(a: Disc) -> Disc:
@@ -195,7 +212,7 @@ SQRT = Operation(
     slope=lambda end, a: chained(np.divide(0.5, end), a.slope),
     slope_formula=lambda node, da: 0.5 * da / node,
     bounds=growing(np.sqrt, least=0.0),
-    taylor=function(growing(np.sqrt, least=0.0), _sqrt_slopes),
+    taylor=_sqrt_series,
     disc=_sqrt_disc,
     unit=lambda node, a: _raised(a, Fraction(1, 2)),
     order_zero=_sqrt_order_zero,

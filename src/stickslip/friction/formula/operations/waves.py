@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, negative, outward
+from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain
 from stickslip.friction.formula.operations.operation import (
     BallsWriter,
     Change,
@@ -66,16 +68,38 @@ def _holds_a_turn(a: Any, b: Any, offset: float) -> Any:
 _sin_bounds, _cos_bounds = _bounds(np.sin, 0.25), _bounds(np.cos, 0.0)
 
 
-def _sine(a: Floats) -> Floats:
-    return _within_one(_sin_bounds(None, a))
+@exact
+def _holds(low: float, high: float, offset: float) -> bool:
+    """Return what `_holds_a_turn` does, for one interval."""
+    first, last = low / TURN - offset, high / TURN - offset
+    slack = LIBRARY * (2.0 + max(abs(first), abs(last)))
+    return math.floor(last + slack) >= math.ceil(first - slack)
 
 
-def _cosine(a: Floats) -> Floats:
-    return _within_one(_cos_bounds(None, a))
+@exact
+def _within_one(low: float, high: float, one: float, other: float, top: float) -> Ends:
+    """Return the bounds of sin or cos from its values at both ends; the largest is `top` turns beyond 0."""
+    if not (abs(low) < 1e15 and abs(high) < 1e15 and high - low < TURN):
+        return -1.0, 1.0
+    least = -1.0 if _holds(low, high, top + 0.5) else min(one, other)
+    most = 1.0 if _holds(low, high, top) else max(one, other)
+    return max(least - LIBRARY, -1.0), min(most + LIBRARY, 1.0)
 
 
-def _within_one(found: Floats) -> Floats:
-    return np.clip(outward(found, 0.0, LIBRARY, positive=False), -1.0, 1.0)
+@exact
+def _sin_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = w[i, 0], w[i, 3]
+    a, b = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
+    c, d = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
+    chain(w, n, i, p, (a, b), (c, d), (-0.5 * b, -0.5 * a))
+
+
+@exact
+def _cos_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+    low, high = w[i, 0], w[i, 3]
+    a, b = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
+    c, d = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
+    chain(w, n, i, p, (a, b), (-d, -c), (-0.5 * b, -0.5 * a))
 
 
 def _disc(own: Any, other: Any, radius: Any) -> Disc:
@@ -119,7 +143,7 @@ SIN = Operation(
     slope=lambda end, a: np.cos(a.value) * a.slope,
     slope_formula=lambda node, da: both(node)[1] * da,
     bounds=_sin_bounds,
-    taylor=lambda node, a: chain(_sine(a[:, :1]), lambda: (_cosine(a[:, :1]), -0.5 * _sine(a[:, :1])[::-1]), a),
+    taylor=_sin_series,
     disc=lambda a: _disc(np.sin(a.centre), np.cos(a.centre), a.radius),
     order_zero=lambda writer, node: _order_zero(writer, node, is_sine=True),
     derivative=lambda writer, node, da: f"{writer.coefficient(both(node)[1], 0)} * {da}",
@@ -135,7 +159,7 @@ COS = Operation(
     slope=lambda end, a: -np.sin(a.value) * a.slope,
     slope_formula=lambda node, da: 0.0 - both(node)[0] * da,
     bounds=_cos_bounds,
-    taylor=lambda node, a: chain(_cosine(a[:, :1]), lambda: (negative(_sine(a[:, :1])), -0.5 * _cosine(a[:, :1])[::-1]), a),
+    taylor=_cos_series,
     disc=lambda a: _disc(np.cos(a.centre), np.sin(a.centre), a.radius),
     order_zero=lambda writer, node: _order_zero(writer, node, is_sine=False),
     derivative=lambda writer, node, da: f"-{writer.coefficient(both(node)[0], 0)} * {da}",
