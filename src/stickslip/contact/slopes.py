@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
 from stickslip.friction.formula import Enclosure, Expression
+from stickslip.friction.formula.on_cells import Formulas, enclose
 from stickslip.friction.formula.operations.enclosures import add, multiply
-from stickslip.friction.formula.tape import Formulas, enclose
 from stickslip.problem import Resistance
 
 Integers = NDArray[np.int64]
@@ -46,25 +46,24 @@ class Bounds(NamedTuple):
     bend_high: float
 
 
+DAMPING, NORMAL, SLOW, FAST, BEGIN, END = range(6)
+"""Columns of `Contacts.pieces`, which are the fields of `Pieces` with the same names."""
+
+
 class Contacts(NamedTuple):
-    """What compiled code needs to bound g': the formulas of the pieces of the laws, and six numbers of `Pieces` for each piece."""
+    """What compiled code needs to bound g': the formulas of the pieces of the laws, and six numbers of each piece."""
 
     formulas: Formulas
-    damping: Floats
-    normal: Floats
-    slowest: Floats
-    fastest: Floats
-    begin: Floats
-    end: Floats
+    pieces: Floats
 
 
 @exact
 def slope_bounds(of: Contacts, piece: int, low: float, high: float) -> Bounds:
     """Bound g' and g'' on a cell of slip rates (m/s)."""
-    w, normal = of.formulas.room, of.normal[piece]
+    w, normal, damping = of.formulas.room, of.pieces[piece, NORMAL], of.pieces[piece, DAMPING]
     row = enclose(of.formulas, piece, low, high)
     a, b = multiply(normal, normal, w[row, 1], w[row, 4])
-    a, b = add(of.damping[piece], of.damping[piece], a, b)
+    a, b = add(damping, damping, a, b)
     c, d = multiply(2.0 * normal, 2.0 * normal, w[row, 2], w[row, 5])
     return Bounds(a, b, c, d)
 
@@ -154,11 +153,11 @@ class Pieces:
         bound_cells(*self.for_code, piece, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
         return Slopes(*found)
 
-    @property
-    def for_code(self) -> Sequence[Any]:
+    @cached_property
+    def for_code(self) -> tuple[Any, ...]:
         """What compiled code needs to bound g', one array after the other: see `Contacts`."""
         of = (self.damping, self.normal, self.slowest, self.fastest, self.begin, self.end)
-        return *self.enclosure.formulas, *(np.ascontiguousarray(one, float) for one in of)
+        return *self.enclosure.formulas, np.column_stack(of)
 
     def slopes_between(self, piece: Integers, edges: Floats) -> tuple[Slopes, Slopes]:
         """Bound g' and g'' at edges, and on the cells between those that follow each other along the first axis."""
@@ -179,29 +178,20 @@ class Pieces:
 
 
 @exact
-def bound_cells(
+def bound_cells(  # noqa: PLR0917 # arrays that cross from Python to compiled code
     steps: Integers,
     values: Floats,
-    first: Integers,
-    formula: Integers,
-    low_numbers: Floats,
-    high_numbers: Floats,
+    spans: Integers,
+    numbers: Floats,
     room: Floats,
-    present: Integers,
-    damping: Floats,
-    normal: Floats,
-    slowest: Floats,
-    fastest: Floats,
-    begin: Floats,
-    end: Floats,
+    pieces: Floats,
     piece: Integers,
     low: Floats,
     high: Floats,
     found: Floats,
 ) -> None:
     """Bound g' and g'' on cells of slip rates (m/s); `found` has the rows of `Slopes`."""
-    formulas = Formulas(steps, values, first, formula, low_numbers, high_numbers, room, present)
-    of = Contacts(formulas, damping, normal, slowest, fastest, begin, end)
+    of = Contacts(Formulas(steps, values, spans, numbers, room), pieces)
     for k in range(len(low)):
         found[0, k], found[1, k], found[2, k], found[3, k] = slope_bounds(of, piece[k], low[k], high[k])
 

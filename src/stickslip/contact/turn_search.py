@@ -7,10 +7,14 @@ from __future__ import annotations
 
 from stickslip.contact.slopes import (
     ABOVE,
+    BEGIN,
     BELOW,
+    END,
     FAR,
+    FAST,
     NARROW,
     RATIO,
+    SLOW,
     SLOWEST,
     Contacts,
     Integers,
@@ -22,7 +26,7 @@ from stickslip.contact.slopes import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
-from stickslip.friction.formula.tape import Formulas
+from stickslip.friction.formula.on_cells import Formulas
 
 NOISE = 4.0
 """A cell is not worth cutting if g' changes on it by no more than this multiple of the rounding of its bounds."""
@@ -37,23 +41,34 @@ PIECE, LOW, HIGH, BEFORE, AFTER, KNOWN = range(6)
 """Columns of tables of cells."""
 COLUMNS = 6
 
+EMPTY, TO_BE_CUT = -1, -2
+"""Knowledge about a cell that is examined: that there is no turn, and none."""
+
+Search = tuple[int, int, int, int]
+"""First piece of a contact, the one after its last, the number of turns that ends its search, and a row of the table of turns."""
+Place = tuple[int, float, float]
+"""Piece, and low and high end of a cell (m/s)."""
+Signs = tuple[int, int]
+"""Signs of g' at both ends of a cell."""
+
 
 @exact
-def put(cells: Floats, n: int, piece: int, low: float, high: float, before: int, after: int, known: int) -> int:
+def put(cells: Floats, n: int, place: Place, signs: Signs, known: int) -> int:
     """Write a cell into a row of a table, if there is room; return the number of the next row."""
     if n < len(cells):
-        cells[n, PIECE], cells[n, LOW], cells[n, HIGH] = piece, low, high
-        cells[n, BEFORE], cells[n, AFTER], cells[n, KNOWN] = before, after, known
+        cells[n, PIECE], cells[n, LOW], cells[n, HIGH] = place
+        cells[n, BEFORE], cells[n, AFTER] = signs
+        cells[n, KNOWN] = known
     return n + 1
 
 
 @exact
 def next_edge(of: Contacts, piece: int, edge: float) -> float:
     """Return the edge (m/s) of the first cells of a piece that follows another one; its upper end is repeated."""
-    start = max(BELOW * of.slowest[piece], SLOWEST)
-    after = (RATIO if edge < ABOVE * of.fastest[piece] else FAR) * edge
+    start = max(BELOW * of.pieces[piece, SLOW], SLOWEST)
+    after = (RATIO if edge < ABOVE * of.pieces[piece, FAST] else FAR) * edge
     after = start if edge < 0.5 * start else after
-    return of.end[piece] if 2.0 * after > of.end[piece] else after
+    return of.pieces[piece, END] if 2.0 * after > of.pieces[piece, END] else after
 
 
 @exact
@@ -63,8 +78,9 @@ def sign_at(of: Contacts, piece: int, rate: float) -> int:
 
 
 @exact
-def known_place(of: Contacts, piece: int, low: float, place: float, high: float, sign: int, left: Integers) -> tuple[float, int]:
-    """Return a place in a cell where the sign of g' is known, if there is any, and this sign."""
+def known_place(of: Contacts, cell: Place, place: float, sign: int, left: Integers) -> tuple[float, int]:
+    """Return a place in a cell where the sign of g' is known, if there is any, and this sign; `place` is tried already."""
+    piece, low, high = cell
     for k in range(1, NUDGES):
         if sign != 0:
             break
@@ -77,103 +93,115 @@ def known_place(of: Contacts, piece: int, low: float, place: float, high: float,
 
 
 @exact
-def first_cells(of: Contacts, piece: int, cells: Floats, n: int, ends: Integers, left: Integers) -> int:
-    """Write the cells of a piece before any is cut, and the signs of g' at its lower and upper end; return the next row."""
-    low, begin, end = of.begin[piece], of.begin[piece], of.end[piece]
-    before = sign_at(of, piece, low)
-    ends[0], known_to = before, low
+def first_cells(of: Contacts, piece: int, cells: Floats, ends: Integers, left: Integers) -> int:
+    """Write the cells of a piece before any is cut, fastest first, and the signs of g' at both its ends; return their number."""
+    begin, end = of.pieces[piece, BEGIN], of.pieces[piece, END]
+    low, known_to, before, n = begin, begin, sign_at(of, piece, begin), 0
+    ends[0] = before
     while low < end:
         high = next_edge(of, piece, low)
-        after = sign_at(of, piece, high)
-        edge, place = high, high
+        place, after = high, sign_at(of, piece, high)
         if begin < high < end:
-            place, after = known_place(of, piece, low, high, min(end, 2.0 * high), after, left)
+            place, after = known_place(of, (piece, low, min(end, 2.0 * high)), high, after, left)
         if known_to < place:
-            n = put(cells, n, piece, known_to, place, before, after, UNDECIDED)
-        low, known_to, before = edge, place, after
+            n = put(cells, n, (piece, known_to, place), (before, after), UNDECIDED)
+        low, known_to, before = high, place, after
     ends[1] = before
+    for k in range(min(n, len(cells)) // 2):
+        for column in range(COLUMNS):
+            cells[k, column], cells[n - 1 - k, column] = cells[n - 1 - k, column], cells[k, column]
     return n
 
 
 @exact
 def edges_of(of: Contacts, piece: int) -> int:
     """Return the number of edges of the first cells of a piece."""
-    many, edge = 1, of.begin[piece]
-    while edge < of.end[piece]:
+    many, edge = 1, of.pieces[piece, BEGIN]
+    while edge < of.pieces[piece, END]:
         edge = next_edge(of, piece, edge)
         many += 1
     return many
 
 
 @exact
-def examined(of: Contacts, cells: Floats, n: int, left: Integers) -> tuple[int, float, int]:
-    """Examine a cell: return PROVEN, UNDECIDED, -1 if there is no turn in it, or -2, with place and sign, if it is to be cut."""
-    piece, low, high = int(cells[n, PIECE]), cells[n, LOW], cells[n, HIGH]
+def examined(of: Contacts, cell: Floats, left: Integers) -> tuple[int, float, int]:
+    """Examine a cell: return PROVEN, UNDECIDED, EMPTY, or TO_BE_CUT, and the place and sign of g' where it is to be cut."""
+    piece, low, high = int(cell[PIECE]), cell[LOW], cell[HIGH]
     middle = cut(low, high)
     seen, there = slope_bounds(of, piece, low, high), slope_bounds(of, piece, middle, middle)
     left[0] -= 2
-    change = cells[n, BEFORE] * cells[n, AFTER]
+    change = cell[BEFORE] * cell[AFTER]
     reach = reach_of(seen, low, middle, high)
     bends, sign = bend_sign(seen) != 0, sign_of(there)
     if sign_of(seen) == 0 and bends and change < 0:
         return PROVEN, middle, sign
     if sign_of(seen) != 0 or (bends and change > 0) or there.low - reach > 0.0 or there.high + reach < 0.0:
-        return -1, middle, sign
+        return EMPTY, middle, sign
     noisy = sign == 0 and reach <= NOISE * (there.high - there.low)
     if noisy or high - low <= NARROW * high or high <= SLOWEST:
         return UNDECIDED, middle, sign
-    middle, sign = known_place(of, piece, low, middle, high, sign, left)
-    return -2, middle, sign
+    middle, sign = known_place(of, (piece, low, high), middle, sign, left)
+    return TO_BE_CUT, middle, sign
 
 
 @exact
-def search_contact(
-    of: Contacts, first: int, last: int, most: int, waiting: Floats, halves: Floats, found: Floats, n: int, ends: Integers, left: Integers
-) -> int:
-    """Find all turns of one contact, whose pieces are those from `first` to before `last`; return the next row of `found`.
-
-    `left` is the number of bounds that may still be worked out; `waiting` are cells, the slowest ones last.
-    """
-    turns, many, edges = 0, 0, 0
+def begin_contact(of: Contacts, search: Search, waiting: Floats, ends: Integers, left: Integers) -> int:
+    """Write the first cells of a contact, the slowest ones last; return their number."""
+    first, last, _, _ = search
+    many, edges = 0, 0
     for piece in range(last - 1, first - 1, -1):
-        start = many
-        many = first_cells(of, piece, waiting, many, ends[piece], left)
+        many += first_cells(of, piece, waiting[many:], ends[piece], left)
         if many > len(waiting):
-            return len(found) + 1
-        for k in range((many - start) // 2):
-            for column in range(COLUMNS):
-                one, other = start + k, many - 1 - k
-                waiting[one, column], waiting[other, column] = waiting[other, column], waiting[one, column]
+            break
         edges = max(edges, edges_of(of, piece))
     left[0] -= (last - first) * edges
+    return many
+
+
+@exact
+def turns_at_knots(of: Contacts, search: Search, found: Floats, ends: Integers) -> tuple[int, int]:
+    """Write the knots where g' may change its sign; return the next row of `found`, and the number of proven turns."""
+    first, last, _, n = search
+    turns = 0
     for knot in range(first + 1, last):
         before, after = ends[knot - 1, 1], ends[knot, 0]
         if before * after <= 0:
-            turns += before * after < 0
-            n = put(found, n, knot, of.begin[knot], of.begin[knot], before, after, PROVEN if before * after < 0 else UNDECIDED)
+            turns += 1 if before * after < 0 else 0
+            place = (knot, of.pieces[knot, BEGIN], of.pieces[knot, BEGIN])
+            n = put(found, n, place, (before, after), PROVEN if before * after < 0 else UNDECIDED)
+    return n, turns
+
+
+@exact
+def search_contact(of: Contacts, search: Search, tables: tuple[Floats, Floats], ends: Integers, left: Integers) -> int:
+    """Find all turns of one contact; return the next row of the table of what is found, more than it has if there is no room.
+
+    The cells that wait are those of the other table, the slowest ones last. `left` is the number of bounds that may be worked out.
+    """
+    waiting, found = tables
+    _, _, most, _ = search
+    many = begin_contact(of, search, waiting, ends, left)
+    if many > len(waiting):
+        return len(found) + 1
+    n, turns = turns_at_knots(of, search, found, ends)
     while many > 0 and n <= len(found):
         room = 0 if turns > most else min(max(left[0] // 2, 0), MOST_WAITING)
-        if room == 0:
-            for k in range(many):
-                n = put(found, n, int(waiting[k, 0]), waiting[k, 1], waiting[k, 2], int(waiting[k, 3]), int(waiting[k, 4]), UNDECIDED)
-            break
-        taken, many_halves = min(room, many), 0
-        for k in range(many - 1, many - 1 - taken, -1):
-            known, middle, sign = examined(of, waiting, k, left)
-            piece, low, high = int(waiting[k, 0]), waiting[k, LOW], waiting[k, HIGH]
-            before, after = int(waiting[k, BEFORE]), int(waiting[k, AFTER])
-            if known >= 0:
-                n = put(found, n, piece, low, high, before, after, known)
-                turns += known == PROVEN
-            elif known == -2:
-                many_halves = put(halves, many_halves, piece, low, middle, before, sign, UNDECIDED)
-                many_halves = put(halves, many_halves, piece, middle, high, sign, after, UNDECIDED)
-        many -= taken
-        if many + many_halves > len(waiting):
+        first, next_ = many - min(room if room > 0 else many, many), many
+        if next_ + 2 * (many - first) > len(waiting):
             return len(found) + 1
-        for k in range(many_halves - 1, -1, -1):
-            waiting[many] = halves[k]
-            many += 1
+        for k in range(first, many):
+            known, middle, sign = examined(of, waiting[k], left) if room > 0 else (UNDECIDED, 0.0, 0)
+            piece, low, high = int(waiting[k, PIECE]), waiting[k, LOW], waiting[k, HIGH]
+            before, after = int(waiting[k, BEFORE]), int(waiting[k, AFTER])
+            if known == TO_BE_CUT:
+                next_ = put(waiting, next_, (piece, middle, high), (sign, after), UNDECIDED)
+                next_ = put(waiting, next_, (piece, low, middle), (before, sign), UNDECIDED)
+            elif known != EMPTY:
+                n = put(found, n, (piece, low, high), (before, after), known)
+                turns += 1 if known == PROVEN else 0
+        for k in range(many, next_):
+            waiting[first + k - many] = waiting[k]
+        many = first + next_ - many
     return n
 
 
@@ -201,38 +229,29 @@ def narrowed(of: Contacts, piece: int, low: float, high: float, before: int) -> 
 
 
 @exact
-def search(
+def search(  # noqa: PLR0917 # arrays that cross from Python to compiled code
     steps: Integers,
     values: Floats,
-    first: Integers,
-    formula: Integers,
-    low_numbers: Floats,
-    high_numbers: Floats,
+    spans: Integers,
+    numbers: Floats,
     room: Floats,
-    present: Integers,
-    damping: Floats,
-    normal: Floats,
-    slowest: Floats,
-    fastest: Floats,
-    begin: Floats,
-    end: Floats,
+    pieces: Floats,
     first_piece: Integers,
     most: int,
     waiting: Floats,
-    halves: Floats,
     found: Floats,
     ends: Integers,
     left: Integers,
 ) -> int:
     """Find all turns of contacts, and narrow the intervals that hold one; return their number, -1 if there is no room for them.
 
-    `left` has the number of bounds that may be worked out for each contact, `ends` the signs of g' at both ends of each piece.
+    `left` has the number of bounds that may be worked out for each contact, `ends` the signs of g' at both ends of each piece, and
+    `waiting` and `found` have room for cells.
     """
-    formulas = Formulas(steps, values, first, formula, low_numbers, high_numbers, room, present)
-    of, n = Contacts(formulas, damping, normal, slowest, fastest, begin, end), 0
+    of, n = Contacts(Formulas(steps, values, spans, numbers, room), pieces), 0
     for contact in range(len(left)):
         own, last = left[contact : contact + 1], first_piece[contact + 1]
-        n = search_contact(of, first_piece[contact], last, most, waiting, halves, found, n, ends, own)
+        n = search_contact(of, (first_piece[contact], last, most, n), (waiting, found), ends, own)
         if n > len(found):
             return -1
     for k in range(n):

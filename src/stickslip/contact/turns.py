@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.slopes import MOST_EVALUATIONS, Integers, Pieces
-from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, MOST_WAITING, PIECE, PROVEN, UNDECIDED, search
+from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, PROVEN, UNDECIDED, search
 from stickslip.foundation.arrays import Floats
 
-FIRST_ROOM = 256
+FIRST_ROOM = 128
 """Room for cells of a search; it grows eightfold when it is full."""
 
 
@@ -72,11 +72,11 @@ def find_turns(of: Pieces, budget: int = MOST_EVALUATIONS, most: int = MOST_EVAL
 
 def _searched(of: Pieces, first_piece: Integers, budget: int, most: int) -> tuple[Floats, Integers, Integers]:
     """Return the table of cells with turns, by piece and ascending, the signs of g' at the ends of pieces, and the budgets left."""
-    halves, many = np.empty((2 * MOST_WAITING, COLUMNS)), FIRST_ROOM
+    many = FIRST_ROOM
     while True:
         waiting, found = np.empty((2, many, COLUMNS))
         ends, left = np.empty((len(of.contact), 2), np.int64), np.full(len(first_piece) - 1, budget)
-        count = search(*of.for_code, first_piece, most, waiting, halves, found, ends, left)
+        count = search(*of.for_code, first_piece, most, waiting, found, ends, left)
         if count >= 0:
             table = found[:count]
             return table[np.lexsort((table[:, HIGH], table[:, LOW], table[:, PIECE]))] if count > 1 else table, ends, left

@@ -14,10 +14,11 @@ from numpy.typing import ArrayLike
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.differences import slope_formula
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
+from stickslip.friction.formula.on_cells import Formulas, enclose_cells
 from stickslip.friction.formula.operations import operation_of
-from stickslip.friction.formula.operations.enclosures import ORDERS
+from stickslip.friction.formula.operations.enclosures import COUNT, ORDERS
 from stickslip.friction.formula.operations.sets import EVERYTHING, Disc, Interval
-from stickslip.friction.formula.tape import Formulas, enclose_cells, tape_of
+from stickslip.friction.formula.tape import tape_of_bounds
 
 
 def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: Interval) -> Interval:
@@ -57,21 +58,23 @@ class Enclosure:
 
     def __init__(self, trees: tuple[Expression, ...], numbers: Mapping[str, Any], slip: Any, formula: Any = 0) -> None:
         """Raise InputError for a formula with a state."""
-        tape = tape_of(trees, tuple(numbers))
+        tape = tape_of_bounds(trees, tuple(numbers))
         given = [_ends(one).reshape(2, -1) for one in (*numbers.values(), slip)]
         members = max(np.size(formula), *(one.shape[1] for one in given))
-        low, high = np.stack([np.broadcast_to(one, (2, members)) for one in given], axis=-1)
-        of = np.broadcast_to(np.asarray(formula, np.int64), members)
-        room = np.empty((int(np.max(np.diff(tape.first))), 2 * ORDERS))
-        numbers_of_members = np.ascontiguousarray(low), np.ascontiguousarray(high)
-        self.formulas = Formulas(*tape, np.ascontiguousarray(of), *numbers_of_members, room, np.full(1, -1))
+        ends = np.empty((2, members, len(given)))
+        for place, one in enumerate(given):
+            ends[:, :, place] = one
+        spans = np.broadcast_to(tape.spans(formula), (members, 2))
+        room = np.empty((int(np.max(np.diff(tape.first))) + 1, COUNT + 1))
+        room[-1] = -1.0
+        self.formulas = Formulas(tape.steps, tape.values, np.ascontiguousarray(spans), ends, room)
 
     def on(self, low: Floats, high: Floats, member: Any = 0) -> Floats:
         """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`; shape (2, 3, cells).
 
         They are low and high ends of mu, dmu/dv (s/m) and half of d2mu/dv2 (s2/m2).
         """
-        found = np.empty((len(low), 2 * ORDERS))
+        found = np.empty((len(low), COUNT))
         members = np.ascontiguousarray(np.broadcast_to(np.asarray(member, np.int64), low.shape))
         enclose_cells(*self.formulas, members, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
         return found.T.reshape(2, ORDERS, -1)

@@ -1,8 +1,9 @@
 """Intervals that are rounded outwards, and the Taylor coefficients of operations as such intervals.
 
 The coefficients of a formula in the slip rate are its value, its first derivative and half its second one. Each node of a formula
-has a row of a table: the low ends of its coefficients in columns 0 to 2, the high ends in columns 3 to 5. It has as many orders as
-may differ from 0, which its operation and the orders of its arguments say (`friction.formula.tape`); other columns are not read.
+has a row of a table: the low ends of its coefficients in columns 0 to 2, the high ends in columns 3 to 5, and in the last column how
+many orders may differ from 0; the columns of others are not read. A rule writes the row n of a node from the rows i and j of its
+arguments, of which a function has only the first.
 
 An infinite end means that nothing is known on that side; it is never reached, so that 0 times such an end is 0.
 
@@ -18,6 +19,8 @@ from stickslip.foundation.compiled import exact
 
 ORDERS = 3
 """Number of Taylor coefficients: value, first derivative and half the second one."""
+COUNT = 2 * ORDERS
+"""Column with the number of orders of a node, one more than the last column of ends."""
 ONE_STEP = 2.3e-16
 """Relative rounding error (1) of a sum, product or quotient, with room to spare: it is 1.2e-16 at most."""
 LIBRARY = 1.8e-15
@@ -114,12 +117,13 @@ def of_positive(a: float, b: float) -> Ends:
     return -_INFINITE, _INFINITE
 
 
-# ---- rules of operations: node n from the nodes i and j, which have p and q orders ----------------------------------------------
+# ---- rules of operations --------------------------------------------------------------------------------------------------------
 
 
 @exact
-def sum_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def sum_of_series(w: Floats, n: int, i: int, j: int) -> None:
     """Write the coefficients of a + b."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
     for k in range(max(p, q)):
         if k >= q:
             w[n, k], w[n, k + 3] = w[i, k], w[i, k + 3]
@@ -130,8 +134,9 @@ def sum_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
 
 
 @exact
-def difference_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def difference_of_series(w: Floats, n: int, i: int, j: int) -> None:
     """Write the coefficients of a - b."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
     for k in range(max(p, q)):
         if k >= q:
             w[n, k], w[n, k + 3] = w[i, k], w[i, k + 3]
@@ -142,10 +147,11 @@ def difference_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> N
 
 
 @exact
-def product_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def product_of_series(w: Floats, n: int, i: int, j: int) -> None:
     """Write the coefficients of a b; a square is narrower than a product of two factors that vary independently."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
     if i == j:
-        _square_of_series(w, n, i, p)
+        _square_of_series(w, n, i)
     elif p == 1 or q == 1:
         for k in range(max(p, q)):
             x, y = min(k, p - 1), min(k, q - 1)
@@ -162,7 +168,8 @@ def product_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None
 
 
 @exact
-def _square_of_series(w: Floats, n: int, i: int, p: int) -> None:
+def _square_of_series(w: Floats, n: int, i: int) -> None:
+    p = int(w[i, COUNT])
     w[n, 0], w[n, 3] = square(w[i, 0], w[i, 3])
     if p > 1:
         low, high = multiply(w[i, 0], w[i, 3], w[i, 1], w[i, 4])
@@ -175,8 +182,9 @@ def _square_of_series(w: Floats, n: int, i: int, p: int) -> None:
 
 
 @exact
-def quotient_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def quotient_of_series(w: Floats, n: int, i: int, j: int) -> None:
     """Write the coefficients of a / b."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
     c, d = reciprocal(w[j, 0], w[j, 3])
     for k in range(p if q == 1 else 1):
         w[n, k], w[n, k + 3] = multiply(w[i, k], w[i, k + 3], c, d)
@@ -197,8 +205,9 @@ def quotient_of_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> Non
 
 
 @exact
-def chain(w: Floats, n: int, i: int, p: int, value: Ends, first: Ends, second: Ends) -> None:
+def chain(w: Floats, n: int, i: int, value: Ends, first: Ends, second: Ends) -> None:
     """Write the coefficients of f(a) from those of a, f(a), and bounds of f' and f''/2 there."""
+    p = int(w[i, COUNT])
     w[n, 0], w[n, 3] = value
     if p > 1:
         w[n, 1], w[n, 4] = multiply(first[0], first[1], w[i, 1], w[i, 4])

@@ -9,7 +9,8 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, chain, of_positive, outward, rounded, square
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, of_positive, outward, rounded, square
 from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
@@ -22,28 +23,39 @@ def log_difference(reference: float, now: float, step: float) -> float:
 
 
 @exact
-def _log_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def _log_change(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, REFERENCE], w[n, VALUE] = math.log(w[i, REFERENCE]), math.log(w[i, VALUE])
+    w[n, STEP], w[n, SLOPE] = math.log1p(w[i, STEP] / w[i, REFERENCE]), w[i, SLOPE] / w[i, VALUE]
+
+
+@exact
+def _log1p_change(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, REFERENCE], w[n, VALUE] = math.log1p(w[i, REFERENCE]), math.log1p(w[i, VALUE])
+    w[n, STEP], w[n, SLOPE] = math.log1p(w[i, STEP] / (1.0 + w[i, REFERENCE])), w[i, SLOPE] / (1.0 + w[i, VALUE])
+
+
+@exact
+def _log_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = -math.inf, math.inf
     if w[i, 3] >= 0.0:
         low, high = outward(math.log(max(w[i, 0], 0.0)), math.log(w[i, 3]), LIBRARY)
-    _by_inverse(w, n, i, p, low, high, w[i, 0], w[i, 3])
+    _by_inverse(w, n, i, (low, high), (w[i, 0], w[i, 3]))
 
 
 @exact
-def _log1p_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def _log1p_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = -math.inf, math.inf
     if w[i, 3] >= -1.0:
         low, high = outward(math.log1p(max(w[i, 0], -1.0)), math.log1p(w[i, 3]), LIBRARY)
-    a, b = rounded(1.0 + w[i, 0], 1.0 + w[i, 3], ONE_STEP)
-    _by_inverse(w, n, i, p, low, high, a, b)
+    _by_inverse(w, n, i, (low, high), rounded(1.0 + w[i, 0], 1.0 + w[i, 3], ONE_STEP))
 
 
 @exact
-def _by_inverse(w: Floats, n: int, i: int, p: int, low: float, high: float, a: float, b: float) -> None:
-    """Write the coefficients of a logarithm between `low` and `high`, whose derivative is 1 / [a, b]."""
-    c, d = of_positive(a, b)
+def _by_inverse(w: Floats, n: int, i: int, value: Ends, argument: Ends) -> None:
+    """Write the coefficients of a logarithm from its bounds and those of the argument of which it is the logarithm."""
+    c, d = of_positive(argument[0], argument[1])
     less, more = square(c, d)
-    chain(w, n, i, p, (low, high), (c, d), (-0.5 * more, -0.5 * less))
+    chain(w, n, i, value, (c, d), (-0.5 * more, -0.5 * less))
 
 
 def _coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
@@ -59,8 +71,7 @@ def _log_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
 LOG = Operation(
     name="log",
     value=np.log,
-    step=lambda start, end, a: np.log1p(a.step / a.reference),
-    slope=lambda end, a: a.slope / a.value,
+    change=_log_change,
     slope_formula=lambda node, da: da / node.arguments[0],
     bounds=growing(np.log, least=0.0),
     taylor=_log_series,
@@ -84,8 +95,7 @@ def _log1p_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
 LOG1P = Operation(
     name="log1p",
     value=np.log1p,
-    step=lambda start, end, a: np.log1p(a.step / (1.0 + a.reference)),
-    slope=lambda end, a: a.slope / (1.0 + a.value),
+    change=_log1p_change,
     slope_formula=lambda node, da: da / (1.0 + node.arguments[0]),
     bounds=growing(np.log1p, least=-1.0),
     taylor=_log1p_series,

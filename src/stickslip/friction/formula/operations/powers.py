@@ -13,10 +13,10 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, Expression, depends_on
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, multiply, of_positive, outward, rounded
 from stickslip.friction.formula.operations.operation import (
     BallsWriter,
-    Change,
     Dimension,
     Levels,
     Operation,
@@ -31,10 +31,10 @@ from stickslip.friction.formula.operations.operation import (
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing, hull, unless
 
 
-def chained(outer: Any, inner: Any) -> Any:
+@exact
+def _chained(outer: float, inner: float) -> float:
     """Return outer * inner, and 0 where inner is 0: without dependence the product is 0 even if the outer slope is infinite."""
-    inner = np.asarray(inner, float)
-    return np.multiply(outer, inner, where=inner != 0.0, out=np.zeros(np.broadcast_shapes(np.shape(outer), inner.shape)))
+    return outer * inner if inner != 0.0 else 0.0
 
 
 def _raised(base: Dimension, exponent: Fraction) -> Dimension:
@@ -49,10 +49,14 @@ def _pow_unit(node: Expression, base: Dimension, exponent: Dimension) -> Dimensi
     return _raised(base, Fraction(node.arguments[1].value).limit_denominator(1000)) if base else {}
 
 
-def _pow_step(start: Any, end: Any, a: Change, b: Change) -> Any:
-    near = (np.asarray(a.reference) > 0) & (np.asarray(a.value) > 0)
-    ratio = np.divide(a.step, a.reference, where=near, out=np.zeros(np.broadcast_shapes(near.shape, np.shape(a.step))))
-    return np.where(near, start * np.expm1(b.reference * np.log1p(ratio)), end - start)
+@exact
+def _pow_change(w: Floats, n: int, i: int, j: int) -> None:
+    base, exponent = w[i, REFERENCE], w[j, REFERENCE]
+    start, end = math.pow(base, exponent), math.pow(w[i, VALUE], w[j, VALUE])
+    w[n, REFERENCE], w[n, VALUE], w[n, STEP] = start, end, end - start
+    if base > 0.0 and w[i, VALUE] > 0.0:
+        w[n, STEP] = start * math.expm1(exponent * math.log1p(w[i, STEP] / base))
+    w[n, SLOPE] = _chained(exponent * math.pow(w[i, VALUE], exponent - 1.0), w[i, SLOPE])
 
 
 def _pow_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
@@ -69,7 +73,7 @@ def _power(a: float, b: float, c: float, d: float) -> Ends:
 
 
 @exact
-def _pow_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def _pow_series(w: Floats, n: int, i: int, j: int) -> None:
     """Write the coefficients of a power; with an exponent that varies it is `bounded` as an exponential."""
     a, b, c, d = w[i, 0], w[i, 3], w[j, 0], w[j, 3]
     less, more = rounded(c - 1.0, d - 1.0, ONE_STEP)
@@ -79,7 +83,7 @@ def _pow_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
     low, high = _power(a, b, least, most)
     least, most = multiply(c, d, less, more)
     low, high = multiply(least, most, low, high)
-    chain(w, n, i, p, _power(a, b, c, d), first, (0.5 * low, 0.5 * high))
+    chain(w, n, i, _power(a, b, c, d), first, (0.5 * low, 0.5 * high))
 
 
 def _pow_bounded(node: Expression) -> Expression:
@@ -150,8 +154,7 @@ POW = Operation(
     rank=4,
     numpy_name="power",
     value=operator.pow,
-    step=_pow_step,
-    slope=lambda end, a, b: chained(b.reference * np.power(a.value, b.reference - 1.0), a.slope),
+    change=_pow_change,
     slope_formula=lambda node, da, _: node.arguments[1] * node.arguments[0] ** (node.arguments[1] - 1.0) * da,
     bounds=_pow_bounds,
     taylor=_pow_series,
@@ -174,19 +177,22 @@ POW = Operation(
 )
 
 
-def _sqrt_step(start: Any, end: Any, a: Change) -> Any:
-    return np.divide(a.step, start + end, where=np.asarray(start + end) > 0, out=np.zeros(np.shape(end)))
+@exact
+def _sqrt_change(w: Floats, n: int, i: int, j: int) -> None:
+    start, end = math.sqrt(w[i, REFERENCE]), math.sqrt(w[i, VALUE])
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = start, end, _chained(0.5 / end, w[i, SLOPE])
+    w[n, STEP] = w[i, STEP] / (start + end) if start + end > 0.0 else 0.0
 
 
 @exact
-def _sqrt_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def _sqrt_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = -math.inf, math.inf
     if w[i, 3] >= 0.0:
         low, high = outward(math.sqrt(max(w[i, 0], 0.0)), math.sqrt(w[i, 3]), LIBRARY)
     a, b = of_positive(2.0 * low, 2.0 * high)
     c, d = of_positive(w[i, 0], w[i, 3])
     less, more = multiply(a, b, c, d)
-    chain(w, n, i, p, (low, high), (a, b), (-0.25 * more, -0.25 * less))
+    chain(w, n, i, (low, high), (a, b), (-0.25 * more, -0.25 * less))
 
 
 def _sqrt_disc(a: Disc) -> Disc:
@@ -208,8 +214,7 @@ def _sqrt_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
 SQRT = Operation(
     name="sqrt",
     value=np.sqrt,
-    step=_sqrt_step,
-    slope=lambda end, a: chained(np.divide(0.5, end), a.slope),
+    change=_sqrt_change,
     slope_formula=lambda node, da: 0.5 * da / node,
     bounds=growing(np.sqrt, least=0.0),
     taylor=_sqrt_series,

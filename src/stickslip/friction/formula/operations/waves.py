@@ -11,10 +11,10 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain
 from stickslip.friction.formula.operations.operation import (
     BallsWriter,
-    Change,
     Levels,
     Operation,
     Radius,
@@ -30,14 +30,20 @@ def both(node: Expression) -> tuple[Expression, Expression]:
     return Expression("sin", node.arguments), Expression("cos", node.arguments)
 
 
-def _sin_step(start: Any, end: Any, a: Change) -> Any:
-    half = np.sin(0.5 * a.step)
-    return 2.0 * half * (np.cos(a.reference) * np.cos(0.5 * a.step) - np.sin(a.reference) * half)
+@exact
+def _sin_change(w: Floats, n: int, i: int, j: int) -> None:
+    a, step, end = w[i, REFERENCE], w[i, STEP], w[i, VALUE]
+    half = math.sin(0.5 * step)
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = math.sin(a), math.sin(end), math.cos(end) * w[i, SLOPE]
+    w[n, STEP] = 2.0 * half * (math.cos(a) * math.cos(0.5 * step) - math.sin(a) * half)
 
 
-def _cos_step(start: Any, end: Any, a: Change) -> Any:
-    half = np.sin(0.5 * a.step)
-    return -2.0 * half * (np.sin(a.reference) * np.cos(0.5 * a.step) + np.cos(a.reference) * half)
+@exact
+def _cos_change(w: Floats, n: int, i: int, j: int) -> None:
+    a, step, end = w[i, REFERENCE], w[i, STEP], w[i, VALUE]
+    half = math.sin(0.5 * step)
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = math.cos(a), math.cos(end), -math.sin(end) * w[i, SLOPE]
+    w[n, STEP] = -2.0 * half * (math.sin(a) * math.cos(0.5 * step) + math.cos(a) * half)
 
 
 TURN = 2.0 * np.pi
@@ -87,19 +93,19 @@ def _within_one(low: float, high: float, one: float, other: float, top: float) -
 
 
 @exact
-def _sin_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def _sin_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = w[i, 0], w[i, 3]
     a, b = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
     c, d = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
-    chain(w, n, i, p, (a, b), (c, d), (-0.5 * b, -0.5 * a))
+    chain(w, n, i, (a, b), (c, d), (-0.5 * b, -0.5 * a))
 
 
 @exact
-def _cos_series(w: Floats, n: int, i: int, j: int, p: int, q: int) -> None:
+def _cos_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = w[i, 0], w[i, 3]
     a, b = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
     c, d = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
-    chain(w, n, i, p, (a, b), (-d, -c), (-0.5 * b, -0.5 * a))
+    chain(w, n, i, (a, b), (-d, -c), (-0.5 * b, -0.5 * a))
 
 
 def _disc(own: Any, other: Any, radius: Any) -> Disc:
@@ -139,8 +145,7 @@ def _grown(writer: SeriesWriter, node: Expression, partner: int, k: int) -> str:
 SIN = Operation(
     name="sin",
     value=np.sin,
-    step=_sin_step,
-    slope=lambda end, a: np.cos(a.value) * a.slope,
+    change=_sin_change,
     slope_formula=lambda node, da: both(node)[1] * da,
     bounds=_sin_bounds,
     taylor=_sin_series,
@@ -155,8 +160,7 @@ SIN = Operation(
 COS = Operation(
     name="cos",
     value=np.cos,
-    step=_cos_step,
-    slope=lambda end, a: -np.sin(a.value) * a.slope,
+    change=_cos_change,
     slope_formula=lambda node, da: 0.0 - both(node)[0] * da,
     bounds=_cos_bounds,
     taylor=_cos_series,
