@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
 from stickslip.friction.formula import Enclosure, Expression
+from stickslip.friction.formula.at_points import Points
+from stickslip.friction.formula.differences import points_of, tape_of_changes
 from stickslip.friction.formula.on_cells import Formulas, enclose
 from stickslip.friction.formula.operations.enclosures import add, multiply
 from stickslip.problem import Resistance
@@ -158,6 +160,14 @@ class Pieces:
         """What compiled code needs to bound g', one array after the other: see `Contacts`."""
         of = (self.damping, self.normal, self.slowest, self.fastest, self.begin, self.end)
         return *self.enclosure.formulas, np.column_stack(of)
+
+    @cached_property
+    def points(self) -> Points:
+        """What compiled code needs for friction at slip rates."""
+        numbers = np.empty((len(self.slip), len(self.numbers) + 1))
+        for column, values in zip(numbers.T, (*self.numbers.values(), self.slip), strict=True):
+            column[:] = values
+        return points_of(tape_of_changes(tuple(self.trees), tuple(self.numbers)), self.formula, numbers)
 
     def slopes_between(self, piece: Integers, edges: Floats) -> tuple[Slopes, Slopes]:
         """Bound g' and g'' at edges, and on the cells between those that follow each other along the first axis."""

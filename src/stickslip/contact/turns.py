@@ -8,12 +8,12 @@ Source: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis, ch. 8 (
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.contact.fold_rates import fold_rates
 from stickslip.contact.slopes import MOST_EVALUATIONS, Integers, Pieces
 from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, PROVEN, UNDECIDED, search
 from stickslip.foundation.arrays import Floats
@@ -109,31 +109,17 @@ def _holds_a_piece(of: Pieces, cells: Cells) -> NDArray[np.bool_]:
     return found
 
 
-def folds_of(turns: Turns, slope: Callable[[Floats, Integers], Floats], parts: int = 64) -> tuple[Floats, Integers]:
+def folds_of(of: Pieces, turns: Turns, parts: int = 64) -> tuple[Floats, Integers]:
     """Return the slip rates of the ends of branches, by contact and ascending, and the piece of each.
 
-    `slope` returns g' at slip rates under pieces, for arrays whose last axis has an entry for each piece; the interval of a fold is
-    cut into `parts` parts again and again. No branch lies in a flat interval.
+    The interval of a fold is cut into `parts` parts again and again. No branch lies in a flat interval.
     """
     cells, flat = turns.cells, turns.known == FLAT
     rates = np.array([cells.low, cells.high])
     sharp = turns.changes & ~flat & (cells.low < cells.high)
     if sharp.any():
-        rates[0, sharp] = _refined(lambda rate: slope(rate, cells.piece[sharp]), cells.low[sharp], cells.high[sharp], parts)
+        found, piece, ends = np.empty(np.count_nonzero(sharp)), cells.piece[sharp], rates[:, sharp]
+        fold_rates(*of.points, of.for_code[-1], piece, ends, parts, found)
+        rates[0, sharp] = found
     chosen = np.array([np.where(flat, cells.before > 0, turns.changes), flat & (cells.after > 0)]).T
     return rates.T[chosen], np.array([cells.piece] * 2).T[chosen]
-
-
-def _refined(slope: Callable[[Floats], Floats], low: Floats, high: Floats, parts: int) -> Floats:
-    """Return the last, or the first, slip rate with rising g in each interval over which g' changes its sign."""
-    low, high = low.copy(), high.copy()
-    rising = slope(low[None])[0] > 0.0
-    for _ in range(100):
-        left = np.flatnonzero(high - low > 2.0 * np.spacing(high))
-        if not len(left):
-            break
-        rates = np.linspace(low, high, parts + 1)
-        other = (slope(rates)[1:] > 0.0) != rising
-        k = np.where(other.any(axis=0), other.argmax(axis=0), parts - 1)[left]
-        low[left], high[left] = rates[k, left], rates[k + 1, left]
-    return np.where(rising, low, high)

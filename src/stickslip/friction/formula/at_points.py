@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
+from stickslip.friction.formula.expression import VARIABLES as _VARIABLES
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.tape import CONSTANT, NUMBER, VARIABLE, Integers
@@ -11,6 +14,19 @@ from stickslip.friction.formula.tape import CONSTANT, NUMBER, VARIABLE, Integers
 _ADD, _SUB, _MUL, _DIV, _POW, _SIN, _COS, _EXP, _LOG, _SQRT, _TANH, _ARCSINH, _EXPM1, _LOG1P = (
     one.change for one in OPERATIONS.values()
 )
+
+MANY = len(_VARIABLES)
+"""Number of variables of formulas."""
+
+
+class Points(NamedTuple):
+    """What compiled code needs to follow the formulas of members from point to point."""
+
+    steps: Integers  # tape.Tape
+    values: Floats
+    spans: Integers  # (members, 2): first row of the formula of each member, and the end
+    numbers: Floats  # (members, numbers): the law's numbers, of which the slip (m) at the reference point is the last
+    room: Floats  # (MANY + nodes + 1, 4): rows as in `operations.changes` of variables, of nodes, and of an argument that is limited
 
 
 @exact
@@ -87,32 +103,35 @@ def walk(tape: tuple[Integers, Floats], span: Integers, numbers: Floats, variabl
 
 
 @exact
+def change_at(of: Points, member: int, slip_step: float, rate: float) -> int:
+    """Work out the change of the formula of a member from rest to a point; return the row of `of.room` with the result."""
+    variables, w, start = of.room[: MANY], of.room[MANY :], of.numbers[member, -1]
+    variables[0, REFERENCE], variables[0, STEP], variables[0, VALUE], variables[0, SLOPE] = start, slip_step, start + slip_step, 0.0
+    variables[1, REFERENCE], variables[1, STEP], variables[1, VALUE], variables[1, SLOPE] = 0.0, rate, rate, 1.0
+    variables[2:] = 0.0
+    return MANY + walk((of.steps, of.values), of.spans[member], of.numbers[member], variables, w)
+
+
+@exact
 def changes_at(  # noqa: PLR0917 # arrays that cross from Python to compiled code
     steps: Integers,
     values: Floats,
     spans: Integers,
     numbers: Floats,
+    room: Floats,
     member: Integers,
-    slip: Floats,
     slip_step: Floats,
     rate: Floats,
-    room: Floats,
     found: Floats,
 ) -> None:
     """Write mu(slip + slip_step, rate) - mu(slip, 0) and dmu/drate at points into the rows of `found`, with all states 0.
 
-    Each point has a `member`, whose formula is in `spans` and whose numbers of the law are a row of `numbers`; slip and step are
-    one number, or one for each point. The first rows of `room` are those of the variables, the others those of nodes.
+    Each point is of a `member`; the step of slip (m) is one number, or one for each point.
     """
-    variables, w = room[:6], room[6:]
-    variables[:] = 0.0
-    variables[1, SLOPE] = 1.0
+    of = Points(steps, values, spans, numbers, room)
     for k in range(len(rate)):
-        m, start, step = member[k], slip[k if len(slip) > 1 else 0], slip_step[k if len(slip_step) > 1 else 0]
-        variables[0, REFERENCE], variables[0, STEP], variables[0, VALUE] = start, step, start + step
-        variables[1, STEP], variables[1, VALUE] = rate[k], rate[k]
-        row = walk((steps, values), spans[m], numbers[m], variables, w)
-        found[0, k], found[1, k] = w[row, STEP], w[row, SLOPE]
+        row = change_at(of, member[k], slip_step[k if len(slip_step) > 1 else 0], rate[k])
+        found[0, k], found[1, k] = room[row, STEP], room[row, SLOPE]
 
 
 @exact
@@ -121,15 +140,15 @@ def slopes_at(  # noqa: PLR0917 # arrays that cross from Python to compiled code
     values: Floats,
     spans: Integers,
     numbers: Floats,
-    points: Floats,
     room: Floats,
+    points: Floats,
     found: Floats,
 ) -> None:
     """Write the value of a formula at points, and its derivatives by their coordinates, into the rows of `found`.
 
     A row of `points` has slip, slip rate and states of one point; `numbers` has one row for all points, or one for each.
     """
-    variables, w = room[:6], room[6:]
+    variables, w = room[: MANY], room[MANY :]
     for k in range(len(points)):
         own = numbers[k if len(numbers) > 1 else 0]
         for by in range(points.shape[1]):

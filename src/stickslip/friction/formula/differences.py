@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.at_points import changes_at, slopes_at
-from stickslip.friction.formula.expression import VARIABLES, Expression, as_expression, depends_on, nodes_of
+from stickslip.friction.formula.at_points import MANY, Points, changes_at, slopes_at
+from stickslip.friction.formula.expression import Expression, as_expression, depends_on, nodes_of
 from stickslip.friction.formula.operations import operation_of
 from stickslip.friction.formula.tape import Integers, Tape, written
 
@@ -88,32 +88,26 @@ def difference(
     """
     du, v = np.asarray(slip_step, float), np.asarray(rate, float)
     shape = v.shape if du.shape in ((), v.shape) else np.broadcast_shapes(du.shape, v.shape)
-    given = (slip, *parameters.values())
+    given = (*parameters.values(), slip)
     many = any(map(np.ndim, given))
-    numbers = _columns(parameters.values(), shape if many else ())
-    points = (_flat(slip, shape), _flat(du, shape), _flat(v, shape, full=True))
-    member = np.arange(points[2].size) if many else np.zeros(points[2].size, np.int64)
+    numbers = _columns(given, shape if many else ())
     tape = tape_of_changes((tree,), tuple(parameters))
-    return changes(tape, np.broadcast_to(tape.spans(0), (len(numbers), 2)), numbers, member, points, shape)
+    of = points_of(tape, np.zeros(len(numbers), np.int64), numbers)
+    return changes(of, np.arange(len(numbers)) if many else np.zeros(int(np.prod(shape)), np.int64), du, np.broadcast_to(v, shape))
 
 
-def changes(of: Tape, spans: Integers, numbers: Floats, member: Integers, points: tuple[Floats, Floats, Floats], shape: Any) -> Any:
-    """Return the result of `difference` for members with a formula and a row of numbers each, at points that are flat arrays."""
-    found = np.empty((2, points[2].size))
-    changes_at(of.steps, of.values, np.ascontiguousarray(spans), numbers, member, *points, room_for(of), found)
-    step, slope = found.reshape(2, *shape)
-    return step, slope
+def points_of(tape: Tape, formula: Integers, numbers: Floats) -> Points:
+    """Return what compiled code needs to follow the formulas of members, with a row of numbers each, of which the last is the slip."""
+    room = np.empty((MANY + int(np.max(np.diff(tape.first))) + 1, 4))
+    return Points(tape.steps, tape.values, tape.spans(formula), numbers, room)
 
 
-def room_for(of: Tape) -> Floats:
-    """Return the room that compiled code needs for the nodes of one formula."""
-    return np.empty((len(VARIABLES) + int(of.first[-1]) + 1, 4))
-
-
-def _flat(given: ArrayLike, shape: tuple[int, ...], *, full: bool = False) -> Floats:
-    """Return numbers as a flat array, with one entry for each point or, unless it must be full, with one for all."""
-    found = np.asarray(given, float)
-    return np.ascontiguousarray(np.broadcast_to(found, shape) if found.ndim or full else found).reshape(-1)
+def changes(of: Points, member: Integers, slip_step: ArrayLike, rate: Floats) -> tuple[Floats, Floats]:
+    """Return what `difference` does for points that have a rate and a member each."""
+    step, found = np.asarray(slip_step, float), np.empty((2, *rate.shape))
+    steps = np.ascontiguousarray(np.broadcast_to(step, rate.shape) if step.ndim else step).reshape(-1)
+    changes_at(*of, member.reshape(-1), steps, np.ascontiguousarray(rate).reshape(-1), found.reshape(2, -1))
+    return found[0], found[1]
 
 
 def _columns(numbers: Iterable[ArrayLike], shape: tuple[int, ...]) -> Floats:
@@ -137,8 +131,8 @@ def value_and_slopes(
     points = _columns((slip, rate, *states), shape)
     numbers = _columns(parameters.values(), shape if any(map(np.ndim, parameters.values())) else ())
     tape = tape_of_changes((tree,), tuple(parameters))
-    found = np.empty((1 + points.shape[1], len(points)))
-    slopes_at(tape.steps, tape.values, tape.spans([0]), numbers, points, room_for(tape), found)
+    found, room = np.empty((1 + points.shape[1], len(points))), np.empty((MANY + len(tape.steps) + 1, 4))
+    slopes_at(tape.steps, tape.values, tape.spans([0]), numbers, room, points, found)
     return found[0].reshape(shape), found[1:].reshape(-1, *shape)
 
 
