@@ -156,7 +156,7 @@ def parameters_of(problem: Problem) -> Params:
 
 def together(numbers: Sequence[Any]) -> at.Floats:
     """Return one table of numbers; it has a column for each member if any of them is an array."""
-    if any(np.ndim(number) for number in numbers):
+    if any(isinstance(number, np.ndarray) and number.ndim for number in numbers):
         return np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*numbers)])
     return np.array(numbers, float)
 

@@ -6,6 +6,7 @@ Bounds need not be sharp. Those of `Enclosure` and `on_discs` include rounding; 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -28,20 +29,33 @@ def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: I
     interval: the bounds then hold for all numbers in it.
     """
     given = {SLIP: slip, RATE: rate} | dict.fromkeys(STATES, EVERYTHING)
-    leaves = [node for node in nodes_of(tree) if not node.arguments]
-    ends = [_ends(given[node] if node in given else _number(node, numbers)) for node in leaves]
-    axes = max(one.ndim for one in ends)
-    found = {node: one.reshape(2, *(1,) * (axes - one.ndim), *one.shape[1:]) for node, one in zip(leaves, ends, strict=True)}
+    order = places_of(tree)
+    found = [_NO_ENDS if places else _ends(given[node] if node in given else _number(node, numbers)) for node, places in order]
+    axes = max(one.ndim for one in found)
+    if axes > 1:
+        found = [one.reshape(2, *(1,) * (axes - one.ndim), *one.shape[1:]) for one in found]
     with np.errstate(all="ignore"):
-        for node in nodes_of(tree):
-            if node.arguments:
-                found[node] = operation_of(node).bounds(node, *(found[argument] for argument in node.arguments))
-    low, high = found[tree]
+        for n, (node, places) in enumerate(order):
+            if places:
+                found[n] = operation_of(node).bounds(node, *(found[place] for place in places))
+    low, high = found[-1]
     return low, high
+
+
+_NO_ENDS = np.zeros(2)
+
+
+@lru_cache(maxsize=256)
+def places_of(tree: Expression) -> tuple[tuple[Expression, tuple[int, ...]], ...]:
+    """Return the nodes of a formula in order, each with the places of its arguments."""
+    place = {node: n for n, node in enumerate(nodes_of(tree))}
+    return tuple((node, tuple(place[argument] for argument in node.arguments)) for node in place)
 
 
 def _ends(given: Any) -> Floats:
     low, high = given if isinstance(given, tuple) else (given, given)
+    if isinstance(low, float) and isinstance(high, float):
+        return np.array((low, high))
     return np.array(np.broadcast_arrays(low, high), float)
 
 
@@ -59,15 +73,14 @@ class Enclosure:
     def __init__(self, trees: tuple[Expression, ...], numbers: Mapping[str, Any], slip: Any, formula: Any = 0) -> None:
         """Raise InputError for a formula with a state."""
         tape = tape_of_bounds(trees, tuple(numbers))
-        given = [_ends(one).reshape(2, -1) for one in (*numbers.values(), slip)]
-        members = max(np.size(formula), *(one.shape[1] for one in given))
+        given = (*numbers.values(), slip)
+        members = max(map(np.size, (formula, *(end for one in given for end in (one if isinstance(one, tuple) else (one,))))))
         ends = np.empty((2, members, len(given)))
         for place, one in enumerate(given):
-            ends[:, :, place] = one
-        spans = np.broadcast_to(tape.spans(formula), (members, 2))
-        room = np.empty((int(np.max(np.diff(tape.first))) + 1, COUNT + 1))
-        room[-1] = -1.0
-        self.formulas = Formulas(tape.steps, tape.values, np.ascontiguousarray(spans), ends, room)
+            ends[0, :, place], ends[1, :, place] = one if isinstance(one, tuple) else (one, one)
+        spans, room = np.empty((members, 2), np.int64), np.empty((tape.longest + 1, COUNT + 1))
+        spans[:], room[-1] = tape.spans[formula], -1.0
+        self.formulas = Formulas(tape.steps, tape.values, spans, ends, room)
 
     def on(self, low: Floats, high: Floats, member: Any = 0) -> Floats:
         """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`; shape (2, 3, cells).

@@ -98,8 +98,7 @@ def difference(
 
 def points_of(tape: Tape, formula: Integers, numbers: Floats) -> Points:
     """Return what compiled code needs to follow the formulas of members, with a row of numbers each, of which the last is the slip."""
-    room = np.empty((MANY + int(np.max(np.diff(tape.first))) + 1, 4))
-    return Points(tape.steps, tape.values, tape.spans(formula), numbers, room)
+    return Points(tape.steps, tape.values, tape.spans[formula], numbers, np.empty((MANY + tape.longest + 1, 4)))
 
 
 def changes(of: Points, member: Integers, slip_step: ArrayLike, rate: Floats) -> tuple[Floats, Floats]:
@@ -131,8 +130,8 @@ def value_and_slopes(
     points = _columns((slip, rate, *states), shape)
     numbers = _columns(parameters.values(), shape if any(map(np.ndim, parameters.values())) else ())
     tape = tape_of_changes((tree,), tuple(parameters))
-    found, room = np.empty((1 + points.shape[1], len(points))), np.empty((MANY + len(tape.steps) + 1, 4))
-    slopes_at(tape.steps, tape.values, tape.spans([0]), numbers, room, points, found)
+    found, room = np.empty((1 + points.shape[1], len(points))), np.empty((MANY + tape.longest + 1, 4))
+    slopes_at(tape.steps, tape.values, tape.spans, numbers, room, points, found)
     return found[0].reshape(shape), found[1:].reshape(-1, *shape)
 
 

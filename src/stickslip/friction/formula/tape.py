@@ -37,11 +37,8 @@ class Tape(NamedTuple):
 
     steps: Integers  # (nodes, 4)
     values: Floats  # (nodes,): values of constants
-    first: Integers  # (formulas + 1,): first row of each formula, and the end
-
-    def spans(self, formula: Any) -> Integers:
-        """Return first and last row of the formula of each member."""
-        return np.stack((self.first[formula], self.first[np.add(formula, 1)]), axis=-1)
+    spans: Integers  # (formulas, 2): first row of each formula, and the end
+    longest: int  # largest number of nodes of a formula
 
 
 def written(formulas: Sequence[Sequence[Expression]], parameters: Sequence[str], others: Sequence[Sequence[int]]) -> Tape:
@@ -56,7 +53,7 @@ def written(formulas: Sequence[Sequence[Expression]], parameters: Sequence[str],
             rows.append((_code(node), at[0], at[-1], last))
             values.append(0.0 if node.arguments else node.value)
         first.append(len(rows))
-    return Tape(np.array(rows, np.int64), np.array(values, float), np.array(first))
+    return Tape(np.array(rows, np.int64), np.array(values, float), np.column_stack((first[:-1], first[1:])), int(np.diff(first).max()))
 
 
 def _code(node: Expression) -> int:
