@@ -10,7 +10,8 @@ from functools import lru_cache
 from typing import ClassVar, Literal
 
 from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
-from stickslip.contact.turns import PROVEN, find_turns, folds_of
+from stickslip.contact.turn_search import PROVEN
+from stickslip.contact.turns import find_turns, folds_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
 from stickslip.problem import Resistance

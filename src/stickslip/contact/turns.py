@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from stickslip.contact.fold_rates import fold_rates
 from stickslip.contact.slopes import MOST_EVALUATIONS, Integers, Pieces
-from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, PROVEN, UNDECIDED, search
+from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, UNDECIDED, search
 from stickslip.foundation.arrays import Floats
 
 FIRST_ROOM = 128

@@ -29,7 +29,7 @@ from stickslip.engine.state.layout import BranchRow, Counts, Floats, Integers, L
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
-from stickslip.friction.formula import bends_one_way, difference
+from stickslip.friction.formula import bends_one_way
 from stickslip.problem import Problem, default_event_rate
 from stickslip.problem.scenarios import Scenario
 

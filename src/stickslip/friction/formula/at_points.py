@@ -9,7 +9,7 @@ from stickslip.foundation.compiled import exact
 from stickslip.friction.formula.expression import VARIABLES as _VARIABLES
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
-from stickslip.friction.formula.tape import CONSTANT, NUMBER, VARIABLE, Integers
+from stickslip.friction.formula.tape import NUMBER, VARIABLE, Integers
 
 _ADD, _SUB, _MUL, _DIV, _POW, _SIN, _COS, _EXP, _LOG, _SQRT, _TANH, _ARCSINH, _EXPM1, _LOG1P = (
     one.change for one in OPERATIONS.values()

@@ -5,7 +5,8 @@ Bounds need not be sharp. Those of `Enclosure` and `on_discs` include rounding; 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -13,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.differences import slope_formula
+from stickslip.friction.formula.differences import slope_formula, tape_of_changes
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
+from stickslip.friction.formula.on_boxes import bound_boxes
 from stickslip.friction.formula.on_cells import Formulas, enclose_cells
 from stickslip.friction.formula.operations import operation_of
 from stickslip.friction.formula.operations.enclosures import COUNT, ORDERS
@@ -28,35 +30,36 @@ def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: I
     The law's numbers and the ends of intervals may be arrays with one entry for each member of a batch. A number may also be an
     interval: the bounds then hold for all numbers in it.
     """
-    given = {SLIP: slip, RATE: rate} | dict.fromkeys(STATES, EVERYTHING)
-    order = places_of(tree)
-    found = [_NO_ENDS if places else _ends(given[node] if node in given else _number(node, numbers)) for node, places in order]
-    axes = max(one.ndim for one in found)
-    if axes > 1:
-        found = [one.reshape(2, *(1,) * (axes - one.ndim), *one.shape[1:]) for one in found]
-    with np.errstate(all="ignore"):
-        for n, (node, places) in enumerate(order):
-            if places:
-                found[n] = operation_of(node).bounds(node, *(found[place] for place in places))
-    low, high = found[-1]
-    return low, high
-
-
-_NO_ENDS = np.zeros(2)
+    names, free = _free(tree)
+    tape = tape_of_changes((tree,), names)
+    given = [_as_interval(numbers[name]) for name in names]
+    variables = [_as_interval(one) if is_free else EVERYTHING for one, is_free in zip((slip, rate), free, strict=True)]
+    shape = np.broadcast_shapes(*(np.shape(end) for one in (*given, *variables) for end in one))
+    variables += [EVERYTHING] * len(STATES)
+    boxes, found = math.prod(shape), np.empty((2, *shape))
+    room = np.empty((tape.longest, 2))
+    bound_boxes(tape.steps, tape.values, _ends_of(given, shape, boxes), _ends_of(variables, shape, boxes), room, found.reshape(2, boxes))
+    return found[0], found[1]
 
 
 @lru_cache(maxsize=256)
-def places_of(tree: Expression) -> tuple[tuple[Expression, tuple[int, ...]], ...]:
-    """Return the nodes of a formula in order, each with the places of its arguments."""
-    place = {node: n for n, node in enumerate(nodes_of(tree))}
-    return tuple((node, tuple(place[argument] for argument in node.arguments)) for node in place)
+def _free(tree: Expression) -> tuple[tuple[str, ...], tuple[bool, bool]]:
+    """Return the names of the parameters in a formula, and whether slip and slip rate are in it."""
+    nodes = nodes_of(tree)
+    return tuple(node.name for node in nodes if node.operation == "parameter"), (SLIP in nodes, RATE in nodes)
 
 
-def _ends(given: Any) -> Floats:
-    low, high = given if isinstance(given, tuple) else (given, given)
-    if isinstance(low, float) and isinstance(high, float):
-        return np.array((low, high))
-    return np.array(np.broadcast_arrays(low, high), float)
+def _as_interval(given: Any) -> Interval:
+    return given if isinstance(given, tuple) else (given, given)
+
+
+def _ends_of(intervals: Sequence[Interval], shape: tuple[int, ...], boxes: int) -> Floats:
+    """Return low and high ends of numbers, which broadcast to a shape, for all boxes: shape (2, boxes, numbers)."""
+    ends = np.empty((2, boxes, len(intervals)))
+    for place, interval in enumerate(intervals):
+        for column, end in zip(ends[:, :, place], interval, strict=True):
+            column[:] = np.broadcast_to(end, shape).reshape(-1) if np.ndim(end) else end
+    return ends
 
 
 def _number(node: Expression, numbers: Mapping[str, Any]) -> Any:

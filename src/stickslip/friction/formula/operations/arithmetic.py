@@ -34,7 +34,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import Disc, known, multiplied, squared, unless
+from stickslip.friction.formula.operations.sets import HIGH, LOW, Disc, multiplied, put, squared
 
 MOST_PARTS = 3
 """A linear combination of at most this many terms is taken apart (see `Operation.parts`); longer sums are added as a tree."""
@@ -61,6 +61,16 @@ def _add_change(w: Floats, n: int, i: int, j: int) -> None:
 def _sub_change(w: Floats, n: int, i: int, j: int) -> None:
     for k in range(4):
         w[n, k] = w[i, k] - w[j, k]
+
+
+@exact
+def _add_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    put(w, n, w[i, LOW] + w[j, LOW], w[i, HIGH] + w[j, HIGH])
+
+
+@exact
+def _sub_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    put(w, n, w[i, LOW] - w[j, HIGH], w[i, HIGH] - w[j, LOW])
 
 
 def _apart(a: Disc, b: Disc) -> Any:
@@ -132,7 +142,7 @@ ADD = Operation(
     value=operator.add,
     change=_add_change,
     slope_formula=lambda node, da, db: da + db,
-    bounds=lambda node, a, b: known(a + b),
+    bounds=_add_bounds,
     taylor=sum_of_series,
     disc=lambda a, b: Disc(a.centre + b.centre, a.radius + b.radius, 0.0).rounded(least=_apart(a, b)),
     unit=_same,
@@ -152,7 +162,7 @@ SUB = Operation(
     value=operator.sub,
     change=_sub_change,
     slope_formula=lambda node, da, db: da - db,
-    bounds=lambda node, a, b: known(a - b[::-1]),
+    bounds=_sub_bounds,
     taylor=difference_of_series,
     disc=lambda a, b: Disc(a.centre - b.centre, a.radius + b.radius, 0.0).rounded(least=_apart(a, b)),
     unit=_same,
@@ -179,8 +189,12 @@ def _mul_change(w: Floats, n: int, i: int, j: int) -> None:
     w[n, SLOPE] = w[i, SLOPE] * w[j, VALUE] + w[i, VALUE] * w[j, SLOPE]
 
 
-def _mul_bounds(node: Expression, a: Floats, b: Floats) -> Floats:
-    return squared(a) if node.arguments[0] == node.arguments[1] else multiplied(a, b)
+@exact
+def _mul_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    if i == j:
+        w[n, LOW], w[n, HIGH] = squared(w[i, LOW], w[i, HIGH])
+    else:
+        w[n, LOW], w[n, HIGH] = multiplied(w[i, LOW], w[i, HIGH], w[j, LOW], w[j, HIGH])
 
 
 def _mul_disc(a: Disc, b: Disc) -> Disc:
@@ -271,8 +285,12 @@ def _div_change(w: Floats, n: int, i: int, j: int) -> None:
         w[n, SLOPE] = (w[i, SLOPE] - end * w[j, SLOPE]) / w[j, VALUE]
 
 
-def _div_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
-    return unless((b[0] <= 0.0) & (b[1] >= 0.0), multiplied(a, 1.0 / b[::-1]))
+@exact
+def _div_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    if w[j, LOW] <= 0.0 <= w[j, HIGH]:
+        w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    else:
+        w[n, LOW], w[n, HIGH] = multiplied(w[i, LOW], w[i, HIGH], 1.0 / w[j, HIGH], 1.0 / w[j, LOW])
 
 
 def _logistic_form(node: Expression) -> Expression:

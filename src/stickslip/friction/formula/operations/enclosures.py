@@ -16,6 +16,7 @@ import math
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.compiled import exact
+from stickslip.friction.formula.operations.sets import multiplied, squared
 
 ORDERS = 3
 """Number of Taylor coefficients: value, first derivative and half the second one."""
@@ -67,21 +68,6 @@ def outward_from(low: float, high: float, error: float, positive: bool) -> Ends:
 
 
 @exact
-def multiplied(a: float, b: float, c: float, d: float) -> Ends:
-    """Return the hull of [a, b] times [c, d], without rounding."""
-    p, q, r, s = a * c, a * d, b * c, b * d
-    if math.isnan(p + q + r + s):
-        p, q, r, s = times(a, c), times(a, d), times(b, c), times(b, d)
-    return min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
-
-
-@exact
-def times(x: float, y: float) -> float:
-    """Return x y, with 0 times infinity equal to 0."""
-    return 0.0 if x == 0.0 or y == 0.0 else x * y
-
-
-@exact
 def add(a: float, b: float, c: float, d: float) -> Ends:
     """Return [a, b] + [c, d]."""
     return rounded(a + c, b + d, ONE_STEP)
@@ -97,8 +83,8 @@ def multiply(a: float, b: float, c: float, d: float) -> Ends:
 @exact
 def square(a: float, b: float) -> Ends:
     """Return [a, b] squared, which is never negative."""
-    first, last = a * a, b * b
-    return outward(0.0 if a * b <= 0.0 else min(first, last), max(first, last), ONE_STEP)
+    low, high = squared(a, b)
+    return outward(low, high, ONE_STEP)
 
 
 @exact

@@ -21,7 +21,7 @@ from stickslip.friction.formula.operations.operation import (
     Scaled,
     SeriesWriter,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 STAYS_LARGE = LARGEST_EXPONENT - 10.0
 """A harmless overflow counts as constant as long as its exponent stays above this. It begins to count at a larger exponent, so that
@@ -52,6 +52,16 @@ def _exp_change(w: Floats, n: int, i: int, j: int) -> None:
 def _expm1_change(w: Floats, n: int, i: int, j: int) -> None:
     _exp_change(w, n, i, j)
     w[n, REFERENCE], w[n, VALUE] = math.expm1(w[i, REFERENCE]), math.expm1(w[i, VALUE])
+
+
+@exact
+def _exp_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.exp(w[i, LOW]), math.exp(w[i, HIGH])
+
+
+@exact
+def _expm1_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.expm1(w[i, LOW]), math.expm1(w[i, HIGH])
 
 
 @exact
@@ -128,7 +138,7 @@ EXP = Operation(
     value=np.exp,
     change=_exp_change,
     slope_formula=lambda node, da: node * da,
-    bounds=growing(np.exp),
+    bounds=_exp_bounds,
     taylor=_exp_series,
     disc=_exp_disc,
     order_zero=_exp_order_zero,
@@ -170,7 +180,7 @@ EXPM1 = Operation(
     value=np.expm1,
     change=_expm1_change,
     slope_formula=lambda node, da: exp_of(node) * da,
-    bounds=growing(np.expm1),
+    bounds=_expm1_bounds,
     taylor=_expm1_series,
     disc=_expm1_disc,
     order_zero=_expm1_order_zero,

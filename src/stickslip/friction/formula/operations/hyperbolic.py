@@ -11,7 +11,7 @@ from stickslip.friction.formula.expression import Expression, nodes_of
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain, multiply, outward, square
 from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
 @exact
@@ -63,6 +63,11 @@ def _across_on(a: float, b: float) -> Ends:
 
 
 @exact
+def _tanh_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.tanh(w[i, LOW]), math.tanh(w[i, HIGH])
+
+
+@exact
 def _tanh_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = outward(math.tanh(w[i, 0]), math.tanh(w[i, 3]), LIBRARY)
     low, high = max(low, -1.0), min(high, 1.0)
@@ -110,7 +115,7 @@ TANH = Operation(
     value=np.tanh,
     change=_tanh_change,
     slope_formula=lambda node, da: (1.0 - node * node) * da,
-    bounds=growing(np.tanh),
+    bounds=_tanh_bounds,
     taylor=_tanh_series,
     disc=_tanh_disc,
     order_zero=_tanh_order_zero,
@@ -143,6 +148,11 @@ def _arcsinh_change(w: Floats, n: int, i: int, j: int) -> None:
     else:
         gap = (1.0 + x * x + y * y) / (p * q + xy) if xy > 0.0 else p * q - xy
         w[n, STEP] = math.asinh(w[i, STEP] * (1.0 + gap) / (p + q))
+
+
+@exact
+def _arcsinh_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.asinh(w[i, LOW]), math.asinh(w[i, HIGH])
 
 
 @exact
@@ -187,7 +197,7 @@ ARCSINH = Operation(
     value=np.arcsinh,
     change=_arcsinh_change,
     slope_formula=lambda node, da: da / root_of(node),
-    bounds=growing(np.arcsinh),
+    bounds=_arcsinh_bounds,
     taylor=_arcsinh_series,
     # its derivative 1 / sqrt((z - i)(z + i)) has its singularities at i and -i
     disc=lambda a: Disc(np.arcsinh(a.centre), -np.log1p(-a.radius / np.hypot(1.0, a.centre)), 0.0).rounded(OF_FUNCTION),

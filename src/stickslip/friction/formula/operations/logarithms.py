@@ -12,7 +12,7 @@ from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, of_positive, outward, rounded, square
 from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
 def log_difference(reference: float, now: float, step: float) -> float:
@@ -32,6 +32,20 @@ def _log_change(w: Floats, n: int, i: int, j: int) -> None:
 def _log1p_change(w: Floats, n: int, i: int, j: int) -> None:
     w[n, REFERENCE], w[n, VALUE] = math.log1p(w[i, REFERENCE]), math.log1p(w[i, VALUE])
     w[n, STEP], w[n, SLOPE] = math.log1p(w[i, STEP] / (1.0 + w[i, REFERENCE])), w[i, SLOPE] / (1.0 + w[i, VALUE])
+
+
+@exact
+def _log_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    if w[i, HIGH] >= 0.0:
+        w[n, LOW], w[n, HIGH] = math.log(max(w[i, LOW], 0.0)), math.log(w[i, HIGH])
+
+
+@exact
+def _log1p_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    if w[i, HIGH] >= -1.0:
+        w[n, LOW], w[n, HIGH] = math.log1p(max(w[i, LOW], -1.0)), math.log1p(w[i, HIGH])
 
 
 @exact
@@ -73,7 +87,7 @@ LOG = Operation(
     value=np.log,
     change=_log_change,
     slope_formula=lambda node, da: da / node.arguments[0],
-    bounds=growing(np.log, least=0.0),
+    bounds=_log_bounds,
     taylor=_log_series,
     disc=lambda a: Disc(np.log(a.centre), a.turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log_order_zero,
@@ -97,7 +111,7 @@ LOG1P = Operation(
     value=np.log1p,
     change=_log1p_change,
     slope_formula=lambda node, da: da / (1.0 + node.arguments[0]),
-    bounds=growing(np.log1p, least=-1.0),
+    bounds=_log1p_bounds,
     taylor=_log1p_series,
     disc=lambda a: Disc(np.log1p(a.centre), Disc(1.0 + a.centre, a.radius, 0.0).turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log1p_order_zero,

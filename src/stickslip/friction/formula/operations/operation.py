@@ -14,7 +14,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import Expression, as_expression
 from stickslip.friction.formula.operations.sets import Disc
@@ -183,8 +182,8 @@ class Operation:
     """How far its value changes between two points, without cancellation, and its derivative: see `operations.changes`."""
     slope_formula: Callable[..., Expression]
     """The formula of its derivative: from the node, and the formula of each argument's derivative."""
-    bounds: Callable[..., Floats]
-    """Bounds of its value: from the node and the interval of each argument, both ends as one array. They leave out rounding."""
+    bounds: Callable[..., None]
+    """Bounds of its value, which leave out rounding: see `operations.sets`."""
     taylor: Callable[..., None]
     """Its Taylor coefficients by the slip rate as intervals, rounding included: see `operations.enclosures`."""
     disc: Callable[..., Disc]

@@ -28,7 +28,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing, hull, unless
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
 @exact
@@ -59,17 +59,32 @@ def _pow_change(w: Floats, n: int, i: int, j: int) -> None:
     w[n, SLOPE] = _chained(exponent * math.pow(w[i, VALUE], exponent - 1.0), w[i, SLOPE])
 
 
-def _pow_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
-    return unless(a[0] < 0.0, hull(*(np.power(base, exponent) for base in a for exponent in b)))
+@exact
+def _hull_of_powers(a: float, b: float, c: float, d: float) -> Ends:
+    """Return [a, b] to the power of [c, d], without rounding."""
+    e, f, g, h = math.pow(a, c), math.pow(a, d), math.pow(b, c), math.pow(b, d)
+    if a < 0.0 or math.isnan(e) or math.isnan(f) or math.isnan(g) or math.isnan(h):
+        return -math.inf, math.inf
+    return min(min(e, f), min(g, h)), max(max(e, f), max(g, h))
+
+
+@exact
+def _pow_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = _hull_of_powers(w[i, LOW], w[i, HIGH], w[j, LOW], w[j, HIGH])
+
+
+@exact
+def _sqrt_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    if w[i, HIGH] >= 0.0:
+        w[n, LOW], w[n, HIGH] = math.sqrt(max(w[i, LOW], 0.0)), math.sqrt(w[i, HIGH])
 
 
 @exact
 def _power(a: float, b: float, c: float, d: float) -> Ends:
     """Return [a, b] to the power of [c, d]."""
-    e, f, g, h = math.pow(a, c), math.pow(a, d), math.pow(b, c), math.pow(b, d)
-    if a < 0.0 or math.isnan(e) or math.isnan(f) or math.isnan(g) or math.isnan(h):
-        return -math.inf, math.inf
-    return outward(min(min(e, f), min(g, h)), max(max(e, f), max(g, h)), 2.0 * LIBRARY)
+    low, high = _hull_of_powers(a, b, c, d)
+    return outward(low, high, 2.0 * LIBRARY)
 
 
 @exact
@@ -216,7 +231,7 @@ SQRT = Operation(
     value=np.sqrt,
     change=_sqrt_change,
     slope_formula=lambda node, da: 0.5 * da / node,
-    bounds=growing(np.sqrt, least=0.0),
+    bounds=_sqrt_bounds,
     taylor=_sqrt_series,
     disc=_sqrt_disc,
     unit=lambda node, a: _raised(a, Fraction(1, 2)),

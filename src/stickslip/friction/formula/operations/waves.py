@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,7 @@ from stickslip.friction.formula.operations.operation import (
     Scaled,
     SeriesWriter,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
 def both(node: Expression) -> tuple[Expression, Expression]:
@@ -50,46 +49,40 @@ TURN = 2.0 * np.pi
 """One period of sin and cos (rad)."""
 
 
-def _bounds(function: Callable[[Any], Any], top: float) -> Callable[..., Floats]:
-    """Return the rule that bounds sin or cos, whose largest value is `top` turns beyond 0."""
-
-    def bounds(_: Any, a: Floats) -> Floats:
-        low, high = a
-        is_short = (np.abs(low) < 1e15) & (np.abs(high) < 1e15) & (high - low < TURN)
-        ends = np.sort(function(np.where(is_short, a, 0.0)), axis=0)
-        ends[0, ~is_short | _holds_a_turn(low, high, top + 0.5)] = -1.0
-        ends[1, ~is_short | _holds_a_turn(low, high, top)] = 1.0
-        return ends
-
-    return bounds
-
-
-def _holds_a_turn(a: Any, b: Any, offset: float) -> Any:
-    """Return True where `offset` plus a whole number of turns may lie in [a, b] (rad), rounding included."""
-    first, last = a / TURN - offset, b / TURN - offset
-    slack = LIBRARY * (2.0 + np.maximum(np.abs(first), np.abs(last)))
-    return np.floor(last + slack) >= np.ceil(first - slack)
-
-
-_sin_bounds, _cos_bounds = _bounds(np.sin, 0.25), _bounds(np.cos, 0.0)
-
-
 @exact
 def _holds(low: float, high: float, offset: float) -> bool:
-    """Return what `_holds_a_turn` does, for one interval."""
+    """Return True if `offset` plus a whole number of turns may lie in an interval (rad), rounding included."""
     first, last = low / TURN - offset, high / TURN - offset
     slack = LIBRARY * (2.0 + max(abs(first), abs(last)))
     return math.floor(last + slack) >= math.ceil(first - slack)
 
 
 @exact
-def _within_one(low: float, high: float, one: float, other: float, top: float) -> Ends:
-    """Return the bounds of sin or cos from its values at both ends; the largest is `top` turns beyond 0."""
+def _between(low: float, high: float, one: float, other: float, top: float) -> Ends:
+    """Return the bounds of sin or cos from its values at both ends, without rounding; the largest is `top` turns beyond 0."""
     if not (abs(low) < 1e15 and abs(high) < 1e15 and high - low < TURN):
         return -1.0, 1.0
     least = -1.0 if _holds(low, high, top + 0.5) else min(one, other)
-    most = 1.0 if _holds(low, high, top) else max(one, other)
+    return least, 1.0 if _holds(low, high, top) else max(one, other)
+
+
+@exact
+def _within_one(low: float, high: float, one: float, other: float, top: float) -> Ends:
+    """Return the same, rounding included."""
+    least, most = _between(low, high, one, other, top)
     return max(least - LIBRARY, -1.0), min(most + LIBRARY, 1.0)
+
+
+@exact
+def _sin_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = w[i, LOW], w[i, HIGH]
+    w[n, LOW], w[n, HIGH] = _between(low, high, math.sin(low), math.sin(high), 0.25)
+
+
+@exact
+def _cos_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = w[i, LOW], w[i, HIGH]
+    w[n, LOW], w[n, HIGH] = _between(low, high, math.cos(low), math.cos(high), 0.0)
 
 
 @exact
