@@ -59,11 +59,9 @@ def find_turns(of: Pieces, budget: int = MOST_EVALUATIONS, most: int = MOST_EVAL
 
     The search for a contact ends early once it is known to turn more than `most` times.
     """
-    first = np.append(0, np.flatnonzero(np.diff(of.contact)) + 1)
-    first_piece = np.append(first, len(of.contact))
+    first_piece = np.append(np.searchsorted(of.contact, np.arange(of.contact[-1] + 1)), len(of.contact))
     table, ends, left = _searched(of, first_piece, budget, most)
-    known = table[:, KNOWN].astype(int)
-    cells = _cells_in(table)
+    cells, known = _cells_in(table)
     if (known == UNDECIDED).any():
         cells, known = _joined(of, cells, known)
         known = np.where(_holds_a_piece(of, cells) & (known == UNDECIDED), FLAT, known)
@@ -83,9 +81,10 @@ def _searched(of: Pieces, first_piece: Integers, budget: int, most: int) -> tupl
         many *= 8
 
 
-def _cells_in(table: Floats) -> Cells:
-    piece, before, after = (table[:, column].astype(int) for column in (PIECE, BEFORE, AFTER))
-    return Cells(piece, table[:, LOW], table[:, HIGH], before, after)
+def _cells_in(table: Floats) -> tuple[Cells, Integers]:
+    """Return the cells of a table, and what is known of them."""
+    piece, before, after, known = table[:, [PIECE, BEFORE, AFTER, KNOWN]].T.astype(int)
+    return Cells(piece, table[:, LOW], table[:, HIGH], before, after), known
 
 
 def _joined(of: Pieces, cells: Cells, known: Integers) -> tuple[Cells, Integers]:
@@ -114,12 +113,14 @@ def folds_of(of: Pieces, turns: Turns, parts: int = 64) -> tuple[Floats, Integer
 
     The interval of a fold is cut into `parts` parts again and again. No branch lies in a flat interval.
     """
-    cells, flat = turns.cells, turns.known == FLAT
-    rates = np.array([cells.low, cells.high])
-    sharp = turns.changes & ~flat & (cells.low < cells.high)
+    cells, flat, changes = turns.cells, turns.known == FLAT, turns.changes
+    rates, first = np.array([cells.low, cells.high]), changes & ~flat
+    sharp = first & (cells.low < cells.high)
     if sharp.any():
         found, piece, ends = np.empty(np.count_nonzero(sharp)), cells.piece[sharp], rates[:, sharp]
         fold_rates(*of.points, of.for_code[-1], piece, ends, parts, found)
         rates[0, sharp] = found
-    chosen = np.array([np.where(flat, cells.before > 0, turns.changes), flat & (cells.after > 0)]).T
+    if not flat.any():
+        return rates[0, first], cells.piece[first]
+    chosen = np.array([np.where(flat, cells.before > 0, changes), flat & (cells.after > 0)]).T
     return rates.T[chosen], np.array([cells.piece] * 2).T[chosen]

@@ -34,7 +34,8 @@ def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: I
     tape = tape_of_changes((tree,), names)
     given = [_as_interval(numbers[name]) for name in names]
     variables = [_as_interval(one) if is_free else EVERYTHING for one, is_free in zip((slip, rate), free, strict=True)]
-    shape = np.broadcast_shapes(*(np.shape(end) for one in (*given, *variables) for end in one))
+    shapes = {np.shape(end) for one in (*given, *variables) for end in one if not isinstance(end, float)}
+    shape = np.broadcast_shapes(*shapes) if shapes else ()
     variables += [EVERYTHING] * len(STATES)
     boxes, found = math.prod(shape), np.empty((2, *shape))
     room = np.empty((tape.longest, 2))
@@ -55,10 +56,12 @@ def _as_interval(given: Any) -> Interval:
 
 def _ends_of(intervals: Sequence[Interval], shape: tuple[int, ...], boxes: int) -> Floats:
     """Return low and high ends of numbers, which broadcast to a shape, for all boxes: shape (2, boxes, numbers)."""
+    if not shape:
+        return np.array([[interval] for interval in zip(*intervals, strict=True)] if intervals else np.empty((2, 1, 0)), float)
     ends = np.empty((2, boxes, len(intervals)))
     for place, interval in enumerate(intervals):
         for column, end in zip(ends[:, :, place], interval, strict=True):
-            column[:] = np.broadcast_to(end, shape).reshape(-1) if np.ndim(end) else end
+            column[:] = np.broadcast_to(end, shape).reshape(-1)
     return ends
 
 
