@@ -9,17 +9,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.arrays import Floats
-from stickslip.foundation.compiled import exact
+from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
+from stickslip.foundation.compiled import entry, exact
 from stickslip.friction.formula import Enclosure, Expression
-from stickslip.friction.formula.at_points import Points
+from stickslip.friction.formula.at_points import AtPoints
 from stickslip.friction.formula.differences import points_of, tape_of_changes
-from stickslip.friction.formula.on_cells import Formulas, enclose
+from stickslip.friction.formula.on_cells import OnCells, enclose
 from stickslip.friction.formula.operations.enclosures import add, multiply
 from stickslip.problem import Resistance
 
@@ -55,8 +55,8 @@ DAMPING, NORMAL, SLOW, FAST, BEGIN, END = range(6)
 class Contacts(NamedTuple):
     """What compiled code needs to bound g': the formulas of the pieces of the laws, and six numbers of each piece."""
 
-    formulas: Formulas
-    pieces: Floats
+    formulas: OnCells
+    pieces: Floats2
 
 
 @exact
@@ -152,17 +152,17 @@ class Pieces:
     def slopes(self, piece: Integers, low: Floats, high: Floats) -> Slopes:
         """Bound g' and g'' on cells of slip rates (m/s)."""
         found = np.empty((4, len(low)))
-        bound_cells(*self.for_code, piece, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
+        bound_cells(self.for_code, piece, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
         return Slopes(*found)
 
     @cached_property
-    def for_code(self) -> tuple[Any, ...]:
-        """What compiled code needs to bound g', one array after the other: see `Contacts`."""
+    def for_code(self) -> Contacts:
+        """What compiled code needs to bound g'."""
         of = (self.damping, self.normal, self.slowest, self.fastest, self.begin, self.end)
-        return *self.enclosure.formulas, np.column_stack(of)
+        return Contacts(self.enclosure.formulas, np.column_stack(of))
 
     @cached_property
-    def points(self) -> Points:
+    def points(self) -> AtPoints:
         """What compiled code needs for friction at slip rates."""
         numbers = np.empty((len(self.slip), len(self.numbers) + 1))
         for column, values in zip(numbers.T, (*self.numbers.values(), self.slip), strict=True):
@@ -187,21 +187,9 @@ class Pieces:
         return np.array(edges)
 
 
-@exact
-def bound_cells(  # noqa: PLR0917 # arrays that cross from Python to compiled code
-    steps: Integers,
-    values: Floats,
-    spans: Integers,
-    numbers: Floats,
-    room: Floats,
-    pieces: Floats,
-    piece: Integers,
-    low: Floats,
-    high: Floats,
-    found: Floats,
-) -> None:
+@entry
+def bound_cells(of: Contacts, piece: Integers1, low: Floats1, high: Floats1, found: Floats2) -> None:
     """Bound g' and g'' on cells of slip rates (m/s); `found` has the rows of `Slopes`."""
-    of = Contacts(Formulas(steps, values, spans, numbers, room), pieces)
     for k in range(len(low)):
         found[0, k], found[1, k], found[2, k], found[3, k] = slope_bounds(of, piece[k], low[k], high[k])
 

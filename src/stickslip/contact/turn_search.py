@@ -5,6 +5,8 @@ A row of a table of cells is a cell: its piece, its low and high end (m/s), the 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from stickslip.contact.slopes import (
     ABOVE,
     BEGIN,
@@ -24,9 +26,8 @@ from stickslip.contact.slopes import (
     sign_of,
     slope_bounds,
 )
-from stickslip.foundation.arrays import Floats
-from stickslip.foundation.compiled import exact
-from stickslip.friction.formula.on_cells import Formulas
+from stickslip.foundation.arrays import Floats, Floats2, Integers1, Integers2
+from stickslip.foundation.compiled import entry, exact
 
 NOISE = 4.0
 """A cell is not worth cutting if g' changes on it by no more than this multiple of the rounding of its bounds."""
@@ -228,30 +229,25 @@ def narrowed(of: Contacts, piece: int, low: float, high: float, before: int) -> 
     return low, high
 
 
-@exact
-def search(  # noqa: PLR0917 # arrays that cross from Python to compiled code
-    steps: Integers,
-    values: Floats,
-    spans: Integers,
-    numbers: Floats,
-    room: Floats,
-    pieces: Floats,
-    first_piece: Integers,
-    most: int,
-    waiting: Floats,
-    found: Floats,
-    ends: Integers,
-    left: Integers,
-) -> int:
+class Room(NamedTuple):
+    """What a search works on, and what it finds."""
+
+    waiting: Floats2  # cells that wait, and cells that are found
+    found: Floats2
+    ends: Integers2  # (pieces, 2): signs of g' at both ends of each piece
+    left: Integers1  # (contacts,): number of bounds that may still be worked out
+
+
+@entry
+def search(of: Contacts, first_piece: Integers1, most: int, room: Room) -> int:
     """Find all turns of contacts, and narrow the intervals that hold one; return their number, -1 if there is no room for them.
 
-    `left` has the number of bounds that may be worked out for each contact, `ends` the signs of g' at both ends of each piece, and
-    `waiting` and `found` have room for cells.
+    `first_piece` has the first piece of each contact, and the number of all.
     """
-    of, n = Contacts(Formulas(steps, values, spans, numbers, room), pieces), 0
-    for contact in range(len(left)):
-        own, last = left[contact : contact + 1], first_piece[contact + 1]
-        n = search_contact(of, (first_piece[contact], last, most, n), (waiting, found), ends, own)
+    found, n = room.found, 0
+    for contact in range(len(room.left)):
+        limits = (first_piece[contact], first_piece[contact + 1], most, n)
+        n = search_contact(of, limits, (room.waiting, found), room.ends, room.left[contact : contact + 1])
         if n > len(found):
             return -1
     for k in range(n):

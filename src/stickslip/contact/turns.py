@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.fold_rates import fold_rates
+from stickslip.contact.fold_rates import Intervals, fold_rates
 from stickslip.contact.slopes import MOST_EVALUATIONS, Integers, Pieces
-from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, UNDECIDED, search
+from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, UNDECIDED, Room, search
 from stickslip.foundation.arrays import Floats
 
 FIRST_ROOM = 128
@@ -74,7 +74,7 @@ def _searched(of: Pieces, first_piece: Integers, budget: int, most: int) -> tupl
     while True:
         waiting, found = np.empty((2, many, COLUMNS))
         ends, left = np.empty((len(of.contact), 2), np.int64), np.full(len(first_piece) - 1, budget)
-        count = search(*of.for_code, first_piece, most, waiting, found, ends, left)
+        count = search(of.for_code, first_piece, most, Room(waiting, found, ends, left))
         if count >= 0:
             table = found[:count]
             return table[np.lexsort((table[:, HIGH], table[:, LOW], table[:, PIECE]))] if count > 1 else table, ends, left
@@ -118,7 +118,7 @@ def folds_of(of: Pieces, turns: Turns, parts: int = 64) -> tuple[Floats, Integer
     sharp = first & (cells.low < cells.high)
     if sharp.any():
         found, piece, ends = np.empty(np.count_nonzero(sharp)), cells.piece[sharp], rates[:, sharp]
-        fold_rates(*of.points, of.for_code[-1], piece, ends, parts, found)
+        fold_rates(of.points, of.for_code.pieces, Intervals(piece, ends, parts), found)
         rates[0, sharp] = found
     if not flat.any():
         return rates[0, first], cells.piece[first]

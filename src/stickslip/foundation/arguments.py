@@ -98,7 +98,7 @@ class CheckedArguments(NamesAttributes):
 
     def __new__(cls, *given: Any, **named: Any) -> Self:
         """Check the names of the arguments; their values are checked once they are in their fields."""
-        if not _fits(cls, len(given), frozenset(named)):
+        if not _fits(cls, len(given), frozenset(named)):  # type: ignore[arg-type] # classes are hashable
             check_names(cls.__name__, _taken(cls), given, named)  # type: ignore[arg-type] # classes are hashable
         return super().__new__(cls)
 

@@ -348,7 +348,7 @@ def in_units(declared: _Declared, units: Mapping[str, str]) -> _Declared:
     if isinstance(declared, NumberSeries) and declared.item.unit in units:
         return dataclasses.replace(declared, item=_in_unit(declared.item, units[declared.item.unit]))
     if isinstance(declared, Quantity) and declared.unit in units:
-        return _in_unit(declared, units[declared.unit])
+        return _in_unit(declared, units[declared.unit])  # type: ignore[return-value] # of the same class
     return declared
 
 

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief_repr
 from stickslip.friction import FrictionLaw
-from stickslip.friction.formula import Expression, Points, changes, evaluate, points_of, tape_of_changes
+from stickslip.friction.formula import AtPoints, Expression, changes, evaluate, points_of, tape_of_changes
 
 _LOADS = 2.0
 """Many solutions are distinguished up to this load, as a multiple (1) of the largest friction."""
@@ -105,7 +105,7 @@ class Resistance:
         return self.damping * rate + self.normal * step + self.start, self.damping + self.normal * slope
 
     @cached_property
-    def _points(self) -> Points:
+    def _points(self) -> AtPoints:
         """What compiled code needs for the friction of each piece of the law."""
         trees = tuple(dict.fromkeys(self.trees))
         place = {tree: k for k, tree in enumerate(trees)}

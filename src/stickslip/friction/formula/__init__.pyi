@@ -1,7 +1,7 @@
 # What others take from friction.formula. Each name is imported when it is first used; all else is the room's own.
 
 from stickslip.friction.formula.at_points import (
-    Points,  # What compiled code needs to follow the formulas of members from point to point.
+    AtPoints,  # What compiled code needs to follow the formulas of members from point to point.
 )
 from stickslip.friction.formula.bounds import (
     Enclosure,  # Bounds of a formula's Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
@@ -16,8 +16,7 @@ from stickslip.friction.formula.differences import (
     # Return the nodes whose every way into the formula leads to a denominator, or to an argument such as that of exp.
     harmless_overflows,
     limited,  # Return the exponentials of a formula whose exponents are limited to LARGEST_EXPONENT.
-    # Return what compiled code needs to follow the formulas of members, with a row of numbers each, of which the last is the slip.
-    points_of,
+    points_of,  # Return what compiled code needs to follow formulas of members, with a row of numbers each, the slip last.
     slope_formula,  # Return the derivative of a formula by a variable, one of VARIABLES.
     tape_of_changes,  # Return formulas as a tape that says of each exponential whether its exponent is limited to LARGEST_EXPONENT.
     # Return a formula and its derivatives by slip, slip rate and each of the states, as an array with one axis more in front.
@@ -67,11 +66,11 @@ __all__ = [
     "STATES",
     "TINIEST",
     "VARIABLES",
+    "AtPoints",
     "Disc",
     "Enclosure",
     "Expression",
     "Parameter",
-    "Points",
     "Scaled",
     "add",
     "bends_one_way",

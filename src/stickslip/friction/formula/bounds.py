@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.differences import slope_formula, tape_of_changes
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
-from stickslip.friction.formula.on_boxes import bound_boxes
-from stickslip.friction.formula.on_cells import Formulas, enclose_cells
+from stickslip.friction.formula.on_boxes import OnBoxes, bound_boxes
+from stickslip.friction.formula.on_cells import OnCells, enclose_cells
 from stickslip.friction.formula.operations import operation_of
 from stickslip.friction.formula.operations.enclosures import COUNT, ORDERS
 from stickslip.friction.formula.operations.sets import EVERYTHING, Disc, Interval
@@ -39,7 +39,8 @@ def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: I
     variables += [EVERYTHING] * len(STATES)
     boxes, found = math.prod(shape), np.empty((2, *shape))
     room = np.empty((tape.longest, 2))
-    bound_boxes(tape.steps, tape.values, _ends_of(given, shape, boxes), _ends_of(variables, shape, boxes), room, found.reshape(2, boxes))
+    ends = _ends_of(given, shape, boxes), _ends_of(variables, shape, boxes)
+    bound_boxes(OnBoxes(tape.steps, tape.values, *ends, room), found.reshape(2, boxes))
     return found[0], found[1]
 
 
@@ -86,7 +87,7 @@ class Enclosure:
             ends[0, :, place], ends[1, :, place] = one if isinstance(one, tuple) else (one, one)
         spans, room = np.empty((members, 2), np.int64), np.empty((tape.longest + 1, COUNT + 1))
         spans[:], room[-1] = tape.spans[formula], -1.0
-        self.formulas = Formulas(tape.steps, tape.values, spans, ends, room)
+        self.formulas = OnCells(tape.steps, tape.values, spans, ends, room)
 
     def on(self, low: Floats, high: Floats, member: Any = 0) -> Floats:
         """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`; shape (2, 3, cells).
@@ -94,8 +95,9 @@ class Enclosure:
         They are low and high ends of mu, dmu/dv (s/m) and half of d2mu/dv2 (s2/m2).
         """
         found = np.empty((len(low), COUNT))
-        members = np.ascontiguousarray(np.broadcast_to(np.asarray(member, np.int64), low.shape))
-        enclose_cells(*self.formulas, members, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
+        alone = len(self.formulas.spans) == 1
+        members = np.zeros(len(low), np.int64) if alone else np.ascontiguousarray(np.broadcast_to(member, low.shape), np.int64)
+        enclose_cells(self.formulas, members, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
         return found.T.reshape(2, ORDERS, -1)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.at_points import MANY, Points, changes_at, slopes_at
+from stickslip.friction.formula.at_points import MANY, AtPoints, changes_at, slopes_at
 from stickslip.friction.formula.expression import Expression, as_expression, depends_on, nodes_of
 from stickslip.friction.formula.operations import operation_of
 from stickslip.friction.formula.tape import Integers, Tape, written
@@ -95,16 +95,16 @@ def difference(
     return changes(of, np.arange(len(numbers)) if many else np.zeros(int(np.prod(shape)), np.int64), du, np.broadcast_to(v, shape))
 
 
-def points_of(tape: Tape, formula: Integers, numbers: Floats) -> Points:
-    """Return what compiled code needs to follow the formulas of members, with a row of numbers each, of which the last is the slip."""
-    return Points(tape.steps, tape.values, tape.spans[formula], numbers, np.empty((MANY + tape.longest + 1, 4)))
+def points_of(tape: Tape, formula: Integers, numbers: Floats) -> AtPoints:
+    """Return what compiled code needs to follow formulas of members, with a row of numbers each, the slip last."""
+    return AtPoints(tape.steps, tape.values, tape.spans[formula], numbers, np.empty((MANY + tape.longest + 1, 4)))
 
 
-def changes(of: Points, member: Integers, slip_step: ArrayLike, rate: Floats) -> tuple[Floats, Floats]:
+def changes(of: AtPoints, member: Integers, slip_step: ArrayLike, rate: Floats) -> tuple[Floats, Floats]:
     """Return what `difference` does for points that have a rate and a member each."""
     step, found = np.asarray(slip_step, float), np.empty((2, *rate.shape))
     steps = np.ascontiguousarray(np.broadcast_to(step, rate.shape) if step.ndim else step).reshape(-1)
-    changes_at(*of, member.reshape(-1), steps, np.ascontiguousarray(rate).reshape(-1), found.reshape(2, -1))
+    changes_at(of, member.reshape(-1), steps, np.ascontiguousarray(rate).reshape(-1), found.reshape(2, -1))
     return found[0], found[1]
 
 
@@ -129,8 +129,8 @@ def value_and_slopes(
     points = _columns((slip, rate, *states), shape)
     numbers = _columns(parameters.values(), shape if any(map(np.ndim, parameters.values())) else ())
     tape = tape_of_changes((tree,), tuple(parameters))
-    found, room = np.empty((1 + points.shape[1], len(points))), np.empty((MANY + tape.longest + 1, 4))
-    slopes_at(tape.steps, tape.values, tape.spans, numbers, room, points, found)
+    found = np.empty((1 + points.shape[1], len(points)))
+    slopes_at(points_of(tape, np.zeros(len(numbers), np.int64), numbers), points, found)
     return found[0].reshape(shape), found[1:].reshape(-1, *shape)
 
 
@@ -139,4 +139,5 @@ def tape_of_changes(trees: tuple[Expression, ...], parameters: tuple[str, ...]) 
     """Return formulas as a tape that says of each exponential whether its exponent is limited to LARGEST_EXPONENT."""
     formulas = [nodes_of(tree) for tree in trees]
     limits = [limited(tree) for tree in trees]
-    return written(formulas, parameters, [[int(node in cut) for node in nodes] for nodes, cut in zip(formulas, limits, strict=True)])
+    others = [[int(node in cut) for node in nodes] for nodes, cut in zip(formulas, limits, strict=True)]
+    return written(formulas, parameters, others)

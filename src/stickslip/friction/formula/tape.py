@@ -6,14 +6,15 @@ leaf has the code of its kind, and the place of a number of the law or of a vari
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.compiled import exact
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, STATES, VARIABLES, Expression, nodes_of
 from stickslip.friction.formula.operations import OPERATIONS, operation_of
@@ -32,8 +33,19 @@ CODE, LEFT, RIGHT, OTHER = range(4)
 whether its argument is limited."""
 
 
+def rule_by_code(rules: Sequence[Callable[..., None]]) -> Any:
+    """Return compiled code that calls the rule of an operation, given its code: `rules` are those of CODES, in order.
+
+    Its arguments are the code, the rows of nodes, and the places of a node and of its arguments.
+    """
+    names: dict[str, Any] = {f"rule_{n}": rule for n, rule in enumerate(rules)}
+    branches = (f"if code == {VARIABLE + 1 + n}:\n        rule_{n}(w, n, i, j)\n" for n in range(len(rules)))
+    exec(f"def rule(code, w, n, i, j):\n    {'    el'.join(branches)}", names)
+    return exact(names["rule"])
+
+
 class Tape(NamedTuple):
-    """Formulas as rows of numbers, one formula after the other."""
+    """OnCells as rows of numbers, one formula after the other."""
 
     steps: Integers  # (nodes, 4)
     values: Floats  # (nodes,): values of constants
@@ -53,7 +65,8 @@ def written(formulas: Sequence[Sequence[Expression]], parameters: Sequence[str],
             rows.append((_code(node), at[0], at[-1], last))
             values.append(0.0 if node.arguments else node.value)
         first.append(len(rows))
-    return Tape(np.array(rows, np.int64), np.array(values, float), np.column_stack((first[:-1], first[1:])), int(np.diff(first).max()))
+    spans = np.column_stack((first[:-1], first[1:]))
+    return Tape(np.array(rows, np.int64), np.array(values, float), spans, int(np.diff(first).max()))
 
 
 def _code(node: Expression) -> int:

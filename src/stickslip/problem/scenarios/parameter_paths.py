@@ -108,7 +108,7 @@ def document_with(scenario: Scenario, changes: Changes, where: str) -> dict[str,
     """
     _check_together(scenario, changes, where)
     pressing = next((value for parameter, value in changes if parameter.name == PRESSING), None)
-    document = _copied((scenario if pressing is None else _pressed(scenario, pressing)).document)
+    document: dict[str, Any] = _copied((scenario if pressing is None else _pressed(scenario, pressing)).document)
     _put(document, [one for one in changes if one[0].name != PRESSING])
     return document
 
@@ -127,7 +127,7 @@ def put_into(document: Mapping[str, Any], scenario: Scenario, changes: Changes, 
     Raises InputError as `document_with` does.
     """
     _check_together(scenario, changes, where)
-    found = _copied(dict(document))
+    found: dict[str, Any] = _copied(dict(document))
     try:
         _put(found, changes)
     except KeyError:

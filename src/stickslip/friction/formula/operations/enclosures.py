@@ -1,9 +1,9 @@
 """Intervals that are rounded outwards, and the Taylor coefficients of operations as such intervals.
 
 The coefficients of a formula in the slip rate are its value, its first derivative and half its second one. Each node of a formula
-has a row of a table: the low ends of its coefficients in columns 0 to 2, the high ends in columns 3 to 5, and in the last column how
-many orders may differ from 0; the columns of others are not read. A rule writes the row n of a node from the rows i and j of its
-arguments, of which a function has only the first.
+has a row of a table: the low ends of its coefficients in columns 0 to 2, the high ends in columns 3 to 5, and in the last column
+how many orders may differ from 0; the columns of others are not read. A rule writes the row n of a node from the rows i and j of
+its arguments, of which a function has only the first.
 
 An infinite end means that nothing is known on that side; it is never reached, so that 0 times such an end is 0.
 
@@ -191,9 +191,9 @@ def quotient_of_series(w: Floats, n: int, i: int, j: int) -> None:
 
 
 @exact
-def chain(w: Floats, n: int, i: int, value: Ends, first: Ends, second: Ends) -> None:
+def chain(w: Floats, n: int, i: int, value: Ends, slopes: tuple[Ends, Ends]) -> None:
     """Write the coefficients of f(a) from those of a, f(a), and bounds of f' and f''/2 there."""
-    p = int(w[i, COUNT])
+    p, (first, second) = int(w[i, COUNT]), slopes
     w[n, 0], w[n, 3] = value
     if p > 1:
         w[n, 1], w[n, 4] = multiply(first[0], first[1], w[i, 1], w[i, 4])

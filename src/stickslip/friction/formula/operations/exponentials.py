@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
@@ -67,14 +68,14 @@ def _expm1_bounds(w: Floats, n: int, i: int, j: int) -> None:
 @exact
 def _exp_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = outward(math.exp(w[i, 0]), math.exp(w[i, 3]), LIBRARY)
-    chain(w, n, i, (low, high), (low, high), (0.5 * low, 0.5 * high))
+    chain(w, n, i, (low, high), ((low, high), (0.5 * low, 0.5 * high)))
 
 
 @exact
 def _expm1_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = outward(math.expm1(w[i, 0]), math.expm1(w[i, 3]), LIBRARY)
     a, b = outward(math.exp(w[i, 0]), math.exp(w[i, 3]), LIBRARY)
-    chain(w, n, i, (max(low, -1.0), max(high, -1.0)), (a, b), (0.5 * a, 0.5 * b))
+    chain(w, n, i, (max(low, -1.0), max(high, -1.0)), ((a, b), (0.5 * a, 0.5 * b)))
 
 
 def _exp_disc(a: Disc) -> Disc:

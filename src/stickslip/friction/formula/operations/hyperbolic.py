@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
@@ -73,7 +74,7 @@ def _tanh_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = max(low, -1.0), min(high, 1.0)
     a, b = _across_on(w[i, 0], w[i, 3])
     less, more = multiply(low, high, a, b)
-    chain(w, n, i, (low, high), (a, b), (-more, -less))
+    chain(w, n, i, (low, high), ((a, b), (-more, -less)))
 
 
 @exact
@@ -84,7 +85,7 @@ def logistic(w: Floats, n: int, i: int, j: int) -> None:
     a, b = 0.25 * a, 0.25 * b
     c, d = outward(math.tanh(0.5 * w[i, 0]), math.tanh(0.5 * w[i, 3]), LIBRARY)
     less, more = multiply(c, d, a, b)
-    chain(w, n, i, (max(low, 0.0), min(high, 1.0)), (-b, -a), (0.5 * less, 0.5 * more))
+    chain(w, n, i, (max(low, 0.0), min(high, 1.0)), ((-b, -a), (0.5 * less, 0.5 * more)))
 
 
 def tanh_difference(value: float, now: float, step: float) -> float:
@@ -164,7 +165,7 @@ def _arcsinh_series(w: Floats, n: int, i: int, j: int) -> None:
     c, d = multiply(c, d, a, b)
     less, more = multiply(w[i, 0], w[i, 3], c, d)
     value = outward(math.asinh(w[i, 0]), math.asinh(w[i, 3]), LIBRARY)
-    chain(w, n, i, value, (a, b), (-0.5 * more, -0.5 * less))
+    chain(w, n, i, value, ((a, b), (-0.5 * more, -0.5 * less)))
 
 
 def arcsinh_difference(reference: float, now: float, step: float) -> float:

@@ -69,7 +69,7 @@ def _by_inverse(w: Floats, n: int, i: int, value: Ends, argument: Ends) -> None:
     """Write the coefficients of a logarithm from its bounds and those of the argument of which it is the logarithm."""
     c, d = of_positive(argument[0], argument[1])
     less, more = square(c, d)
-    chain(w, n, i, value, (c, d), (-0.5 * more, -0.5 * less))
+    chain(w, n, i, value, ((c, d), (-0.5 * more, -0.5 * less)))
 
 
 def _coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:

@@ -98,7 +98,7 @@ def _pow_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = _power(a, b, least, most)
     least, most = multiply(c, d, less, more)
     low, high = multiply(least, most, low, high)
-    chain(w, n, i, _power(a, b, c, d), first, (0.5 * low, 0.5 * high))
+    chain(w, n, i, _power(a, b, c, d), (first, (0.5 * low, 0.5 * high)))
 
 
 def _pow_bounded(node: Expression) -> Expression:
@@ -207,7 +207,7 @@ def _sqrt_series(w: Floats, n: int, i: int, j: int) -> None:
     a, b = of_positive(2.0 * low, 2.0 * high)
     c, d = of_positive(w[i, 0], w[i, 3])
     less, more = multiply(a, b, c, d)
-    chain(w, n, i, (low, high), (a, b), (-0.25 * more, -0.25 * less))
+    chain(w, n, i, (low, high), ((a, b), (-0.25 * more, -0.25 * less)))
 
 
 def _sqrt_disc(a: Disc) -> Disc:

@@ -90,7 +90,7 @@ def _sin_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = w[i, 0], w[i, 3]
     a, b = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
     c, d = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
-    chain(w, n, i, (a, b), (c, d), (-0.5 * b, -0.5 * a))
+    chain(w, n, i, (a, b), ((c, d), (-0.5 * b, -0.5 * a)))
 
 
 @exact
@@ -98,7 +98,7 @@ def _cos_series(w: Floats, n: int, i: int, j: int) -> None:
     low, high = w[i, 0], w[i, 3]
     a, b = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
     c, d = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
-    chain(w, n, i, (a, b), (-d, -c), (-0.5 * b, -0.5 * a))
+    chain(w, n, i, (a, b), ((-d, -c), (-0.5 * b, -0.5 * a)))
 
 
 def _disc(own: Any, other: Any, radius: Any) -> Disc:
