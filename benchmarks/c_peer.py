@@ -16,7 +16,7 @@ from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.engine.contact_step import certificate
 from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
-from stickslip.engine.memory.records import FLOATS, MemoryRecord
+from stickslip.foundation.kernels.memory.records import FLOATS, MemoryRecord
 from stickslip.engine.state import layout, workspace
 from stickslip.friction.formula.expression import Expression
 from stickslip.problem import run_codes

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import subprocess
 import sys
 import tempfile
 import venv
 from pathlib import Path
+
+from benchmarks import fresh
 
 SERVED = """
 import re, subprocess, sys, urllib.request
@@ -87,14 +88,10 @@ def size(folder: Path) -> float:
 def timed(*command: str | Path, folder: Path, cache: Path) -> float:
     """Run a command, and return its processor time (s). Raises SystemExit with its last lines if it fails."""
     clean = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME")}
-    before = os.times()
-    done = subprocess.run(
-        command, cwd=folder, env=clean | {"STICKSLIP_CACHE_DIR": str(cache)}, capture_output=True, text=True, check=False
-    )
-    if done.returncode:
-        raise SystemExit(f"{command}\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
-    after = os.times()
-    return after.children_user - before.children_user + after.children_system - before.children_system
+    done = fresh.run(command, folder, clean | {"STICKSLIP_CACHE_DIR": str(cache)})
+    if done.code:
+        raise SystemExit(f"{command}\n{done.out[-1500:]}\n{done.err[-1500:]}")
+    return done.spent
 
 
 def try_extra(wheel: Path, extra: str, cache: Path) -> str:

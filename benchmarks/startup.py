@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import argparse
 import os
-import resource
 import statistics
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
+
+from benchmarks import fresh
 
 HERE = Path(__file__).resolve().parents[1] / "src"
 MAP = ("--map", "alpha=0.01..10:40:log", "--map", "normal_stress=10 MPa..500 MPa:30")
@@ -45,13 +45,13 @@ def processor_time(source: Path, arguments: list[str] | None, folder: str) -> fl
     """
     words = [] if arguments is None else [word.format(folder=folder) for word in arguments]
     code = ["-c", "import stickslip"] if arguments is None else ["-m", "stickslip"]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     command = [sys.executable, *code, *words]
     variables = os.environ | {"PYTHONPATH": str(source), "PYTHONPYCACHEPREFIX": f"{folder}/bytecode"}
     variables.pop("PYTHONDONTWRITEBYTECODE", None)
-    subprocess.run(command, check=True, capture_output=True, cwd=folder, env=variables)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    done = fresh.run(command, folder, variables)
+    if done.code:
+        raise SystemExit(f"{' '.join(command)}: {done.last_line}")
+    return done.spent
 
 
 def measure(sources: list[Path], arguments: list[str] | None, repeats: int, folder: str) -> list[list[float]]:

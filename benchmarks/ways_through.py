@@ -15,17 +15,16 @@ from __future__ import annotations
 import argparse
 import os
 import re
-import resource
 import shlex
-import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks import fresh
+from benchmarks.fresh import Done
 from benchmarks.own_files import FILES
 from benchmarks.ways import WAYS, Number, Step
 
@@ -34,16 +33,6 @@ KERNEL = 0.20
 """Processor time (s) of `kernel` where the bounds of the steps were measured."""
 COMPILING = 90.0
 """Processor time (s) that a command may take in addition if it says that it compiles."""
-
-
-class Done(NamedTuple):
-    """What a command printed, its exit status, and its times on the wall and of the processor (s)."""
-
-    out: str
-    err: str
-    code: int
-    wall: float
-    spent: float
 
 
 def say(*lines: str) -> None:
@@ -69,20 +58,10 @@ def run(step: Step, folder: Path) -> Done:
     typed, _, into = step.typed.partition(" > ")
     python = step.typed.startswith("python: ")
     words = ["-c", step.typed.removeprefix("python: ")] if python else ["-m", "stickslip", *shlex.split(typed)]
-    before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    done = subprocess.run(
-        [sys.executable, *words],
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    wall, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = fresh.run([sys.executable, *words], folder, os.environ | {"PYTHONPATH": str(ROOT / "src")})
     if into and not python:
-        (folder / into).write_text(done.stdout, encoding="utf-8")
-    spent = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
-    return Done(done.stdout, done.stderr, done.returncode, wall, spent)
+        (folder / into).write_text(done.out, encoding="utf-8")
+    return done
 
 
 def faults(step: Step, done: Done, slower: float) -> list[str]:
@@ -90,8 +69,7 @@ def faults(step: Step, done: Done, slower: float) -> list[str]:
     allowed = step.bound * slower + (COMPILING if "compil" in done.err else 0.0)
     found = [f"took {done.spent:.1f} s of the processor, {allowed:.1f} s allowed"] if done.spent > allowed else []
     if done.code != step.code:
-        said = (done.err.strip().splitlines() or ["nothing"])[-1]
-        return [*found, f"exit status {done.code}, not {step.code}: {said}"]
+        return [*found, f"exit status {done.code}, not {step.code}: {done.last_line}"]
     printed = done.out + done.err
     for wanted in step.wanted:
         pattern = wanted.pattern if isinstance(wanted, Number) else wanted

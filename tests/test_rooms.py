@@ -83,7 +83,7 @@ def test_what_every_start_loads_of_an_extension_is_light() -> None:
 
 def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
     """Each file with compiled functions, and each file from which such functions take a name."""
-    from stickslip.engine.compile.cache import NOT_COMPILED, compiled_sources
+    from stickslip.foundation.kernels.cache import NOT_COMPILED, compiled_sources
 
     covered = set(compiled_sources())
     assert all(path.is_file() for path in covered)

@@ -7,7 +7,7 @@ import platform
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -106,20 +106,26 @@ def _version(one: Requirement) -> str | None:
 
 
 def engine() -> Iterator[Finding]:
-    """Yield the compiler with its target processor, and the cache of compiled code. Imports the compiler."""
-    with redirect_stderr(io.StringIO()):  # a cache that cannot be used is reported below, with the cure
-        from stickslip.engine.compile import cache
-    from llvmlite import __version__ as version
-    from llvmlite.binding import get_host_cpu_name
-
-    from stickslip.engine import UNCOMPILED, WHY_PLAIN
+    """Yield where the engine's machine code comes from, and the cache of what is compiled here."""
+    from stickslip.engine import UNCOMPILED
     from stickslip.foundation.sealed_files import cache_root
 
-    way = f", plainly ({WHY_PLAIN}): first starts take some three times as long" if WHY_PLAIN else ""
-    shown = f"llvmlite {version} for {get_host_cpu_name()}{way}"
-    slow = "STICKSLIP_UNCOMPILED is set, so that runs take a hundred times longer or more: unset it"
-    yield Finding("compiler", "not used" if UNCOMPILED else shown, slow if UNCOMPILED else "")
-    yield compiled_code(cache_root(), f"compiled-{cache.SOURCES}")
+    if UNCOMPILED:
+        slow = "STICKSLIP_UNCOMPILED is set, so that runs take a hundred times longer or more: unset it"
+        yield Finding("machine code", "not used", slow)
+        return
+    from stickslip.foundation.code_key import SHIPPED
+    from stickslip.foundation.kernels.code import NAME, why_not_shipped
+    from stickslip.foundation.kernels.processor import PROCESSOR
+
+    came = len(list((SHIPPED / NAME).glob("*.o")))
+    if came:
+        yield Finding("machine code", f"for {PROCESSOR.name}, {came} files that came with the package")
+    else:
+        there = next((_version(one) for one in _requirements("compiler")), None)
+        fault = "" if there else f"{why_not_shipped()}, and nothing compiles it: pip install 'stickslip[compiler]'"
+        yield Finding("machine code", f"compiled here by numba {there or '(missing)'}: {why_not_shipped()}", fault)
+    yield compiled_code(cache_root(), f"compiled-{NAME}")
 
 
 def compiled_code(root: Path, name: str) -> Finding:

@@ -1,17 +1,5 @@
 # What others take from engine. Each name is imported when it is first used; all else is the room's own.
 
-from stickslip.engine.compile.cache import (
-    announce_by,  # Show messages about compilation with the given function instead of on standard error.
-)
-from stickslip.engine.compile.kernels import (
-    kernel,  # Return a function of the engine in compiled form, with its machine code kept in the cache.
-)
-from stickslip.engine.compile.numba_privates import (
-    WHY_PLAIN,  # Why numba's public compiler is used; empty if the faster way works.
-)
-from stickslip.engine.compile.uncompiled import (
-    UNCOMPILED,  # True if kernels run as plain Python.
-)
 from stickslip.engine.history.history import (
     NO_LEAPS,  # Table of leaps over creep (`History.creep`) without rows.
     START,  # t = 0, the start of the run.
@@ -66,9 +54,6 @@ from stickslip.engine.history.tables import (
 from stickslip.engine.history.turning_points import (
     Turn,  # Hold a point along |slip rate|: where it begins, ends, turns, or crosses a threshold.
 )
-from stickslip.engine.memory.simd import (
-    WIDTH,  # Number of lanes: as many as fit in a register of this processor, or in two of 128 bits.
-)
 from stickslip.engine.on_demand import (
     lend_part,  # Write the address of a part into a run's memory, by default of the part that the engine has asked for.
 )
@@ -85,6 +70,27 @@ from stickslip.engine.state.layout import (
     LadderCell,  # Hold one cell of a body of layers (`waves.ladder`); loads are minus the reference strength.
     Store,  # Hold a history.
 )
+from stickslip.foundation.kernels.code import (
+    announce_by,  # Say that something is compiled by the given function instead of on standard error.
+)
+from stickslip.foundation.kernels.kernels import (
+    entry,  # Return a function of the engine that compiled code and Python call.
+    kernel,  # Return a function of the engine that compiled code calls.
+)
+from stickslip.foundation.kernels.memory.simd import (
+    WIDTH,  # Number of lanes: as many as fit in a register of this processor, or in two of 128 bits.
+)
+from stickslip.foundation.kernels.signature import (
+    Flags1,  # Arrays with their number of dimensions, which machine code must know; their numbers lie without gaps, as in C.
+    Floats1,
+    Floats2,
+    Floats3,
+    Floats4,
+    Integers1,
+)
+from stickslip.foundation.kernels.uncompiled import (
+    UNCOMPILED,  # True if kernels run as plain Python.
+)
 
 __all__ = [
     "ARRAYS",
@@ -97,14 +103,19 @@ __all__ = [
     "START",
     "TERMS",
     "UNCOMPILED",
-    "WHY_PLAIN",
     "WIDTH",
     "Checkpoint",
     "Epoch",
+    "Flags1",
     "Floats",
+    "Floats1",
+    "Floats2",
+    "Floats3",
+    "Floats4",
     "History",
     "HistoryPiece",
     "Integers",
+    "Integers1",
     "LadderCell",
     "Positions",
     "Reach",
@@ -119,6 +130,7 @@ __all__ = [
     "creep_note",
     "creep_table",
     "engine_key",
+    "entry",
     "history_table",
     "kernel",
     "largest_of",

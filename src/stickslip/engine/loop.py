@@ -41,7 +41,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import needs_branches
 from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.contact.pressing import before_turn, own_states
@@ -49,12 +48,14 @@ from stickslip.engine.contact.stiffness import is_implicit
 from stickslip.engine.contact_step.stick_or_slip import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_moving_branch
-from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, Integers, NearFold, Task
+from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, NearFold, Task
 from stickslip.engine.state.workspace import ROOM, Run, borrow, lacks_rows
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
+from stickslip.foundation.kernels.signature import Integers1
 from stickslip.problem import Stop
 
 LARGEST_STALL = 1000
@@ -64,8 +65,8 @@ LARGEST_STORM = 10_000
 """A run ends if slips too short to be resolved outnumber all others by more than this (1), because they would never stop."""
 
 
-@kernel
-def run_until(table: Integers, last_trip: int, last_phase: float, passes: int) -> int:
+@entry
+def run_until(table: Integers1, last_trip: int, last_phase: float, passes: int) -> int:
     """Advance a run to the phase `last_phase` (s) of round trip `last_trip`, and return a code of `Stop`.
 
     Stop.NONE means that the loop has made the given number of passes. The other codes that end a call but not the run ask

@@ -1,6 +1,6 @@
-"""Parts of the engine that are compiled separately when a run first needs them; the loop calls them through their addresses.
+"""Parts of the engine that are loaded when a run first needs them; the loop calls them through their addresses.
 
-Most runs need none of them, and each costs seconds to compile. A part is one function of the run's memory, a task and a number.
+Most runs need none of them. A part is one function of the run's memory, a task and a number.
 """
 
 from __future__ import annotations
@@ -10,13 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.compile.kernels import address_of
-from stickslip.engine.compile.lock import made_once
-from stickslip.engine.compile.uncompiled import UNCOMPILED, handle_of
-from stickslip.engine.memory.addresses import PART
 from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.constants import RIGID
+from stickslip.foundation.kernels.lock import made_once
+from stickslip.foundation.kernels.uncompiled import UNCOMPILED, handle_of
 
 PARTS = {
     EnginePart.IMPLICIT_STEPS: "contact_step.implicit_step",
@@ -46,9 +44,9 @@ def function_of(part: EnginePart) -> Any:
 
 @made_once()
 def part_at(function: Any) -> int:
-    """Return the address of the kernel of a part. Compiles it, or takes it from the cache on disk."""
+    """Return the address of the kernel of a part."""
     if not UNCOMPILED:
-        return address_of(function, PART)
+        return int(function.address)
 
     return handle_of(lambda run, task, number: float(function(run.numbers, task, number)))
 

@@ -21,21 +21,23 @@ from stickslip.foundation.sealed_files import cache_root, read_sealed, write_sea
 PACKAGE = Path(__file__).parents[1]
 DIGITS = 16
 """Number of hexadecimal digits of a key."""
+SHIPPED = PACKAGE / "machine_code"
+"""Where machine code, and the keys of code, lie that are made when the package is built."""
 ONE_PLACE = {"lineno": 1, "end_lineno": 1, "col_offset": 0, "end_col_offset": 0}
 """Where all code is put."""
 
 
-def key_of_folders(names: Iterable[str], versions: str, package: Path = PACKAGE) -> str:
-    """Return the key of the code in folders and files of the package, together with the versions of what runs it."""
+def key_of_folders(names: Iterable[str], beside: str = "", package: Path = PACKAGE) -> str:
+    """Return the key of the code in folders and files of the package, together with another key."""
     found: list[str] = []
     for path in (str(package / name) for name in names):
         inside = [f"{top}/{file}" for top, _, files in os.walk(path) for file in files if file.endswith(".py")]
         found += inside or [path]  # a file
-    return key_of_files(sorted(set(found)), versions)
+    return key_of_files(sorted(set(found)), beside)
 
 
-def key_of_files(files: Iterable[Path | str], versions: str) -> str:
-    """Return the key of the code in files; it is kept if the cache has a private folder for it, or else made each time.
+def key_of_files(files: Iterable[Path | str], beside: str = "") -> str:
+    """Return the key of the code in files; it came with the package, is kept if the cache has a private folder for it, or is made.
 
     The folder must be private, because a wrong key would lead to other machine code.
     """
@@ -43,24 +45,35 @@ def key_of_files(files: Iterable[Path | str], versions: str) -> str:
     for file in files:
         with open(file, "rb", buffering=0) as opened:  # noqa: PTH123  # of hundreds of files, in less time than by Path
             texts.append(opened.read())
-    digest = hashlib.sha256(versions.encode())
+    digest = hashlib.sha256(beside.encode())
     for text in (Path(__file__).read_bytes(), *texts):  # how a key is made decides it, too
         digest.update(b"%d " % len(text) + text)
+    name = digest.hexdigest()
+    if name in keys_that_came():
+        return keys_that_came()[name]
     kept = None
     with suppress(OSError):
-        kept = private_folder(cache_root() / "keys") / digest.hexdigest()
+        kept = private_folder(cache_root() / "keys") / name
         if (found := read_sealed(kept)) is not None:
             return found.decode()
-    key = key_of(texts, versions)
+    key = key_of(texts, beside)
     if kept is not None:
         with suppress(OSError):  # whatever else is kept in the cache will meet the same fault, and say so
             write_sealed(kept, key.encode())
     return key
 
 
-def key_of(texts: Iterable[bytes], versions: str) -> str:
+@cache
+def keys_that_came() -> dict[str, str]:
+    """Return the keys that came with the package, by the hash of the files that they were made of."""
+    path = SHIPPED / "keys"
+    lines = (read_sealed(path, own=False) or b"").decode().split() if path.exists() else []
+    return dict(zip(lines[::2], lines[1::2], strict=True))
+
+
+def key_of(texts: Iterable[bytes], beside: str) -> str:
     """Return the key of the code in some source files."""
-    digest = hashlib.sha256(versions.encode())
+    digest = hashlib.sha256(beside.encode())
     for text in texts:
         digest.update(_executed(text))
     return digest.hexdigest()[:DIGITS]

@@ -45,18 +45,20 @@ def write_sealed(path: Path, content: bytes) -> None:
         write_atomically(path, lambda draft: draft.write_bytes(sealed))
 
 
-def read_sealed(path: Path) -> bytes | None:
-    """Return the content of a file, or None if it is missing or damaged; remove it in the second case.
+def read_sealed(path: Path, *, own: bool = True) -> bytes | None:
+    """Return the content of a file, or None if it is missing or damaged; a damaged one of the cache (`own`) is removed.
 
     Whatever else has the name of the file counts as damage and is not read: a pipe or a device, which might never end, a link, a
     file of another user, and one that is larger than any of the cache.
     """
     with suppress(OSError, InputError):  # it cannot be read, or may not be
-        sealed = read_bounded(path, LARGEST_FILE, own=True)
+        sealed = read_bounded(path, LARGEST_FILE, own=own)
         content = sealed[OF_SEAL:]
         if sealed[:OF_SEAL] == SEAL + _checksum(path, content):
             return content
-    if os.path.lexists(path):
+    if not own:
+        tell(f"{path} came with the package and is damaged: what it holds is made anew; pip install --force-reinstall stickslip")
+    elif os.path.lexists(path):
         tell(f"the cache of compiled code in {path.parent} is damaged: what is damaged is compiled again")
         remove(path)
     return None

@@ -59,7 +59,7 @@ def test_a_sound_installation_is_well(command: Command) -> None:
 
 NOTED = """
 import sys
-from stickslip.engine.compile.one_module import KernelCache
+from stickslip.foundation.kernels.one_module import KernelCache
 names, load = set(), KernelCache.load_overload
 def noted(self, *rest):
     names.add(self._function.__qualname__)

@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.uncompiled import MATHS
+from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.engine.formula_code.taylor_series import FormulaWriter
 from stickslip.engine.series import ball_radii, sine
 from stickslip.engine.state.layout import Ball

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.compile.uncompiled import MATHS
+from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, compile_formula
 from stickslip.engine.formula_code.recurrences import Recurrences
 from stickslip.engine.formula_code.taylor_series import ORDER, FormulaWriter

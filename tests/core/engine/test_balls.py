@@ -14,7 +14,7 @@ from numpy.polynomial import polynomial as poly
 
 from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.lanes.workspace import apart
-from stickslip.engine.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii
 from stickslip.engine.series.polynomial import (
     MOST_CROSSINGS,

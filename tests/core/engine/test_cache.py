@@ -15,8 +15,8 @@ from unittest.mock import Mock
 
 import pytest
 
-from stickslip.engine.compile import one_module
-from stickslip.engine.compile.kernels import _checksum_of
+from stickslip.foundation.kernels import one_module
+from stickslip.foundation.kernels.kernels import _checksum_of
 from stickslip.foundation import sealed_files
 from stickslip.foundation.atomic_write import DRAFT
 from stickslip.foundation.private_folder import NotPrivateError, private_folder
@@ -62,8 +62,8 @@ def test_a_second_scenario_compiles_nothing_and_makes_no_compiler_ready_and_code
 KEPT = """
 import ctypes
 from stickslip.engine.formula_code import formula_machine
-from stickslip.engine.compile.cache import CACHE
-from stickslip.engine.compile.kernels import kernel
+from stickslip.foundation.kernels.cache import CACHE
+from stickslip.foundation.kernels.kernels import kernel
 
 @kernel
 def twice(x):
@@ -203,8 +203,8 @@ def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault(
 
 
 def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from stickslip.engine.compile import cache
-    from stickslip.engine.compile.kernels import kernel
+    from stickslip.foundation.kernels import cache
+    from stickslip.foundation.kernels.kernels import kernel
 
     def full(path: Path, write: Callable[[Path], object]) -> Path:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
@@ -268,7 +268,7 @@ def test_a_draft_that_is_a_pipe_holds_up_nobody(tmp_path: Path) -> None:
 
 def test_a_long_process_looks_again_at_the_size_of_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A process that has written 10 MB since it last looked removes what has not been used for longest."""
-    from stickslip.engine.compile import cache
+    from stickslip.foundation.kernels import cache
 
     folder = tmp_path / "compiled-0"
     folder.mkdir()
@@ -285,7 +285,7 @@ def test_a_long_process_looks_again_at_the_size_of_the_cache(tmp_path: Path, mon
 
 
 def test_the_cache_keeps_the_files_that_were_used_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from stickslip.engine.compile import cache
+    from stickslip.foundation.kernels import cache
 
     monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(tmp_path))
     folder = tmp_path / "compiled-0" / "plain" / "formulas_0"
@@ -356,7 +356,7 @@ def test_compiling_the_engine_is_announced(
     spent: float, name: str, has_engine: bool, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The engine takes long to compile; of others something is said once they have taken long, and of a small one nothing."""
-    from stickslip.engine.compile import cache
+    from stickslip.foundation.kernels import cache
     from stickslip.engine.loop import run_until
     from stickslip.engine.series.polynomial import total
 

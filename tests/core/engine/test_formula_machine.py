@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.uncompiled import MATHS
+from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, NAMES
 from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
 from stickslip.engine.lanes.workspace import apart
-from stickslip.engine.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii, sine
 from stickslip.friction import LAWS
 from tests.core.engine.drawn import example_law

@@ -12,9 +12,9 @@ import pytest
 from numba import njit
 
 from stickslip.engine.lanes.workspace import apart
-from stickslip.engine.memory.addresses import ahead, floats, integers
-from stickslip.engine.memory.pointers import rows_of
-from stickslip.engine.memory.simd import WIDTH, chosen, store_across
+from stickslip.foundation.kernels.memory.addresses import ahead, floats, integers
+from stickslip.foundation.kernels.memory.pointers import rows_of
+from stickslip.foundation.kernels.memory.simd import WIDTH, chosen, store_across
 from stickslip.engine.series.polynomial import (
     bound_below,
     bound_of_slope,

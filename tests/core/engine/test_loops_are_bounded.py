@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.compile.cache import compiled_sources
+from stickslip.foundation.kernels.cache import compiled_sources
 from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, extremes, first_descent
 from stickslip.engine.state.layout import TERMS

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 PRINTED = (
-    "from stickslip.engine.compile import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
+    "from stickslip.foundation.kernels import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
 )
 
 MISSING = {
@@ -66,7 +66,7 @@ def test_a_numba_that_cannot_serve_gets_one_line() -> None:
 
 
 REFUSED = """
-from stickslip.engine.compile.kernels import kernel
+from stickslip.foundation.kernels.kernels import kernel
 import numba.core.lowering as lowering, numba.core.typeinfer as typeinfer
 before = [lowering.new_error_context, typeinfer.new_error_context]
 
@@ -88,7 +88,7 @@ def test_a_kernel_that_cannot_be_compiled_says_why_and_leaves_numba_as_it_was() 
 REFERENCES = """
 import gc, sys
 import numpy as np
-from stickslip.engine.compile.kernels import kernel
+from stickslip.foundation.kernels.kernels import kernel
 
 @kernel
 def made(n):

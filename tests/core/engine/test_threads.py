@@ -13,7 +13,7 @@ from uuid import uuid4
 
 import pytest
 
-from stickslip.engine.compile.lock import LOCK, made_once
+from stickslip.foundation.kernels.lock import LOCK, made_once
 from tests.core.engine.at_once import SETTING, python
 
 CASES = {

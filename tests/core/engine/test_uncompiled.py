@@ -16,10 +16,10 @@ from numba import njit, types
 from numba.core.compiler import run_frontend
 from numba.core.errors import TypingError
 
-from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.compile.numba_privates import LLVM_LOCK
-from stickslip.engine.compile.one_module import LeanCompiler
-from stickslip.engine.compile.shortcuts import _variables_in
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.numba_privates import LLVM_LOCK
+from stickslip.foundation.kernels.one_module import LeanCompiler
+from stickslip.foundation.kernels.shortcuts import _variables_in
 from stickslip.engine.history.turning_points import search_history
 from tests.core.engine.uncompiled_runs import RUNS, results
 
@@ -106,7 +106,7 @@ def test_plain_python_gives_what_compiled_code_gives(uncompiled: dict[str, dict[
 
 
 def test_a_place_outside_an_array_is_an_error() -> None:
-    from stickslip.engine.compile.uncompiled import Pointer, lend_memory, pointer_at
+    from stickslip.foundation.kernels.uncompiled import Pointer, lend_memory, pointer_at
 
     numbers = np.arange(6.0)
     lend_memory(numbers)

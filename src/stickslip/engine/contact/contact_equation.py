@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import note_jump
 from stickslip.engine.contact.pressing import is_pressing, own_states
-from stickslip.engine.memory.addresses import ahead, call_state_value, call_value
-from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Floats, Incoming
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, call_state_value, call_value
+from stickslip.foundation.kernels.memory.pointers import numbers_of
 from stickslip.problem import Stop
 
 TIE = 1e-13

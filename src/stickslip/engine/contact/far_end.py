@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.state.layout import Task
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
 
 
 @kernel

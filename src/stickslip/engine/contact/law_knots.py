@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import NEAR_KNOT, friction_of, is_knot, piece_at
 from stickslip.engine.series.polynomial import NONE, first_descent
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
 
 
 @kernel

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.far_end import gain_of_echo
-from stickslip.engine.memory.addresses import ahead, call_part
 from stickslip.engine.series.polynomial import copy, degree, extremes, fill, scale_low, total, turn_over
 from stickslip.engine.state.layout import TERMS, Task
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, call_part
 
 RESOLVED = 1e-12
 """Shortest slip (duration as a share of a round trip, 1) whose two ends double precision separates well enough."""

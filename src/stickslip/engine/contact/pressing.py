@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import phase_at, xi_at
-from stickslip.engine.memory.addresses import ahead, call_part
 from stickslip.engine.series.polynomial import RECIPROCAL, fill
 from stickslip.engine.series.radau_nodes import POINT, POINTS
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, call_part
 
 LARGEST_TURN = 1.0
 """The series of a tone is right to rounding up to this phase (rad)."""

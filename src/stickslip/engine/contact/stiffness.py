@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import law_at
 from stickslip.engine.contact.pressing import own_states
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, evaluate, fill
 from stickslip.engine.state.layout import STATES, TERMS, Floats
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
 
 STIFF, NOT_STIFF = 4.0, 1.5
 """The contact becomes stiff if an explicit step spans more than STIFF settling times (1): only stability can have kept it so short.

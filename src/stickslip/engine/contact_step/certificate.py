@@ -22,14 +22,14 @@ import math
 
 import numpy as np
 
-from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import constants_of, formula_at
-from stickslip.engine.memory.addresses import ahead, call_radii
-from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import bound_of_slope, bounds_on_disc, multiply, powers_of, variation_on_disc
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, call_radii
+from stickslip.foundation.kernels.memory.pointers import numbers_of
 from stickslip.problem import Stop
 
 ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0

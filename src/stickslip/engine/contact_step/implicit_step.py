@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, record
@@ -18,13 +17,14 @@ from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Task
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
 from stickslip.problem import Stop
 
 STILL = 1e-3
@@ -135,7 +135,7 @@ def stick_with_state(run: Run, xi_to: float) -> bool:
     return True
 
 
-@kernel
+@entry
 def implicit_steps(memory: int, task: int, xi_to: float) -> float:
     """Take an implicit step up to the place xi_to at most; return 0 if a contact at rest needs none."""
     if task == Task.SLIP_IMPLICITLY:

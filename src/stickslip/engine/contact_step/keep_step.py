@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import friction_at
 from stickslip.engine.contact.pieces import record
 from stickslip.engine.contact_step.step_events import growth
@@ -12,6 +11,7 @@ from stickslip.engine.series.polynomial import RECIPROCAL, evaluate, multiply, t
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import inlined, kernel
 
 
 @kernel

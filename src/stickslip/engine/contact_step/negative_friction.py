@@ -6,13 +6,13 @@ two ends, and friction that drives slip must not pass unnoticed.
 
 from __future__ import annotations
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.stiffness import contact_at, states_in_step
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE, rough
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.kernels.kernels import entry, kernel
 
 PARTS_OF_STEP = 16
 """A step is divided into this many parts to look for minima of friction. It covers at most about one oscillation of a law, because
@@ -118,7 +118,7 @@ def friction_in_step(run: Run, rate: Floats, length: float, place: float) -> flo
     return run.params.reference / run.params.normal + run.value.mu
 
 
-@kernel
+@entry
 def negative_friction(memory: int, task: int, length: float) -> float:
     """Return 1 if friction falls below zero in the explicit step of the given length (in units) that is being made, else 0."""
     run = borrow(memory)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import TIE
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
 from stickslip.engine.contact_step.stick_or_slip import come_to_rest
@@ -12,6 +11,7 @@ from stickslip.engine.folds.fold import reach_end
 from stickslip.engine.series.polynomial import NONE, first_descent, integral, magnitude, multiply, powers_of
 from stickslip.engine.state.layout import Floats, StepEvent
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import inlined, kernel
 
 
 class Cut(NamedTuple):

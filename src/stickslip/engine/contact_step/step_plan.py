@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import TIE, branch_exit
 from stickslip.engine.folds.fold import SHORTEST_FOLD, ends_at_fold, load_outruns_fold, reach_end, starts_at_fold
-from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.state.layout import EnginePart, NearFold, Task
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
 
 
 class StepPlan(NamedTuple):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import (
     SAME_LEVEL,
     TIE,
@@ -24,6 +23,7 @@ from stickslip.engine.contact.stiffness import turn_states
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale_low
 from stickslip.engine.state.layout import TERMS, Cause, Floats
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
 
 TOUCH = 10.0
 """A rest shorter than sqrt(10 local tolerances) round trips, which is sqrt(rtol), is a brush with v = 0, not an arrest (1)."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import (
     TIE,
     constants_of,
@@ -34,13 +33,14 @@ from stickslip.engine.contact_step.keep_step import move
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
 from stickslip.engine.contact_step.step_plan import StepPlan, plan_step, plan_to_moving_fold
 from stickslip.engine.folds.fold import last_to_fold, reach_end
-from stickslip.engine.memory.addresses import call_jet, call_part
-from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import multiply, total
 from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, NearFold, SeriesInput, StepEvent, Task
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import call_jet, call_part
+from stickslip.foundation.kernels.memory.pointers import numbers_of
 from stickslip.problem import Stop
 
 LONGEST_GUESS = 2.0

@@ -8,10 +8,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.history.series import horner
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
+from stickslip.foundation.kernels.signature import Floats1, Floats2
 
 SMALLEST = 1e-300
 """Smallest divisor: it keeps a division by zero from occurring."""
@@ -75,13 +77,14 @@ NO_ROOM = -1
 """Says that a pattern has more monotone parts than there is room for."""
 
 
-@kernel
-def cut_at_extrema(load: Floats, given: Floats, cut: Floats, shape: Floats) -> int:
+@entry
+def cut_at_extrema(load: Floats2, given: Floats2, cut: Floats2, shape: Floats2) -> int:
     """Write the monotone parts of the pieces of a load into `cut`, and their phase, speed and bend into rows of `shape`.
 
     Those of the pieces are the rows of `given`. Returns the number of parts.
     """
-    slope, places, spare, count = np.zeros(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS), 0
+    slope, places, spare, count = room_for(TERMS), room_for(MOST_CROSSINGS), room_for(TERMS), 0
+    slope[TERMS - 1] = 0.0
     for n in range(len(load)):
         for k in range(1, TERMS):
             slope[k - 1] = k * load[n, k]
@@ -109,14 +112,14 @@ def area_up_to(load: Floats, speed: float, bend: float, xi: float) -> float:
     return xi * (straight + xi * bent)
 
 
-@kernel
-def part_above(load: Floats, shape: Floats, ends: Floats, lift: float, out: Floats) -> None:
+@entry
+def part_above(load: Floats2, shape: Floats2, ends: Floats2, lift: float, out: Floats1) -> None:
     """Write into the first four entries of `out` the numbers of `Above`, for a load that is lifted by `lift` (Pa).
 
     `shape` has phase, speed and bend of each part in its rows, `ends` its lowest and highest load, its integral and its length.
     The rest of `out` is room for two numbers of each part that crosses the level.
     """
-    shifted, places, spare = np.empty(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)
+    shifted, places, spare = room_for(TERMS), room_for(MOST_CROSSINGS), room_for(TERMS)
     area, length, crossed = 0.0, 0.0, 0
     for n in range(len(load)):
         low, high, speed, bend = ends[0, n], ends[1, n], shape[1, n], shape[2, n]

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.contact.pieces import note_degree, phase_at
 from stickslip.engine.contact.pressing import own_states, press
-from stickslip.engine.memory.addresses import call_part
-from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats, NearFold, Task
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
+from stickslip.foundation.kernels.memory.pointers import numbers_of
 
 SHORTEST_FOLD = 1e-9
 """A way to a fold shorter than this (in xi) needs no side piece: the square root makes no difference."""
@@ -249,7 +249,7 @@ def leave_moving_branch(run: Run) -> None:
         run.counts.at_fold = NearFold.PASSING
 
 
-@kernel
+@entry
 def folds(memory: int, task: int, way: float) -> float:
     """Lead slip over the given way (in xi) to a fold or away from one: see `Task`."""
     run = borrow(memory)

@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.series.polynomial import NONE
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
 
 REVERSED = 14
 """Order of the reversed series (1): rounding grows with it, to 1e-13 here."""
+ROWS = REVERSED + 1
+"""Number of its terms (1)."""
+TABLE = ROWS * ROWS
+"""Numbers (1) in a table of such series."""
 ENOUGH = 1e-12
 """Largest sum of the last two terms (1), relative to the time to the fold, for the fold to count as found."""
 ALIKE = 0.03
@@ -44,18 +47,20 @@ def reversed_series(jet: Floats, time: float, out: Floats) -> None:
 
     In these units the series of a square root alone is 2 z - z^2.
     """
-    powers = np.zeros((REVERSED + 1, REVERSED + 1))  # z^n in (t / time)^j
+    powers = room_for(TABLE)  # z^n in (t / time)^j
+    for n in range(TABLE):
+        powers[n] = 0.0
     out[0], out[1] = 0.0, 2.0
-    powers[1, 1] = 2.0
-    for n in range(2, REVERSED + 1):
+    powers[ROWS + 1] = 2.0
+    for n in range(2, ROWS):
         out[n] = 0.0
         scale = 1.0
         for j in range(2, n + 1):
             for m in range(1, n - j + 2):
-                powers[j, n] += powers[1, m] * powers[j - 1, n - m]
+                powers[ROWS * j + n] += powers[ROWS + m] * powers[ROWS * (j - 1) + n - m]
             scale *= time
-            out[n] -= jet[j] / jet[1] * scale * powers[j, n]
-        powers[1, n] = out[n]
+            out[n] -= jet[j] / jet[1] * scale * powers[ROWS * j + n]
+        powers[ROWS + n] = out[n]
 
 
 @kernel
@@ -67,7 +72,7 @@ def fold_ahead(jet: Floats) -> tuple[float, float]:
     time = time_to_root(jet)
     if time == NONE:
         return NONE, 0.0
-    series = np.empty(REVERSED + 1)
+    series = room_for(ROWS)
     reversed_series(jet, time, series)
     if not abs(series[REVERSED]) + abs(series[REVERSED - 1]) <= ENOUGH:
         return NONE, 0.0
@@ -110,7 +115,7 @@ def way_to_fold(run: Run, unit: float) -> float:
     return eta * unit
 
 
-@kernel
+@entry
 def moving_folds(memory: int, task: int, unit: float) -> float:
     """Return the way (in xi) to the moving fold that the present series, in units of `unit` (in xi), runs into."""
     return way_to_fold(borrow(memory), unit)

@@ -11,20 +11,17 @@ from __future__ import annotations
 import ast
 import inspect
 from collections.abc import Mapping, Sequence
-from functools import cache, reduce
+from functools import reduce
 from typing import Any
 
-import llvmlite
 import llvmlite.binding as llvm
 import llvmlite.ir as ir
-from numba import config
 
-from stickslip.engine.compile.cache import Kept
-from stickslip.engine.memory.simd import VECTOR, WIDTH
+from stickslip.foundation.kernels.code import Kept, loaded
+from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.processor import PROCESSOR
 
-llvm.initialize_native_target()
-llvm.initialize_native_asmprinter()
-
+VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 FUSED = ("contract",)
 """Flags of instructions: a product and a sum may be fused into one operation, as in kernels (`kernels.OPTIONS`)."""
 NUMBER, PLACE, WHOLE, NOTHING = ir.DoubleType(), ir.IntType(32), ir.IntType(64), ir.VoidType()
@@ -45,49 +42,25 @@ class MachineCode:
 
         Arguments are arrays if they are marked by [], otherwise floats; `names` has what the statements call.
         """
-        text = "\n".join([*_processor(), llvmlite.__version__, str(config.OPT), str(lanes), ", ".join(arguments), *statements])
-        kept = Kept("formula", text)
+        kept = Kept("formula", "\n".join([str(lanes), ", ".join(arguments), *statements]))
         code = kept.read()
         if code is None:
             code = _object_code(statements, arguments, VECTOR if lanes else NUMBER, names)
             kept.write(code)
-        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target_machine())
-        self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-        self._engine.finalize_object()
+        self._engine = loaded(code)
         self.address = int(self._engine.get_function_address("formula"))
-
-
-@cache
-def _processor() -> tuple[str, str]:
-    """Return the name and the features of the processor that numba compiles for."""
-    features = llvm.get_host_cpu_features()
-    for name in features:
-        features[name] = features[name] and (bool(config.ENABLE_AVX) or not name.startswith("avx"))
-    return (
-        llvm.get_host_cpu_name() if config.CPU_NAME is None else config.CPU_NAME,
-        features.flatten() if config.CPU_FEATURES is None else config.CPU_FEATURES,
-    )
-
-
-def _target_machine() -> Any:
-    target, (cpu, features) = llvm.Target.from_triple(llvm.get_process_triple()), _processor()
-    reloc = "static" if target.name.startswith("x86") else "default"
-    return target.create_target_machine(opt=config.OPT, cpu=cpu, features=features, reloc=reloc, codemodel="jitdefault", jit=True)
 
 
 def _object_code(statements: Sequence[str], arguments: Sequence[str], kind: ir.Type, names: Mapping[str, Any]) -> bytes:
     """Return the optimised machine code of a function named `formula`, as an object file."""
-    module, machine = ir.Module(), _target_machine()
+    module = ir.Module()
     types = [kind.as_pointer() if name.endswith("[]") else kind for name in arguments]
     function = ir.Function(module, ir.FunctionType(NOTHING, types), "formula")
     body = _Body(function, kind, [name.strip("[]") for name in arguments], names)
     body.write(ast.parse("\n".join(statements)).body)
     body.builder.ret_void()
-    module.triple, module.data_layout = llvm.get_process_triple(), str(machine.target_data)
-    made = llvm.parse_assembly(str(module))
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(config.OPT))
-    passes.getModulePassManager().run(made, passes)
-    return bytes(machine.emit_object(made))
+    module.triple, module.data_layout = llvm.get_process_triple(), str(PROCESSOR.machine().target_data)
+    return PROCESSOR.optimised(llvm.parse_assembly(str(module)))
 
 
 class _Body:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.history.series import integrals_at, values_at
 from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.kernels import entry
+from stickslip.foundation.kernels.signature import Floats1, Integers1
 from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem
 
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 Side = Literal["left", "right"]
 
 
-@kernel
-def add_up(values: Floats, past: Integers, sums: Floats) -> None:
+@entry
+def add_up(values: Floats1, past: Integers1, sums: Floats1) -> None:
     """Add up consecutive groups of values, term by term: group n ends before index past[n] and begins where group n - 1 ends."""
     begin = 0
     for n in range(len(past)):

@@ -16,12 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.history.series import horner
 from stickslip.engine.input.forcing import EDGE, Inflow, inflow_of, machine_at_first, pull_of, settled_rate, wave_before
 from stickslip.engine.state.layout import TERMS, Store
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.kernels import entry
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3
 from stickslip.problem import Problem
 
 FINEST = 0.5
@@ -40,8 +41,8 @@ class Machine(NamedTuple):
     gain: float  # Pa/m
 
 
-@kernel
-def walk(series: Floats, pace: Floats, machine: Machine, start: Floats) -> None:
+@entry
+def walk(series: Floats3, pace: Floats2, machine: Machine, start: Floats1) -> None:
     """Write the series of rate and push of a machine along parts of its time, each of which begins where the last one ended.
 
     `series` holds force, pull rate, rate and push (4, parts, TERMS): the first two are given, the others found. A row of `pace`

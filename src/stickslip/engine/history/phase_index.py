@@ -13,8 +13,9 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.signature import Integers1
 
 NOTHING = -1
 """Marks a phase without a recorded piece."""
@@ -24,8 +25,8 @@ FEW = 64
 """Number of recent pieces that are searched first for the waves in the body."""
 
 
-@kernel
-def _collect(first: Integers, past: Integers, leaves: int, place: Integers, members: Integers) -> None:
+@entry
+def _collect(first: Integers1, past: Integers1, leaves: int, place: Integers1, members: Integers1) -> None:
     """Enter each piece into the nodes that make up its interval, from place[node] on; with empty `members`, only count them."""
     for n in range(len(first)):
         low, high = first[n] + leaves, past[n] + leaves
@@ -63,8 +64,8 @@ def _last(members: Integers, begin: int, end: int, upto: int) -> int:
     return begin - 1
 
 
-@kernel
-def _latest(begins: Integers, members: Integers, leaf: Integers, upto: Integers, found: Integers) -> None:
+@entry
+def _latest(begins: Integers1, members: Integers1, leaf: Integers1, upto: Integers1, found: Integers1) -> None:
     """Find, for each leaf (by the number of its node), the last piece up to upto[q] in any node on the way to the root."""
     for q in range(len(leaf)):
         node, found[q] = leaf[q], NOTHING
@@ -75,8 +76,8 @@ def _latest(begins: Integers, members: Integers, leaf: Integers, upto: Integers,
             node >>= 1
 
 
-@kernel
-def _standing(begins: Integers, members: Integers, upto: int, best: Integers) -> None:
+@entry
+def _standing(begins: Integers1, members: Integers1, upto: int, best: Integers1) -> None:
     """Find, for every node from the root down, the last piece up to `upto` that covers it."""
     best[0] = NOTHING
     for node in range(1, len(best)):

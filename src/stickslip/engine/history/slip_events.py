@@ -7,14 +7,15 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.history.history import History, Positions
-from stickslip.engine.history.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
-from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import MemoryRecord
+from stickslip.engine.history.turning_points import FULL, Known, SearchMemory, Spare, Turn, search_history, turns_in
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.pointers import record_at
+from stickslip.foundation.kernels.memory.records import MemoryRecord
+from stickslip.foundation.kernels.signature import Floats1, Integers1, Integers2
 from stickslip.problem import default_event_rate
 
 LAST_THIRD = 2.0 / 3.0
@@ -41,9 +42,9 @@ events_in: Any = record_at(EventTurns)
 
 
 @kernel
-def group_turns(turns: Turn | Integers, found: int, events: EventTurns | Integers) -> int:
+def group_turns(turns: Turn, found: int, events: EventTurns) -> int:
     """Group the first `found` points of |slip rate|, in order of time, to events, and return their number."""
-    points, out, count = turns_in(turns), events_in(events), 0
+    points, out, count = turns, events, 0
     for n in range(found):
         if points[n].kind == 1:
             out[count].begin = out[count].top = n
@@ -66,6 +67,12 @@ def group_turns(turns: Turn | Integers, found: int, events: EventTurns | Integer
     return count
 
 
+@entry
+def group_turns_in(turns: Integers2, events: Integers2) -> int:
+    """Do what `group_turns` does for tables."""
+    return group_turns(turns_in(turns), len(turns), events_in(events))
+
+
 @kernel
 def rises_over(c: Floats, rate: float) -> bool:
     """Return True if |slip rate| exceeds a rate at any of four places of a piece."""
@@ -75,8 +82,8 @@ def rises_over(c: Floats, rate: float) -> bool:
     return highest > rate
 
 
-@kernel
-def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -> None:
+@entry
+def find_aftermath(table: Integers2, piece: Integers1, xi: Floats1, by: Integers1) -> None:
     """Find the piece that makes the aftermath of each event known; see `SlipEvents.known_by`."""
     pieces = pieces_in(table)
     for n in range(len(piece)):
@@ -100,13 +107,13 @@ def time_slipping(pieces: HistoryPiece, length: int, round_trip_time: float, beg
     return total
 
 
-@kernel
-def time_slipping_in(table: Integers, round_trip_time: float, begin: float, end: float) -> float:
+@entry
+def time_slipping_in(table: Integers2, round_trip_time: float, begin: float, end: float) -> float:
     """Do what `time_slipping` does for the table of a history."""
     return time_slipping(pieces_in(table), len(table), round_trip_time, begin, end)
 
 
-@kernel
+@entry
 def rest_of(slipping: float, length: float) -> float:
     """Return the share (1) of rest in a length of time (s), given the time of slip; a share that may be rounding counts as 0."""
     share = 1.0 - slipping / length
@@ -142,7 +149,8 @@ def walk(history: History, threshold: float, begin: int = 0) -> Integers:
     known, spare, room = Known.table(len(history)), Spare.table(1), 8 * (len(history) - begin) + 4 * MOST_CROSSINGS
     while True:
         turns = Turn.table(room)
-        found = search_history(history.store.pieces, (turns, known, spare), begin, threshold, history.problem.friction.sticks)
+        memory = SearchMemory(turns, known, spare)
+        found = search_history(history.store.pieces, memory, begin, threshold, history.problem.friction.sticks)
         if found != FULL:
             return turns[:found]
         room *= 2
@@ -180,7 +188,7 @@ class SlipEvents(NamedTuple):
     def _all_of(cls, history: History, threshold: float, first: int = 0) -> Self:
         table = walk(history, threshold, first)
         grouped = EventTurns.table(len(table))
-        found = EventTurns.of(grouped[: group_turns(table, len(table), grouped)])
+        found = EventTurns.of(grouped[: group_turns_in(table, grouped)])
         turns, last = Turn.of(table), found.past - 1
         places = np.stack([found.begin, found.top, last])
         return cls(turns.piece[places], turns.xi[places], turns.rate[found.top], found.pulses, turns.kind[last] == -1, threshold)

@@ -19,13 +19,13 @@ from stickslip.engine.history.history import History
 from stickslip.engine.history.status import Checkpoint
 from stickslip.engine.input.branch_table import table_of_branches
 from stickslip.engine.input.prepare import prepare
-from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, counts_in
 from stickslip.engine.waves.merged_series import MEAN, MOST_TOGETHER
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.memory.records import MemoryRecord
 from stickslip.problem import Problem, Stop
 
 ROUND_TRIP_ROUNDING = 1e-9

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from functools import cache
 
-from stickslip.engine.compile.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers
 from stickslip.engine.state.workspace import NO_WAVES
 from stickslip.foundation.code_key import key_of_folders
+from stickslip.foundation.kernels.code import SOURCES
 
 DECIDE = ("contact", "engine", "friction", "problem", "run", "solution")
 """Folders of the package whose code decides the result of a run."""

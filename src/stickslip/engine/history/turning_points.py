@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.compile.kernels import inlined, kernel
-from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import MemoryRecord, floats_inside
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, differentiate, evaluate, total
-from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
+from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece
 from stickslip.engine.state.workspace import pieces_in
+from stickslip.foundation.kernels.kernels import entry, inlined, kernel
+from stickslip.foundation.kernels.memory.pointers import record_at
+from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_inside
+from stickslip.foundation.kernels.signature import Floats2, Integers2
 
 SAME = 1e-12
 """If a slip rate is closer to the threshold, or a bound closer to zero, than this (relative), rounding may decide its sign."""
@@ -67,11 +68,19 @@ class Search(NamedTuple):
     spare: Spare
 
 
-@kernel
-def search_history(table: Integers, memory: tuple[Integers, Integers, Floats], begin: int, threshold: float, sticks: bool) -> int:
-    """Do what `find_turns` does for the table of a history; `memory` holds the arrays of a `Search`: points, known and room."""
-    turns, known, spare = memory
-    search = Search(pieces_in(table), known_in(known), turns_in(turns), len(turns), spare_in(spare))
+class SearchMemory(NamedTuple):
+    """Hold the arrays of a `Search`: points, known and room."""
+
+    turns: Integers2
+    known: Integers2
+    spare: Floats2
+
+
+@entry
+def search_history(table: Integers2, memory: SearchMemory, begin: int, threshold: float, sticks: bool) -> int:
+    """Do what `find_turns` does for the table of a history."""
+    points = turns_in(memory.turns)
+    search = Search(pieces_in(table), known_in(memory.known), points, len(memory.turns), spare_in(memory.spare))
     return find_turns(search, (begin, len(table)), threshold, sticks)
 
 

@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.memory.addresses import ahead, bits_of, call_value, float_of, floats
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import branches_in
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, bits_of, call_value, float_of, floats, room_for
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Integers1
 
 MOST_BRANCHES = 4
 """Room of tables for branches."""
@@ -44,20 +43,20 @@ class Resistances(NamedTuple):
     """Hold what the resistances of all members are calculated from, and where to look for their folds."""
 
     address: int  # of the formula's compiled `value`
-    constants: Floats  # (members or 1, 1, size)
-    damping: Floats  # the same
-    normal: Floats  # S, Pa
-    start: Floats  # g(0+) minus the static strength, Pa
-    slowest: Floats  # slowest and fastest scale of the contact, m/s
-    fastest: Floats
+    constants: Floats3  # (members or 1, 1, size)
+    damping: Floats1  # the same
+    normal: Floats1  # S, Pa
+    start: Floats1  # g(0+) minus the static strength, Pa
+    slowest: Floats1  # slowest and fastest scale of the contact, m/s
+    fastest: Floats1
 
 
 class FoundBranches(NamedTuple):
     """Hold what is found for each member."""
 
-    table: Floats  # (members, largest number of branches, Branch.total)
-    branches: Integers  # number of branches; NEVER_RISES or TOO_MANY
-    irregular: Floats  # 1 if several slip rates solve the contact equation at some load
+    table: Floats3  # (members, largest number of branches, Branch.total)
+    branches: Integers1  # number of branches; NEVER_RISES or TOO_MANY
+    irregular: Floats1  # 1 if several slip rates solve the contact equation at some load
 
 
 @kernel
@@ -133,15 +132,14 @@ def turns_once(g: MemberResistance, slowest: float, fastest: float, ends: Floats
     return 1
 
 
-@kernel
-def search_branches(of: Resistances, ends: Floats, work: Floats, found: FoundBranches) -> None:
+@entry
+def search_branches(of: Resistances, ends: Floats2, work: Floats1, found: FoundBranches) -> None:
     """Find the branches of each member's resistance and what follows from them.
 
     `ends` holds the ends of the branches (m/s) of each member, whose number is in `found`; without members mu is convex or concave,
-    and they are found here. work has room for what `value` returns and belongs to the caller, because an array made here
-    would be freed as soon as its address is taken.
+    and they are found here. `work` has room for what `value` returns.
     """
-    own = np.empty(2)
+    own = room_for(2)
     out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
     for n in range(len(found.table)):
         c = ahead(floats(of.constants.ctypes.data), n * size)
@@ -151,7 +149,7 @@ def search_branches(of: Resistances, ends: Floats, work: Floats, found: FoundBra
         count, found.irregular[n] = found.branches[n], 0.0
         if count <= 0:
             continue
-        branches, edges = branches_in(found.table[n]), own if len(ends) == 0 else ends[n]
+        branches, edges = branches_in(found.table[n]), own if len(ends) == 0 else floats(ends[n].ctypes.data)
         for i in range(count):
             branch, low, high = branches[i], edges[2 * i], edges[2 * i + 1]
             branch.rate_from, branch.rate_to = low, high

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from stickslip.engine.compile.kernels import inlined
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact_step.certificate import RATIOS, SHRUNK, SHRUNK_SLOPE
-from stickslip.engine.memory.pointers import all_lanes, one_lane
-from stickslip.engine.memory.records import MemoryRecord, floats_inside, inside
-from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series.polynomial import powers_of
 from stickslip.engine.state.layout import TERMS, Ball, Floats, HistoryPiece, LawValue, SeriesInput, State
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import inlined
+from stickslip.foundation.kernels.memory.pointers import all_lanes, one_lane
+from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_inside, inside
+from stickslip.foundation.kernels.memory.simd import WIDTH
 
 
 class LaneBlock(MemoryRecord):

@@ -12,7 +12,6 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.pieces import note_slip
 from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
 from stickslip.engine.contact_step.certificate import (
@@ -52,9 +51,6 @@ from stickslip.engine.lanes.lane_block import (
     put_in,
     take_out,
 )
-from stickslip.engine.memory.addresses import ahead, call_jet, call_radii, call_values, integers
-from stickslip.engine.memory.pointers import numbers_of, rows_of
-from stickslip.engine.memory.simd import WIDTH, chosen, first_of, store_across
 from stickslip.engine.series.polynomial import (
     NONE,
     bound_below,
@@ -69,6 +65,10 @@ from stickslip.engine.series.polynomial import (
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import ROOM, RUN_SIZE, Run, borrow
+from stickslip.foundation.kernels.kernels import inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, call_jet, call_radii, call_values, integers
+from stickslip.foundation.kernels.memory.pointers import numbers_of, rows_of
+from stickslip.foundation.kernels.memory.simd import WIDTH, chosen, first_of, store_across
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""

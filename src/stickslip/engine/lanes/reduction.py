@@ -10,16 +10,16 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import friction_of
 from stickslip.engine.history.history import OFFSET_ROUNDING
 from stickslip.engine.history.slip_events import LAST_THIRD, EventTurns, rest_of, rises_over, time_slipping
 from stickslip.engine.history.turning_points import Known, Turn, starts_from_rest
-from stickslip.engine.memory.pointers import numbers_of, record_at
-from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, pieces_in
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.pointers import numbers_of, record_at
+from stickslip.foundation.kernels.memory.records import MemoryRecord
 from stickslip.problem import Stop
 
 

@@ -9,13 +9,8 @@ arrays are counted only when a run has ended.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numba import carray, types
-from numba.extending import intrinsic
-
-from stickslip.engine.compile.kernels import address_of, inlined, kernel
-from stickslip.engine.compile.lock import made_once
 from stickslip.engine.history.slip_events import EventTurns, events_in, group_turns
 from stickslip.engine.history.turning_points import FULL, Known, Search, Spare, Turn, find_turns, known_in, spare_in, turns_in
 from stickslip.engine.lanes.lanes import Side, Waits, step_side_by_side
@@ -31,11 +26,13 @@ from stickslip.engine.lanes.reduction import (
 )
 from stickslip.engine.lanes.workspace import LaneStage, Setups, Workspace
 from stickslip.engine.loop import run_until
-from stickslip.engine.memory.addresses import ahead, call_prepare, floats, integers
-from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
-from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
+from stickslip.foundation.kernels.kernels import entry, inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import CallAt, ahead, call_prepare, floats, integers
+from stickslip.foundation.kernels.memory.pointers import numbers_of, whole_numbers_of
+from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.signature import Floats2, Floats3, Integers1, Integers2
 from stickslip.problem import BAD_PARAMETERS, Stop
 
 BUDGET = 200_000
@@ -43,8 +40,8 @@ BUDGET = 200_000
 
 SIZES = Params.total, State.total, Counts.total
 """Lengths of these records."""
-ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
-"""Types of the arguments of `loop.run_until`: table, last row, last theta (s), budget."""
+run_until_at = CallAt("miidi", "i")
+"""Call `loop.run_until`: table and its length, last row, last theta (s), budget."""
 
 
 class Lane(NamedTuple):
@@ -66,37 +63,21 @@ class Group(NamedTuple):
     engine: int  # address of `loop.run_until`
     setups: Setups
     wants_events: bool  # True if slip events must be found
-    stop: Integers  # (1,): a flag that ends the whole batch
-    codes: Integers  # (members,): codes of the ends of the runs
-    out: Floats  # (members, Reduced.total)
+    stop: Integers1  # (1,): a flag that ends the whole batch
+    codes: Integers1  # (members,): codes of the ends of the runs
+    out: Floats2  # (members, Reduced.total)
 
 
 # ---- functions called through their addresses, so that the code of a batch needs no second copy of the engine ----------------
 
 
-@made_once()
 def engine_address() -> int:
-    """Return the address of the machine code of `loop.run_until`; compile it if no single run has done so."""
-    return address_of(run_until, ARGUMENTS)
+    """Return the address of the machine code of `loop.run_until`."""
+    return run_until.address  # type: ignore[attr-defined] # it is an `Entry`
 
 
-@intrinsic
-def run_until_at(  # noqa: PLR0917 - the arguments of the function that it calls
-    typingctx: Any, address: Any, table: Any, last_trip: Any, last_phase: Any, budget: Any
-) -> Any:
-    """Call `loop.run_until`, whose machine code is at `address`, and return the code with which it stops."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        convention = context.call_conv
-        function = builder.inttoptr(args[0], convention.get_function_type(types.int64, ARGUMENTS).as_pointer())
-        _, code = convention.call_function(builder, function, types.int64, ARGUMENTS, args[1:])
-        return code
-
-    return types.int64(types.int64, *ARGUMENTS), codegen
-
-
-@kernel
-def fill_constants(prepare: Integers, numbers: Floats, constants: Floats) -> None:
+@entry
+def fill_constants(prepare: Integers1, numbers: Floats2, constants: Floats3) -> None:
     """Call `prepare` of each piece of the law for each member, to fill `constants`, of shape (members, pieces, size).
 
     prepare holds the addresses of these functions. A row of `numbers` has the law's parameters and the reference slip (m) of each
@@ -141,8 +122,8 @@ class Members(NamedTuple):
     spare: Spare
 
 
-@kernel
-def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -> int:
+@entry
+def run_group(group: Group, base: Integers2, stride: Integers1, work: Workspace) -> int:
     """Run members, each in a lane of the workspace, and write their stop codes and numbers into the group.
 
     base and stride are those of `workspace.table_of`. Returns WIDTH when all members are done or `stop` is set. Otherwise it
@@ -253,16 +234,16 @@ def start_member(run: Run, members: Members, n: int) -> None:
 @kernel
 def advance_member(members: Members, lane: Lane) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
-    n, table, code = lane.member[0], carray(lane.table, (RUN_SIZE,)), -1  # Stop.NONE
+    n, table, code = lane.member[0], lane.table, -1  # Stop.NONE
     first = borrow(lane.table).counts.length
     last_trip, last_phase = members.last_trip[n], members.last_phase[n]
     if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
-        code = run_until_at(members.engine, table, last_trip, last_phase, 1)
+        code = run_until_at(members.engine, table, RUN_SIZE, last_trip, last_phase, 1)
         counts.waits = 1
     while code == Stop.NONE and members.stop[0] == 0:
-        code = run_until_at(members.engine, table, last_trip, last_phase, BUDGET)
+        code = run_until_at(members.engine, table, RUN_SIZE, last_trip, last_phase, BUDGET)
     for k in range(first, borrow(lane.table).counts.length):
         lane.known[k].way, lane.known[k].grown = 0, math.nan
     lane.code[0] = code

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact import OF_LEVELS
-from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.input.branch_table import is_algebraic
 from stickslip.engine.lanes.reduction import COLUMNS
 from stickslip.engine.state.layout import Floats
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
+from stickslip.foundation.kernels.uncompiled import UNCOMPILED
 from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem import (

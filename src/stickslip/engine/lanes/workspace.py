@@ -14,11 +14,12 @@ from stickslip.engine.input.ladder import NO_LADDER
 from stickslip.engine.input.prepare import NOT_VARYING
 from stickslip.engine.lanes.lane_block import LaneBlock
 from stickslip.engine.lanes.lanes import Waits
-from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
+from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Floats4, Integers1, Integers2, Integers3
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Initial and largest room of a lane in pieces of history; a member that needs more is run by itself."""
@@ -34,22 +35,22 @@ class Setups(NamedTuple):
     The engine's tables (see `engine.state.layout.Setup`) have one row for each member, or a single row if all members share it.
     """
 
-    params: Floats  # (members, numbers of Params)
-    jets: Integers  # (3 pieces,): addresses of the formulas' series, radii and values in lanes; (0,) if members step alone
-    constants: Floats  # (members, pieces, size)
-    law: Integers  # (members, pieces of the law, LawPiece.total)
-    branch_table: Floats  # (members, largest number of branches, Branch.total); for member n the first branches[n] are filled
-    first_load: Floats  # (members, pieces of the first load + 1, FirstLoad.total)
-    branches: Integers  # (members,): number of branches; 0 if Z v + S mu does not rise at high rates, -1 if more than MOST_BRANCHES
-    irregular: Floats  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
-    state: Floats  # at t = 0, the same for all members
-    counts: Integers  # at t = 0, the same for all members
-    last_trip: Integers  # (members,): the last round trip of each run
-    last_phase: Floats  # (members,): the offset (s) of its end in this round trip
-    duration: Floats  # (members,), s
-    threshold: Floats  # (members,): slip above this rate (m/s) is an event
-    stiffness: Floats  # (members,): Pa/m for a slab, N/m for a block
-    excess: Floats  # (members,): initial load minus static strength, Pa or N
+    params: Floats2  # (members, numbers of Params)
+    jets: Integers1  # (3 pieces,): addresses of the formulas' series, radii and values in lanes; (0,) if members step alone
+    constants: Floats3  # (members, pieces, size)
+    law: Integers3  # (members, pieces of the law, LawPiece.total)
+    branch_table: Floats3  # (members, largest number of branches, Branch.total); for member n the first branches[n] are filled
+    first_load: Floats3  # (members, pieces of the first load + 1, FirstLoad.total)
+    branches: Integers1  # (members,): number of branches; 0 if g does not rise at high rates, -1 if more than MOST_BRANCHES
+    irregular: Floats1  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
+    state: Floats1  # at t = 0, the same for all members
+    counts: Integers1  # at t = 0, the same for all members
+    last_trip: Integers1  # (members,): the last round trip of each run
+    last_phase: Floats1  # (members,): the offset (s) of its end in this round trip
+    duration: Floats1  # (members,), s
+    threshold: Floats1  # (members,): slip above this rate (m/s) is an event
+    stiffness: Floats1  # (members,): Pa/m for a slab, N/m for a block
+    excess: Floats1  # (members,): initial load minus static strength, Pa or N
 
 
 class LaneStage(IntEnum):
@@ -63,23 +64,30 @@ class LaneStage(IntEnum):
     """The run of its member has ended and is not reduced yet."""
 
 
+class LaneStore(NamedTuple):
+    """Hold a `Store` for each lane."""
+
+    pieces: Integers3
+    state: Floats4
+
+
 class Workspace(NamedTuple):
     """The memory of one thread, which serves all its members. The tables of a history have a first axis of lanes."""
 
-    store: Store
-    echoes: Integers
-    known: Integers  # tables of `engine.history.turning_points.Known`
-    turns: Integers  # table of `engine.history.turning_points.Turn`
-    events: Integers  # table of `engine.history.slip_events.EventTurns`
-    spare: Floats  # a `engine.history.turning_points.Spare`
-    numbers: Floats  # room for the block of `kernels.lanes`
-    block: Integers  # the address of this block
-    stage: Integers  # (WIDTH,): codes of `tables.Stage`
-    waits: Integers  # (WIDTH,): what the lane waits for, see `kernels.lanes`
-    member: Integers  # (WIDTH,): index of the member in the lane
-    code: Integers  # (WIDTH,): what the engine returned last for this member
-    table: Integers  # (WIDTH, RUN_SIZE): the memory of its run, see `engine.state.workspace.Run`
-    upcoming: Integers  # (1,): index of the next member to start
+    store: LaneStore
+    echoes: Integers3
+    known: Integers3  # tables of `engine.history.turning_points.Known`
+    turns: Integers2  # table of `engine.history.turning_points.Turn`
+    events: Integers2  # table of `engine.history.slip_events.EventTurns`
+    spare: Floats2  # a `engine.history.turning_points.Spare`
+    numbers: Floats1  # room for the block of `kernels.lanes`
+    block: Integers1  # the address of this block
+    stage: Integers1  # (WIDTH,): codes of `tables.Stage`
+    waits: Integers1  # (WIDTH,): what the lane waits for, see `kernels.lanes`
+    member: Integers1  # (WIDTH,): index of the member in the lane
+    code: Integers1  # (WIDTH,): what the engine returned last for this member
+    table: Integers2  # (WIDTH, RUN_SIZE): the memory of its run, see `engine.state.workspace.Run`
+    upcoming: Integers1  # (1,): index of the next member to start
 
     @property
     def capacity(self) -> int:
@@ -109,10 +117,10 @@ class Workspace(NamedTuple):
         return self._replace(turns=Turn.table(room), events=EventTurns.table(room))
 
 
-def in_lanes(store: Store) -> Store:
+def in_lanes(store: Store) -> LaneStore:
     """Divide the rows of a history's tables equally among the lanes, which become a first axis."""
     tables: list[Any] = [table.reshape(WIDTH, len(table) // WIDTH, *table.shape[1:]) for table in store]
-    return Store(*tables)
+    return LaneStore(*tables)
 
 
 def apart(*shape: int, dtype: type = float) -> Any:

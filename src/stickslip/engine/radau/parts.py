@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.radau.proof import FAINT, SIZE, measure, moved_on_disc, share_of_part, step_proof
 from stickslip.engine.radau.stages import larger
 from stickslip.engine.series.radau_nodes import STAGES
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
 
 MOST_PARTS = 400
 """Largest number of parts (1) that are looked at."""

@@ -20,17 +20,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import constants_of, static_step
 from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.memory.addresses import ahead, call_radii
-from stickslip.engine.memory.pointers import numbers_of, record_at
 from stickslip.engine.radau.stages import WIDTH, larger, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import ONES, RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import STAGES
 from stickslip.engine.state.layout import STATES, TERMS, Floats, StepProof
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead, call_radii
+from stickslip.foundation.kernels.memory.pointers import numbers_of, record_at
 
 PLACES = 18
 """Number of places (1) of a part where the residual is measured."""

@@ -12,11 +12,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pressing import own_states, press_stages
 from stickslip.engine.contact.stiffness import contact_at, states_at_point
-from stickslip.engine.memory.addresses import ahead
-from stickslip.engine.memory.pointers import record_at
 from stickslip.engine.series.polynomial import evaluate, fill
 from stickslip.engine.series.radau_nodes import (
     DERIVATIVE,
@@ -31,6 +28,9 @@ from stickslip.engine.series.radau_nodes import (
 )
 from stickslip.engine.state.layout import STATES, TERMS, Between, Floats
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
+from stickslip.foundation.kernels.memory.pointers import record_at
 
 NUDGE = 1e-15
 """A relative change (1) of 4 ulp or more, which counts as rounding."""

@@ -7,11 +7,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_step
 from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.radau.parts import share_of_step
 from stickslip.engine.radau.proof import begin_proof, measured_anywhere, step_proof
 from stickslip.engine.radau.stages import (
@@ -27,6 +25,8 @@ from stickslip.engine.series.polynomial import evaluate, fill, first_descent, re
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state.layout import STATES, TERMS
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
 from stickslip.problem import Stop
 
 ATTEMPTS = 80

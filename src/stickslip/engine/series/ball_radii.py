@@ -11,10 +11,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
-from stickslip.engine.compile.uncompiled import MATHS, UNCOMPILED
-from stickslip.engine.memory.simd import power_of_two
+from stickslip.foundation.kernels.memory.simd import power_of_two
+from stickslip.foundation.kernels.uncompiled import MATHS, UNCOMPILED
 
 maths: Any = MATHS if UNCOMPILED else math
 
@@ -28,7 +27,6 @@ MARGIN = 1.005
 """Factor (1) by which the parabola for 2^x on [0, 1] is raised to lie above it; it is accurate to 0.3 %."""
 
 
-@njit(error_model="numpy")
 def exp_above(x: float) -> float:
     """Return a number between exp(x) and 1.01 exp(x); above 2^LARGEST_EXPONENT it is infinite, or soon becomes so."""
     y = max(TO_TWO * x, -LARGEST_EXPONENT)
@@ -39,7 +37,6 @@ def exp_above(x: float) -> float:
     return MARGIN * power_of_two(whole) * (1.0 + part * (0.6565 + 0.3435 * part)) + over
 
 
-@njit(error_model="numpy")
 def exp_radius(argument: float, value: float, radius: float) -> float:
     """Return the radius of exp: exp(a) (exp(r) - 1) <= min(exp(a + r), exp(a) r (1 + exp(r)) / 2), for tanh(y) <= y.
 
@@ -48,7 +45,6 @@ def exp_radius(argument: float, value: float, radius: float) -> float:
     return min(exp_above(argument + radius), 0.5 * (value + TINIEST) * radius * (1.0 + exp_above(radius)))
 
 
-@njit(error_model="numpy")
 def sine_radius(own: float, other: float, radius: float) -> float:
     """Return the radius of sin or cos, |own| (cosh(r) - 1) + |other| sinh(r), from their magnitudes at the centre.
 
@@ -58,21 +54,18 @@ def sine_radius(own: float, other: float, radius: float) -> float:
     return own * radius * radius * (5.0 + cosh) * (1.0 / 12.0) + other * radius * (2.0 + cosh) * (1.0 / 3.0)
 
 
-@njit(error_model="numpy")
 def log_radius(size: float, radius: float) -> float:
     """Return an upper bound of -log(1 - r / size), huge from r = size on: x (1 - x / 2) / (1 - x), with x = r / size."""
     x = radius / max(size, TINIEST)
     return x * max(1.0 - 0.5 * x, 0.5) / max(1.0 - x, TINIEST)
 
 
-@njit(error_model="numpy")
 def power_radius(size: float, exponent: float, logarithm: float) -> float:
     """Return the radius of a power, |value| (exp(|p| l) - 1), with l >= |log(base / centre of the base)|."""
     growth = exponent * logarithm
     return 0.5 * (size + TINIEST) * growth * (1.0 + exp_above(growth))
 
 
-@njit(error_model="numpy")
 def arcsinh_radius(size: float, radius: float) -> float:
     """Return the radius of arcsinh: that of a logarithm whose singularities are at the distance of i from the centre."""
     least = min(size, 1e150)
@@ -85,7 +78,6 @@ COS_STRIP = 0.362
 """A lower bound of cos(STRIP)."""
 
 
-@njit(error_model="numpy")
 def tanh_radius(size: float, radius: float) -> float:
     """Return the radius of tanh, from |sinh(z - m)| / (|cosh z| |cosh m|), or from 2 / |exp(2 z) + 1| far from the imaginary axis.
 
@@ -100,7 +92,6 @@ def tanh_radius(size: float, radius: float) -> float:
     return min(far, near)
 
 
-@njit(error_model="numpy")
 def sinh_below(x: float) -> float:
     """Return a lower bound of sinh(x) for x >= 0, and a number below 0 for x < 0: the larger of x and (exp(x) - 1) / 2."""
     return max(x, 0.495 * exp_above(min(x, 300.0)) - 0.5)

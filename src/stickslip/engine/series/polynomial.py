@@ -12,10 +12,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import inlined, kernel
-from stickslip.engine.memory.addresses import room_for
-from stickslip.engine.memory.simd import fused
 from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.kernels.kernels import entry, inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
+from stickslip.foundation.kernels.memory.simd import fused
+from stickslip.foundation.kernels.signature import Floats1
 
 Floats = NDArray[np.float64]
 
@@ -104,8 +105,8 @@ def degree(c: Floats) -> int:
     return n
 
 
-@kernel
-def restrict(c: Floats, start: float, width: float, out: Floats) -> None:
+@entry
+def restrict(c: Floats1, start: float, width: float, out: Floats1) -> None:
     """Write into `out` the coefficients of y -> p(start + width y), exact but for rounding."""
     n = degree(c)
     for k in range(n + 1, TERMS):
@@ -406,8 +407,8 @@ def falls_through_zero(c: Floats, way: float, slope: Floats) -> bool:
     return slope[0] > 0.0 and bound_below(slope) > SIGN_ROUNDING * slope[0]
 
 
-@kernel
-def crossings(c: Floats, out: Floats, part: Floats) -> int:
+@entry
+def crossings(c: Floats1, out: Floats1, part: Floats1) -> int:
     """Write every x in (0, 1) where p changes sign into `out`, ascending, up to MOST_CROSSINGS; return their number.
 
     A polynomial that is not finite has none. Most calls end at a bound, or at the signs of Bernstein coefficients. `part` is room.

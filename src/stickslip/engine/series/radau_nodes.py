@@ -11,13 +11,15 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.foundation.kernels.kernels import kernel
 
 STAGES = 9
 """Number of Radau points in a step (1), which gives order 17 at the ends of steps and 10 between them."""
 POINTS = STAGES + 1
 """Number of points with the start of the step (1)."""
+LEADING = 2.0 ** (1 - 2 * STAGES)
+"""The last Chebyshev term on [0, 1] over the coefficient of x^STAGES (1)."""
 
 
 def _radau() -> NDArray[np.float64]:
@@ -106,7 +108,6 @@ def last_terms(c: Floats) -> float:
 
     The last but one counts a tenth: it still shows an error if the last term vanishes by symmetry.
     """
-    half = 2.0 ** (1 - 2 * STAGES)
-    last = half * c[STAGES]
-    before = 4.0 * half * c[STAGES - 1] + 2.0 * STAGES * last
+    last = LEADING * c[STAGES]
+    before = 4.0 * LEADING * c[STAGES - 1] + 2.0 * STAGES * last
     return max(abs(last), 0.1 * abs(before))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from stickslip.engine.compile.kernels import inlined
+from stickslip.foundation.kernels.kernels import inlined
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640629")
 """pi to 75 digits."""

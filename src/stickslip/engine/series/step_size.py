@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from stickslip.engine.compile.kernels import inlined, kernel
-from stickslip.engine.memory.simd import bits_as_number, power_of_two
 from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.foundation.kernels.kernels import inlined, kernel
+from stickslip.foundation.kernels.memory.simd import bits_as_number, power_of_two
 
 UNITS = 2.0**52
 """Steps of a float's bits (1) from one power of two to the next."""

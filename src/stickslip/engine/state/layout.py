@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.formula_code.taylor_series import ORDER
-from stickslip.engine.memory.records import MemoryRecord, floats_inside
+from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_inside
 from stickslip.friction.formula import expression
 
 Floats = NDArray[np.float64]

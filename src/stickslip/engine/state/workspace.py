@@ -11,10 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.compile.uncompiled import UNCOMPILED, lend_memory
-from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import MemoryRecord, floats_at, floats_inside, inside, records_at
 from stickslip.engine.state.layout import (
     STATES,
     TERMS,
@@ -37,6 +33,10 @@ from stickslip.engine.state.layout import (
     State,
     Store,
 )
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.pointers import record_at
+from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_at, floats_inside, inside, records_at
+from stickslip.foundation.kernels.uncompiled import UNCOMPILED, lend_memory
 
 ROOM = 8
 """Free rows that the history needs for another pass of the loop (1); a pass appends fewer."""

@@ -16,15 +16,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import phase_at
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import settled_rate
 from stickslip.engine.waves.tone import tone_series
 from stickslip.engine.waves.varying_forcing import cut
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
 
 HALVINGS = 60
 """Largest number of times (1) that a piece of load is halved."""
@@ -148,7 +148,7 @@ def move_machine(run: Run, pace: float) -> bool:
     return 2.0 * before * next_term <= (1.0 - along) * params.tolerance * changes
 
 
-@kernel
+@entry
 def driver(memory: int, task: int, number: float) -> float:
     """Add what a machine sends to the piece of load; return the share of the piece that is kept."""
     return drive(borrow(memory))

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import has_faded
 from stickslip.engine.state.layout import NEVER
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
 
 STILL = 1e-13
 """A machine has settled when the load that its swings send is less than this share of the load and the reference strength (1)."""

@@ -14,14 +14,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.contact.far_end import is_rigid
-from stickslip.engine.memory.addresses import bits_of
 from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.merged_creep import plan_group
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import bits_of
+from stickslip.foundation.kernels.signature import Integers1
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""
@@ -362,8 +363,8 @@ def build_queue(run: Run) -> None:
     end_trip(run)
 
 
-@kernel
-def rebuild_queue(table: Integers, pieces: Integers, past: int) -> None:
+@entry
+def rebuild_queue(table: Integers1, pieces: Integers1, past: int) -> None:
     """Build the trees of a resumed run from the given pieces, which are in order of phase.
 
     The present round trip has passed the first `past` of them. `table` comes from `workspace.lend`.
@@ -387,14 +388,14 @@ def in_order(nodes: EchoNode, n: int, out: Integers, count: int) -> int:
     return in_order(nodes, nodes[n].right, out, count + 1)
 
 
-@kernel
-def write_ahead(table: Integers, out: Integers) -> int:
+@entry
+def write_ahead(table: Integers1, out: Integers1) -> int:
     """Write the pieces whose echoes are yet to be met, in order of phase, and return their number. `table` is as above."""
     run = borrow(table)
     return in_order(run.echoes, run.counts.ahead, out, 0)
 
 
-@kernel
+@entry
 def echo_queue(memory: int, task: int, number: float) -> float:
     """Return the next piece whose echo must be met, close a round trip, or build the queue."""
     if task == Task.NEXT_ECHO:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import sent_back
 from stickslip.engine.contact.pieces import note_degree
-from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import fill, mean_of
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING
 from stickslip.engine.waves.merged_creep import continue_echo, lay_out_group
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
 
 
 @kernel

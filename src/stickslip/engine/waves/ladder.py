@@ -19,9 +19,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import span_of_load
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, fill, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run, borrow
@@ -40,6 +38,8 @@ from stickslip.engine.waves.ladder_rows import (
 from stickslip.engine.waves.merged_pieces import gather, plan_merging
 from stickslip.engine.waves.shaken_ladder import follow_ground, shake, shakes
 from stickslip.foundation.constants import RIGID
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
 
 STILL = 4e-15
 """Waves have settled when they differ from those one round trip ago, but for the ramp, by less than this share (1) of the loads."""
@@ -277,7 +277,7 @@ def is_settled(run: Run) -> bool:
     return True
 
 
-@kernel
+@entry
 def ladder(memory: int, task: int, number: float) -> float:
     """Serve a body of layers: see `Task`."""
     return serve(borrow(memory), task, number)

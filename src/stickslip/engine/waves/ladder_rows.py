@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.folds.fold import share_described, square_variable
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, restrict
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import FIRST_ROW, Run
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import ahead
 
 AIR, ASIDE = 0, 1
 """Rows of the piece of load that the contact meets, and of one that is set aside next to a fold."""

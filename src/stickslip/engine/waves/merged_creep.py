@@ -13,10 +13,10 @@ far, and its sum is kept.
 
 from __future__ import annotations
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.series.polynomial import copy, moment, restrict, total
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
 
 CROWD = 64
 """Strips are merged after a round trip with more pieces (1) than this."""

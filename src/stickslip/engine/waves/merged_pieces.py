@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.series.polynomial import copy, total
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine.state.workspace import Run
@@ -34,6 +33,7 @@ from stickslip.engine.waves.merged_series import (
     weight_of,
     width_of,
 )
+from stickslip.foundation.kernels.kernels import kernel
 
 FEW, MANY = 4, 32
 """Nothing is merged in a round trip with no more pieces than the first number (1), and growth counts beyond the second."""

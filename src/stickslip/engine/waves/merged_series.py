@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.memory.addresses import room_for
 from stickslip.engine.series.polynomial import evaluate, fill, mean_of, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.ladder_rows import AIR, row_of, wave_in
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
 
 IN_TIME, TO_FOLD, MEAN = 0, 1, 2
 """Forms of the waves of merged pieces: series in time, series in the root of the time left, or their means."""

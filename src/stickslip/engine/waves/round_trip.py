@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.contact.far_end import has_faded, is_dead_load, is_rigid
 from stickslip.engine.contact.pieces import span_of_load
-from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import total
 from stickslip.engine.state.layout import NEVER, EnginePart, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING, is_slip_law, patience_spent, start_of_slide, worth_building
+from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
 from stickslip.problem import Stop
 
 

@@ -7,11 +7,11 @@ g - Z v_g - m dv_g/dt; the waves in the layers are those of the absolute motion,
 
 from __future__ import annotations
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pressing import tone_along
 from stickslip.engine.series.polynomial import fill
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import kernel
 
 
 @kernel

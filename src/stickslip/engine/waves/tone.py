@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pressing import tone_along
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.kernels.kernels import entry, kernel
 
 
 @kernel
@@ -17,7 +17,7 @@ def tone_series(run: Run, amplitude: float, phase: float, time: float) -> None:
     tone_along(amplitude, (frequency * time + phase, turn, bend), run.spare, run.trial)
 
 
-@kernel
+@entry
 def dirichlet(count: float, step: float) -> float:
     """Return the sum of `count` unit phasors that are `step` (rad) apart, along their mean: sin(count step/2) / sin(step/2)."""
     turns = math.floor(step / (2.0 * math.pi) + 0.5)

@@ -10,16 +10,16 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at
-from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
 from stickslip.engine.waves.tone import dirichlet, tone_series
+from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
 
 AT_EDGE = 1e-13
 """A break of the loading lies on the edge of a piece if it is closer to it than this share of a round trip (1), by rounding."""
@@ -285,7 +285,7 @@ def largest_sine_up(begin: float, end: float) -> float:
     return 1.0 if peak <= end else max(math.sin(begin), math.sin(end))
 
 
-@kernel
+@entry
 def loading_history(memory: int, task: int, number: float) -> float:
     """Serve a loading that varies: see `Task`.
 

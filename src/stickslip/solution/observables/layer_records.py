@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from stickslip.engine import Floats, Integers
-
-Flags = NDArray[np.bool_]
+from stickslip.engine import Flags1, Floats1, Floats2, Floats3, Floats4, Integers1
 
 VALUE, TOTAL, PULL, SHARE = 0, 1, 2, 3
 """What drivers do: the load that they send, where it joins the waves (Pa), its integral in the round trip (Pa s), the driver's rate
@@ -27,34 +22,34 @@ SUMS = 5
 class SlipPieces(NamedTuple):
     """The slip of the contact, as arrays over the pieces of the history: see `layout.Store`."""
 
-    trip: Integers
-    phase_from: Floats
-    phase_to: Floats
-    speed: Floats
-    bend: Floats
-    rate: Floats
-    grown: Floats
+    trip: Integers1
+    phase_from: Floats1
+    phase_to: Floats1
+    speed: Floats1
+    bend: Floats1
+    rate: Floats2
+    grown: Floats1
     """Slip in the whole piece (m)."""
-    moves: Flags
+    moves: Flags1
     """False for rest."""
 
 
 class LadderCells(NamedTuple):
     """The cells, as arrays; see `layout.LadderCell`."""
 
-    impedance: Floats
-    reflection: Floats
-    beyond: Floats
+    impedance: Floats1
+    reflection: Floats1
+    beyond: Floats1
     """That for waves from the other side."""
-    drag: Floats
+    drag: Floats1
     """Stress over velocity (Pa s/m) that drag takes at the far end of each cell."""
-    ramp_share: Floats
+    ramp_share: Floats1
     """Growth of the wave in a round trip of a settled rest, over that of the load."""
-    wave: Floats
-    growth: Floats
-    starts: Integers
+    wave: Floats1
+    growth: Floats1
+    starts: Integers1
     """First cell of each side, and the number of cells."""
-    strength: Floats
+    strength: Floats1
     """Reference strength (Pa) of each side."""
     gain: float
     """Proportional gain of a driver that is a machine (Pa s/m); 0 if it is none."""
@@ -68,45 +63,47 @@ class LadderCells(NamedTuple):
 class FollowedTrips(NamedTuple):
     """Round trips that are replayed one by one, at several phases (s) together."""
 
-    phase: Floats
-    trip: Integers
-    sent: Floats
+    phase: Floats1
+    trip: Integers1
+    sent: Floats4
     """What drivers do: array over sides, VALUE, TOTAL, PULL and SHARE, round trips and phases."""
-    ground: Floats
+    ground: Floats3
     """Velocity (m/s) of moving ground, and its way in the round trip (m): array over both, round trips and phases, or empty."""
-    ramp: Floats
+    ramp: Floats1
     """Growth of the load (Pa) in each round trip of the settled rest before each of these, and behind the last one."""
-    turned: Floats
+    turned: Floats2
     """Changes of the first driver in order, one per row: round trip, which phase it is, and the share before less the one after."""
 
 
 class WaveQueries(NamedTuple):
     """What is asked of a replay, and where the answers go."""
 
-    asked: Integers
+    asked: Integers1
     """Round trip (at least -1) of each query, in order."""
-    which: Integers
+    which: Integers1
     """Phase of each query."""
-    rows: Floats
+    rows: Floats3
     """E in each cell, and its integral, for each query; none if they are not asked for."""
-    sums: Floats
+    sums: Floats2
 
 
 class FollowedWaves(NamedTuple):
     """How far a replay has come: arrays whose last axis is that of the phases."""
 
-    wave: Floats
+    wave: Floats3
     """E in each cell, and its integral behind it if that is followed, too."""
-    sums: Floats
-    growth: Floats
+    sums: Floats2
+    growth: Floats2
     """What each round trip of a settled rest adds to the sums."""
-    slope: Floats
+    slope: Floats1
     """By how much the power of the drivers grows in each of these round trips, over the growth of the load."""
-    slip: Floats
+    slip: Floats2
     """Slip rate of the contact (m/s), and its slip since the start of the round trip (m)."""
-    counts: Integers
+    counts: Integers1
     """Round trip, next piece of the history, next query."""
-    phase: Floats
+    phase: Floats1
     """Phases (s)."""
-    ramp: Floats
+    ramp: Floats1
     """Growth of the load (Pa) in each round trip of the present settled rest: one number."""
+    more: Floats1
+    """Room for a number of each phase."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine import Floats, kernel
+from stickslip.engine import Floats, entry, kernel
 from stickslip.foundation.constants import RIGID
 from stickslip.solution.observables.layer_records import (
     DRAGGED,
@@ -31,7 +31,7 @@ from stickslip.solution.observables.layer_records import (
 )
 
 
-@kernel
+@entry
 def replay(contact: SlipPieces, ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, queries: WaveQueries) -> None:
     """Follow the waves through the round trips given, and answer what is asked before them."""
     for k in range(len(steps.trip)):
@@ -44,16 +44,21 @@ def replay(contact: SlipPieces, ladder: LadderCells, steps: FollowedTrips, place
         place.counts[0] = trip
         move(contact, steps, place)
         if steps.ground.shape[1] > 0:
-            place.slip[:] += steps.ground[:, k]
-        step(ladder, place, steps.sent[:, :, k], changes_in(steps.turned, trip))
+            for level in range(2):
+                for u in range(len(steps.phase)):
+                    place.slip[level, u] += steps.ground[level, k, u]
+        first, past = first_change(steps.turned, trip), first_change(steps.turned, trip + 1)
+        step(ladder, place, steps.sent[:, :, k], steps.turned[first:past])
         if trip == 0:
             leave_out(ladder, steps, place)
         place.sums[MOVED_IN_TRIP] = 0.0
-        place.sums[:] += place.growth
+        for n in range(SUMS):
+            for u in range(len(steps.phase)):
+                place.sums[n, u] += place.growth[n, u]
         place.growth[MOVED_IN_TRIP] = 0.0
 
 
-@kernel
+@entry
 def answer(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, queries: WaveQueries, before: int) -> None:
     """Answer the queries in round trips before one."""
     levels, cells = place.wave.shape[0], place.wave.shape[1]
@@ -77,11 +82,14 @@ def rest(ladder: LadderCells, steps: FollowedTrips, place: FollowedWaves, more: 
     """Leap over round trips of a settled rest."""
     for cell in range(place.wave.shape[1]):
         ramp = place.ramp[0] * ladder.ramp_share[cell]
-        place.wave[VALUE, cell] += more * ramp
-        if place.wave.shape[0] > TOTAL:
-            place.wave[TOTAL, cell] += more * ramp * steps.phase
-    place.sums[:] += more * place.growth
-    place.sums[WORK] += 0.5 * more * (more + 1.0) * place.ramp[0] * place.slope
+        for u in range(len(steps.phase)):
+            place.wave[VALUE, cell, u] += more * ramp
+            if place.wave.shape[0] > TOTAL:
+                place.wave[TOTAL, cell, u] += more * ramp * steps.phase[u]
+    for u in range(len(steps.phase)):
+        for n in range(SUMS):
+            place.sums[n, u] += more * place.growth[n, u]
+        place.sums[WORK, u] += 0.5 * more * (more + 1.0) * place.ramp[0] * place.slope[u]
 
 
 @kernel
@@ -138,12 +146,16 @@ def motion(contact: SlipPieces, piece: int, phase: float) -> tuple[float, float]
 
 
 @kernel
-def changes_in(turned: Floats, trip: int) -> Floats:
-    """Return the changes of the first driver in a round trip."""
-    first = past = np.searchsorted(turned[:, 0], trip)
-    while past < len(turned) and turned[past, 0] == trip:
-        past += 1
-    return turned[first:past]
+def first_change(turned: Floats, trip: int) -> int:
+    """Return the first change of the first driver in a round trip or after it."""
+    first, past = 0, len(turned)
+    while first < past:
+        middle = (first + past) // 2
+        if turned[middle, 0] < trip:
+            first = middle + 1
+        else:
+            past = middle
+    return first
 
 
 @kernel
@@ -164,9 +176,12 @@ def step(ladder: LadderCells, place: FollowedWaves, sent: Floats, turned: Floats
                     take_drag(ladder, wave, place.growth[DRAGGED], first + parity, last)
                 meet(ladder.reflection, ladder.beyond, wave, first + parity, last)
                 if (last - first) % 2 == parity:
-                    more = met_before(place, level, last, turned if side == 0 else turned[:0])
+                    if level == TOTAL and side == 0:
+                        meet_before(place, wave[last], turned)
                     meet_driver(ladder, place, level, side, sent[side])
-                    wave[last] += more
+                    if level == TOTAL and side == 0:
+                        for u in range(len(place.phase)):
+                            wave[last, u] += place.more[u]
         answer_of_contact(ladder, place, level)
 
 
@@ -196,20 +211,17 @@ def take_drag(ladder: LadderCells, wave: Floats, dragged: Floats, first: int, la
 
 
 @kernel
-def met_before(place: FollowedWaves, level: int, cell: int, turned: Floats) -> Floats:
-    """Return what changes of the driver in this round trip add to the integral of what comes back, whose share is the last one.
+def meet_before(place: FollowedWaves, wave: Floats, turned: Floats) -> None:
+    """Write what changes of the driver in this round trip add to the integral of what comes back, whose share is the last one.
 
-    Up to a change, the share is the one before it.
+    Up to a change, the share is the one before it. `wave` is the integral in the last cell.
     """
-    wave = place.wave[level, cell]
-    more = np.zeros(len(wave))
-    if level == TOTAL:
-        for n in range(len(turned)):
-            at, by = int(turned[n, 1]), turned[n, 2]
-            for u in range(len(wave)):
-                if place.phase[u] >= place.phase[at]:
-                    more[u] += by * wave[at]
-    return more
+    place.more[:] = 0.0
+    for n in range(len(turned)):
+        at, by = int(turned[n, 1]), turned[n, 2]
+        for u in range(len(wave)):
+            if place.phase[u] >= place.phase[at]:
+                place.more[u] += by * wave[at]
 
 
 @kernel
@@ -240,7 +252,8 @@ def answer_of_contact(ladder: LadderCells, place: FollowedWaves, level: int) -> 
     if len(ladder.starts) == 2 or ladder.joined == 1:
         for side in range(len(ladder.starts) - 1):
             cell = ladder.starts[side]
-            wave[cell] = 2.0 * ladder.impedance[cell] * slip - wave[cell]
+            for u in range(len(slip)):
+                wave[cell, u] = 2.0 * ladder.impedance[cell] * slip[u] - wave[cell, u]
         return
     other = ladder.starts[1]
     second = ladder.impedance[other]

@@ -201,7 +201,8 @@ class LayerWaves:
         both = [wave + growth, (wave + 0.5 * growth) * phase]
         sums, slip = (np.zeros((number, many)) for number in (SUMS, 2))
         return FollowedWaves(
-            np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]), phase, np.zeros(1)
+            *(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]), phase),
+            *(np.zeros(1), np.zeros(many)),
         )
 
     def _with_changes(self, phase: Floats, levels: int) -> Floats:

@@ -20,8 +20,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.lock import LOCK
-from stickslip.friction.formula import OPERATIONS
+from stickslip.foundation.kernels.lock import LOCK
 
 UNCOMPILED = os.environ.get("STICKSLIP_UNCOMPILED", "") not in ("", "0")
 """True if kernels run as plain Python."""
@@ -110,8 +109,9 @@ def call(handle: int, *arguments: Any) -> Any:
 
 
 MATHS = SimpleNamespace(
-    **{one.in_math: one.value for one in OPERATIONS.values() if not one.sign},
+    **{name: getattr(np, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "expm1", "log1p")},
     **{name: getattr(np, name) for name in ("sinh", "cosh", "hypot", "floor", "ceil", "copysign", "fabs")},
+    asinh=np.arcsinh,
     **{name: getattr(np, name) for name in ("isnan", "isfinite", "isinf")},
     inf=np.float64(np.inf),
     nan=np.float64(np.nan),

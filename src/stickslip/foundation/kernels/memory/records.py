@@ -15,14 +15,22 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self, get_type_hints
 
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
-from stickslip.engine.compile.uncompiled import Pointer, pointer_at
+from stickslip.foundation.kernels.uncompiled import Pointer, pointer_at
 
 Floats = NDArray[np.float64]
-FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
-"""Types that an address has in compiled code: pointers, which are indexed like arrays."""
+
+
+@dataclass(frozen=True)
+class AddressOf:
+    """The type of an address in compiled code: a pointer to numbers of this type, which is indexed like an array."""
+
+    number: type
+
+
+FLOATS, INTEGERS = AddressOf(float), AddressOf(int)
+"""Addresses of floats, and of whole numbers."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +39,7 @@ class Slot:
 
     first: int
     size: int
-    kind: Any  # float, int, a record, or a pointer's type
+    kind: Any  # float, int, a record, or the type of an address
     inside: bool  # True if the record or the row of floats itself lies here; False if it is a number or an address
 
 

@@ -1,8 +1,7 @@
 """One lock around everything that is made on first use and shared by threads: kernels, parts of the engine, formulas.
 
-It is the lock of numba's compiler itself. With a lock of our own beside it, a thread that compiles could wait for ours while
-another thread holds ours and waits to compile. A thread may take it again while it holds it. What has been made is looked up
-without the lock: a thread whose laws are known never waits for one that compiles.
+A thread may take it again while it holds it. What has been made is looked up without the lock: a thread whose laws are known never
+waits for one that compiles.
 
 Who holds the lock must wait for nothing but the compiler and the disk: above all for no `cached_property` of a problem or a
 solution, each of which has a lock of its own in Python 3.11.
@@ -13,12 +12,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from itertools import count
-from typing import Any, Generic, ParamSpec, TypeVar
+from threading import RLock
+from typing import Generic, ParamSpec, TypeVar
 
-from numba.core.compiler_lock import global_compiler_lock
-
-LOCK: Any = global_compiler_lock
-"""The lock, a context manager."""
+LOCK = RLock()
+"""The lock."""
 
 if hasattr(os, "register_at_fork"):  # a process that begins while another thread compiles could never compile anything
     os.register_at_fork(before=LOCK.acquire, after_in_parent=LOCK.release, after_in_child=LOCK.release)

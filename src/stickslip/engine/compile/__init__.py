@@ -1,1 +1,0 @@
-"""Compile kernels, and keep their machine code on disk."""

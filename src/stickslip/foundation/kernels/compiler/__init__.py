@@ -1,0 +1,1 @@
+"""Make machine code of kernels, by numba. Nothing else imports it; `kernels.code` loads what is made here."""

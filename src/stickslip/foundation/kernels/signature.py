@@ -1,0 +1,95 @@
+"""What Python hands to machine code: numbers, and arrays as their address and shape, in the order of a function's annotations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from ctypes import c_double, c_int64
+from dataclasses import dataclass
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats1 = Annotated[NDArray[np.float64], 1]
+Floats2 = Annotated[NDArray[np.float64], 2]
+Floats3 = Annotated[NDArray[np.float64], 3]
+Floats4 = Annotated[NDArray[np.float64], 4]
+Integers1 = Annotated[NDArray[np.int64], 1]
+Integers2 = Annotated[NDArray[np.int64], 2]
+Integers3 = Annotated[NDArray[np.int64], 3]
+Flags1 = Annotated[NDArray[np.bool_], 1]
+"""Arrays with their number of dimensions, which machine code must know; their numbers lie without gaps, as in C."""
+
+NUMBERS = {float: c_double, int: c_int64, bool: c_int64}
+"""What C makes of Python's numbers."""
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """An array: the type of its numbers, and its number of dimensions."""
+
+    of: np.dtype[Any]
+    dimensions: int
+
+
+@dataclass(frozen=True)
+class Fields:
+    """A named tuple, and the kinds of its fields."""
+
+    made: Callable[..., Any]
+    kinds: tuple[Kind, ...]
+
+
+Kind = type | Numbers | Fields
+"""A kind of argument: float, int or bool, an array, or a named tuple of such."""
+
+
+@dataclass(frozen=True)
+class Signature:
+    """The kinds of a function's arguments, and of its result: float, int, bool or None."""
+
+    kinds: tuple[Kind, ...]
+    result: type | None
+
+    @property
+    def in_c(self) -> tuple[Any, list[Any]]:
+        """The types of C of the result and of all arguments."""
+        return None if self.result is None else NUMBERS[self.result], [one for kind in self.kinds for one in _in_c(kind)]
+
+
+def signature_of(function: Callable[..., Any]) -> Signature:
+    """Return the signature that a function's annotations declare."""
+    *kinds, result = get_type_hints(function, include_extras=True).values()
+    return Signature(tuple(map(_kind_of, kinds)), None if result is type(None) else result)
+
+
+def _kind_of(hint: Any) -> Kind:
+    if hint in NUMBERS:
+        return hint
+    if get_origin(hint) is Annotated:
+        array, dimensions = get_args(hint)
+        return Numbers(np.dtype(get_args(get_args(array)[1])[0]), dimensions)
+    return Fields(hint, tuple(map(_kind_of, get_type_hints(hint, include_extras=True).values())))
+
+
+def _in_c(kind: Kind) -> list[Any]:
+    if isinstance(kind, Numbers):
+        return [c_int64] * (1 + kind.dimensions)
+    if isinstance(kind, Fields):
+        return [one for each in kind.kinds for one in _in_c(each)]
+    return [NUMBERS[kind]]
+
+
+def flattened(kinds: tuple[Kind, ...], given: tuple[Any, ...]) -> list[Any]:
+    """Return arguments as C takes them. Raises TypeError for an array that machine code would misread."""
+    flat: list[Any] = []
+    for kind, one in zip(kinds, given, strict=True):
+        if isinstance(kind, Numbers):
+            if one.dtype != kind.of or one.ndim != kind.dimensions or not one.flags.c_contiguous:
+                raise TypeError(f"machine code takes {kind}, not {one.dtype} of shape {one.shape} and strides {one.strides}")
+            flat += [one.ctypes.data, *one.shape]
+        elif isinstance(kind, Fields):
+            flat += flattened(kind.kinds, one)
+        else:
+            flat.append(kind(one))
+    return flat
