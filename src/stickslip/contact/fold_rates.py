@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from stickslip.contact.slopes import DAMPING, NORMAL
-from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
-from stickslip.foundation.compiled import entry, exact
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact, exact_entry
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Integers1
 from stickslip.friction.formula.at_points import AtPoints, change_at
 from stickslip.friction.formula.operations.changes import SLOPE
 
@@ -55,7 +56,7 @@ class Intervals(NamedTuple):
     parts: int
 
 
-@entry
+@exact_entry
 def fold_rates(of: AtPoints, pieces: Floats2, intervals: Intervals, found: Floats1) -> None:
     """Write `fold_rate` of intervals; `pieces` are those of `Contacts`."""
     piece, ends, parts = intervals

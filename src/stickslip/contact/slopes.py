@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
-from stickslip.foundation.compiled import entry, exact
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact, exact_entry
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Integers1
 from stickslip.friction.formula import Enclosure, Expression
 from stickslip.friction.formula.at_points import AtPoints
 from stickslip.friction.formula.differences import points_of, tape_of_changes
@@ -187,7 +188,7 @@ class Pieces:
         return np.array(edges)
 
 
-@entry
+@exact_entry
 def bound_cells(of: Contacts, piece: Integers1, low: Floats1, high: Floats1, found: Floats2) -> None:
     """Bound g' and g'' on cells of slip rates (m/s); `found` has the rows of `Slopes`."""
     for k in range(len(low)):

@@ -26,8 +26,9 @@ from stickslip.contact.slopes import (
     sign_of,
     slope_bounds,
 )
-from stickslip.foundation.arrays import Floats, Floats2, Integers1, Integers2
-from stickslip.foundation.compiled import entry, exact
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact, exact_entry
+from stickslip.foundation.kernels.signature import Floats2, Integers1, Integers2
 
 NOISE = 4.0
 """A cell is not worth cutting if g' changes on it by no more than this multiple of the rounding of its bounds."""
@@ -201,7 +202,8 @@ def search_contact(of: Contacts, search: Search, tables: tuple[Floats, Floats], 
                 n = put(found, n, (piece, low, high), (before, after), known)
                 turns += 1 if known == PROVEN else 0
         for k in range(many, next_):
-            waiting[first + k - many] = waiting[k]
+            for column in range(COLUMNS):
+                waiting[first + k - many, column] = waiting[k, column]
         many = first + next_ - many
     return n
 
@@ -238,7 +240,7 @@ class Room(NamedTuple):
     left: Integers1  # (contacts,): number of bounds that may still be worked out
 
 
-@entry
+@exact_entry
 def search(of: Contacts, first_piece: Integers1, most: int, room: Room) -> int:
     """Find all turns of contacts, and narrow the intervals that hold one; return their number, -1 if there is no room for them.
 

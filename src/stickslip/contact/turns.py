@@ -117,7 +117,7 @@ def folds_of(of: Pieces, turns: Turns, parts: int = 64) -> tuple[Floats, Integer
     rates, first = np.array([cells.low, cells.high]), changes & ~flat
     sharp = first & (cells.low < cells.high)
     if sharp.any():
-        found, piece, ends = np.empty(np.count_nonzero(sharp)), cells.piece[sharp], rates[:, sharp]
+        found, piece, ends = np.empty(np.count_nonzero(sharp)), cells.piece[sharp], np.ascontiguousarray(rates[:, sharp])
         fold_rates(of.points, of.for_code.pieces, Intervals(piece, ends, parts), found)
         rates[0, sharp] = found
     if not flat.any():

@@ -1,17 +1,11 @@
 """Arrays: their type for annotations, and what many members have in common."""
 
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Floats1 = Annotated[NDArray[np.float64], 1]
-Floats2 = Annotated[NDArray[np.float64], 2]
-Floats3 = Annotated[NDArray[np.float64], 3]
-Integers1 = Annotated[NDArray[np.int64], 1]
-Integers2 = Annotated[NDArray[np.int64], 2]
-"""Arrays with their number of dimensions, which compiled code must know; their numbers lie without gaps, as in C."""
 
 
 def shared(numbers: Any) -> Any:

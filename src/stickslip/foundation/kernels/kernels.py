@@ -19,11 +19,15 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class Kernel:
-    """A function that compiled code calls; one that `is_inlined` is put in place wherever it is called."""
+    """A function that compiled code calls.
 
-    def __init__(self, function: Callable[..., Any], is_inlined: bool = False) -> None:
+    One that `is_inlined` is put in place wherever it is called. In one that `is_exact` no product and sum are fused into one
+    operation, so that it rounds as numpy does: interval arithmetic counts on that.
+    """
+
+    def __init__(self, function: Callable[..., Any], is_inlined: bool = False, is_exact: bool = False) -> None:
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
-        self.__wrapped__, self.is_inlined = function, is_inlined
+        self.__wrapped__, self.is_inlined, self.is_exact = function, is_inlined, is_exact
 
     @property
     def name(self) -> str:
@@ -41,8 +45,8 @@ class Entry(Kernel):
     known: ClassVar[dict[str, Entry]] = {}
     """All entries of the modules that are imported, by name."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
+    def __init__(self, function: Callable[..., Any], is_exact: bool = False) -> None:
+        super().__init__(function, is_exact=is_exact)
         self.known[self.name] = self
         self._called: Any = None
 
@@ -79,3 +83,13 @@ def inlined(function: F) -> F:
 def entry(function: F) -> F:
     """Return a function that compiled code and Python call."""
     return as_python(function) if UNCOMPILED else Entry(function)  # type: ignore[return-value]
+
+
+def exact(function: F) -> F:
+    """Return a function, like `kernel`, that rounds as numpy does: no product and sum are fused into one operation."""
+    return as_python(function) if UNCOMPILED else Kernel(function, is_exact=True)  # type: ignore[return-value]
+
+
+def exact_entry(function: F) -> F:
+    """Return a function, like `entry`, that rounds as numpy does."""
+    return as_python(function) if UNCOMPILED else Entry(function, is_exact=True)  # type: ignore[return-value]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1, Integers2
-from stickslip.foundation.compiled import entry, exact
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact, exact_entry
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Integers1, Integers2
 from stickslip.friction.formula.expression import VARIABLES as _VARIABLES
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
@@ -80,7 +81,7 @@ def change_at(of: AtPoints, member: int, slip_step: float, rate: float) -> int:
     return walk(of, member)
 
 
-@entry
+@exact_entry
 def changes_at(of: AtPoints, member: Integers1, slip_step: Floats1, rate: Floats1, found: Floats2) -> None:
     """Write mu(slip + slip_step, rate) - mu(slip, 0) and dmu/drate at points into the rows of `found`, with all states 0.
 
@@ -91,7 +92,7 @@ def changes_at(of: AtPoints, member: Integers1, slip_step: Floats1, rate: Floats
         found[0, k], found[1, k] = of.room[row, STEP], of.room[row, SLOPE]
 
 
-@entry
+@exact_entry
 def slopes_at(of: AtPoints, points: Floats2, found: Floats2) -> None:
     """Write the value of a formula at points, and its derivatives by their coordinates, into the rows of `found`.
 

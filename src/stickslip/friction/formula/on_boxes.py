@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.foundation.arrays import Floats1, Floats2, Floats3, Integers2
-from stickslip.foundation.compiled import entry
+from stickslip.foundation.kernels.kernels import exact_entry
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Integers2
 from stickslip.friction.formula.operations import OPERATIONS
 from stickslip.friction.formula.operations.sets import HIGH, LOW
 from stickslip.friction.formula.tape import CONSTANT, NUMBER, VARIABLE, rule_by_code
@@ -24,7 +24,7 @@ class OnBoxes(NamedTuple):
     room: Floats2  # (nodes, 2): rows as in `operations.sets`
 
 
-@entry
+@exact_entry
 def bound_boxes(of: OnBoxes, found: Floats2) -> None:
     """Write the bounds of a formula on boxes into the rows of `found`."""
     w = of.room

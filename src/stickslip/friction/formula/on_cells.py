@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.foundation.arrays import Floats1, Floats2, Floats3, Integers1, Integers2
-from stickslip.foundation.compiled import entry, exact
+from stickslip.foundation.kernels.kernels import exact, exact_entry
+from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Integers1, Integers2
 from stickslip.friction.formula.operations import OPERATIONS
 from stickslip.friction.formula.operations.enclosures import COUNT
 from stickslip.friction.formula.operations.hyperbolic import logistic
@@ -61,7 +61,7 @@ def enclose(of: OnCells, member: int, low: float, high: float) -> int:
     return int(last - first - 1)
 
 
-@entry
+@exact_entry
 def enclose_cells(of: OnCells, member: Integers1, low: Floats1, high: Floats1, found: Floats2) -> None:
     """Bound formulas on cells, each of one member; `found` has a row for each cell: low and high ends of three coefficients."""
     for k in range(len(low)):

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.compiled import exact
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import RATE, STATES, VARIABLES, Expression, nodes_of
 from stickslip.friction.formula.operations import OPERATIONS, operation_of
 from stickslip.friction.formula.operations.enclosures import ORDERS
@@ -38,7 +38,7 @@ def rule_by_code(rules: Sequence[Callable[..., None]]) -> Any:
 
     Its arguments are the code, the rows of nodes, and the places of a node and of its arguments.
     """
-    names: dict[str, Any] = {f"rule_{n}": rule for n, rule in enumerate(rules)}
+    names: dict[str, Any] = {f"rule_{n}": rule for n, rule in enumerate(rules)} | {"__name__": __name__}
     branches = (f"if code == {VARIABLE + 1 + n}:\n        rule_{n}(w, n, i, j)\n" for n in range(len(rules)))
     exec(f"def rule(code, w, n, i, j):\n    {'    el'.join(branches)}", names)
     return exact(names["rule"])

@@ -172,7 +172,8 @@ def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
     """Return the type that compiled code sees when it calls a kernel."""
     if kernel not in _parts:
         inlined = {"forceinline": True} if kernel.is_inlined else {}
-        _parts[kernel] = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS, **inlined)(kernel.__wrapped__)
+        options = OPTIONS | ({"fastmath": False} if kernel.is_exact else {})
+        _parts[kernel] = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options, **inlined)(kernel.__wrapped__)
     return _Part(_parts[kernel])
 
 

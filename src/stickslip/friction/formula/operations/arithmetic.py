@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.compiled import exact
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import (

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.compiled import exact
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.operations.sets import multiplied, squared
 
 ORDERS = 3

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.compiled import exact
+from stickslip.foundation.kernels.kernels import exact
 
 Interval = tuple[Any, Any]
 """Lower and upper end of an interval: numbers, or arrays with the ends of many."""
