@@ -9,9 +9,7 @@ from pathlib import Path
 
 import pytest
 
-PRINTED = (
-    "from stickslip.foundation.kernels import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
-)
+PRINTED = "from stickslip.foundation.kernels import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
 
 MISSING = {
     "a name": ("import numba.core.caching as m; del m.NullCache", "cannot import name 'NullCache'"),

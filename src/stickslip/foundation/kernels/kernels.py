@@ -21,8 +21,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 class Kernel:
     """A function that compiled code calls.
 
-    One that `is_inlined` is put in place wherever it is called. In one that `is_exact`, each operation is rounded by itself, as numpy
-    does; in others a product and a sum may be fused into one operation.
+    One that `is_inlined` is put in place wherever it is called. In one that `is_exact` each operation is rounded by itself, as in
+    numpy; in others a product and a sum may be fused into one operation.
     """
 
     def __init__(self, function: Callable[..., Any], *, is_inlined: bool = False, is_exact: bool = False) -> None:
