@@ -204,13 +204,13 @@ def address_of_entry(entry: Any) -> int:
 
 def made_now(entry: Any) -> bytes:
     """Return the machine code of an entry, after a line that says why it has to be made."""
-    announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
     try:
         compiler = import_module("stickslip.foundation.kernels.compiler.objects")  # loads numba, which nothing else does
     except ImportError as error:
         raise InputError(
             f"{why_not_shipped()}, and the compiler that would make it is missing ({error}): pip install 'stickslip[compiler]'"
         ) from None
+    announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
     return bytes(compiler.object_of(entry, PROCESSOR))
 
 
