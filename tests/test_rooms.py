@@ -22,7 +22,7 @@ HEAVY = {
     "jinja2": {"figures"},
     "matplotlib": {"figures"},
     "numba": {"engine"},
-    "scipy": {"run", "solution"},
+    "scipy": {"run"},
     "typer": {"cli"},
     "xarray": {"figures"},
     "zarr": {"foundation", "solution"},

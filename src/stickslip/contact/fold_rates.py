@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from stickslip.contact.slopes import DAMPING, NORMAL
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Integers1
 from stickslip.friction.formula.at_points import AtPoints, change_at
 from stickslip.friction.formula.operations.changes import SLOPE
 

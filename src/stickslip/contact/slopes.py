@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Integers1
 from stickslip.friction.formula import Enclosure, Expression
 from stickslip.friction.formula.at_points import AtPoints
 from stickslip.friction.formula.differences import points_of, tape_of_changes

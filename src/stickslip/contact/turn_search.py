@@ -26,9 +26,8 @@ from stickslip.contact.slopes import (
     sign_of,
     slope_bounds,
 )
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Floats2, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.foundation.kernels.signature import Floats2, Integers1, Integers2
 
 NOISE = 4.0
 """A cell is not worth cutting if g' changes on it by no more than this multiple of the rounding of its bounds."""

@@ -20,6 +20,7 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -205,12 +206,12 @@ def made_now(entry: Any) -> bytes:
     """Return the machine code of an entry, after a line that says why it has to be made."""
     announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
     try:
-        from stickslip.foundation.kernels.compiler.objects import object_of
+        compiler = import_module("stickslip.foundation.kernels.compiler.objects")  # loads numba, which nothing else does
     except ImportError as error:
         raise InputError(
             f"{why_not_shipped()}, and the compiler that would make it is missing ({error}): pip install 'stickslip[compiler]'"
         ) from None
-    return object_of(entry, PROCESSOR)
+    return bytes(compiler.object_of(entry, PROCESSOR))
 
 
 def why_not_shipped() -> str:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Integers1, Integers2
 from stickslip.friction.formula.expression import VARIABLES as _VARIABLES
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS
 from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE

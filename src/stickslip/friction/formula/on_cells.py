@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from stickslip.foundation.arrays import Floats1, Floats2, Floats3, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Integers1, Integers2
 from stickslip.friction.formula.operations import OPERATIONS
 from stickslip.friction.formula.operations.enclosures import COUNT
 from stickslip.friction.formula.operations.hyperbolic import logistic
