@@ -196,13 +196,15 @@ def address_of_entry(entry: Any) -> int:
 
 def made_now(entry: Any) -> bytes:
     """Return the machine code of an entry, after a line that says why it has to be made."""
-    announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
+    if os.environ.get("NUMBA_DISABLE_JIT", "") not in ("", "0"):
+        raise InputError(f"{why_not_shipped()}, and NUMBA_DISABLE_JIT is set, so that nothing compiles it: unset it")
     try:
         from stickslip.foundation.kernels.compiler.objects import object_of
     except ImportError as error:
         raise InputError(
             f"{why_not_shipped()}, and the compiler that would make it is missing ({error}): pip install 'stickslip[compiler]'"
         ) from None
+    announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
     return object_of(entry, PROCESSOR)
 
 
