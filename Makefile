@@ -11,21 +11,21 @@ export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: paper test test-all browser lint compiled collected bench site oldest newest lock clean
 
-paper: $(VENV)/.installed
+paper: compiled
 	$(BIN)/stickslip paper --out paper
 
-# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. Before, one core
-# compiles what most tests need of the engine, with which all of these processes would begin; another one installs what only tests
-# need, checks the source, looks for a browser, and writes the bytecode of the tests.
+# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. Before, the machine
+# code of the engine is made, while what only tests need is installed, the source is checked, a browser is looked for, and the bytecode
+# of the tests is written.
 test:
 	$(MAKE) --jobs=2 compiled lint browser collected
-	COMPILED_FIRST=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
 
 # All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
 test-all:
 	$(MAKE) --jobs=2 compiled lint browser collected
-	STICKSLIP_TESTS=all COMPILED_FIRST=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
+	STICKSLIP_TESTS=all OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
 browser: $(VENV)/.installed-test
@@ -37,7 +37,7 @@ lint: $(VENV)/.installed-test
 	$(BIN)/mypy
 
 compiled: $(VENV)/.installed
-	$(BIN)/python -m tests.compile_first
+	$(BIN)/python -m stickslip.engine.build
 
 collected: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -q --collect-only > /dev/null
@@ -52,11 +52,12 @@ site: $(VENV)/.installed-site
 	$(BIN)/python -m sphinx -b html -q --fail-on-warning --keep-going docs docs/_build/html
 	$(BIN)/python docs/site/check_site.py docs/_build/html
 
-# Pinned installs, checked against hashes; the package itself last, without looking for anything newer. Python makes bytecode of
-# a module when it is first imported: to make it of all modules now would take longer than the rest of the installation.
+# Pinned installs, checked against hashes; the package itself last, without looking for anything newer, and without its machine code,
+# which `compiled` makes. Python makes bytecode of a module when it is first imported: to make it of all modules now would take longer
+# than the rest of the installation.
 $(VENV)/.installed: requirements/run.txt pyproject.toml | $(BIN)/python
 	$(PIP) install --no-compile --requirement requirements/run.txt
-	$(PIP) install --no-deps --no-build-isolation --editable .
+	STICKSLIP_MACHINE_CODE=later $(PIP) install --no-deps --no-build-isolation --editable .
 	touch $@
 
 $(VENV)/.installed-test: requirements/test.txt $(VENV)/.installed
@@ -91,4 +92,4 @@ lock:
 	done
 
 clean:
-	rm -rf $(VENV) .venv-oldest .venv-newest paper build dist docs/_build docs/gallery
+	rm -rf $(VENV) .venv-oldest .venv-newest src/stickslip/machine_code paper build dist docs/_build docs/gallery

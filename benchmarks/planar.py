@@ -23,7 +23,7 @@ from tests.extensions.planar.planar_methods import PlanarCase, SlipWeakeningAtNo
 import stickslip as ss
 from benchmarks.planar_kernels import NumbaSteps, convolved, exponentials, exponentials_in_c, lines_of_nodes
 from stickslip.extensions.planar.memory import advanced
-from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from stickslip.extensions.planar.solver import PlanarSolver, our_settings
 
 Floats = NDArray[np.float64]
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
@@ -76,7 +76,7 @@ class Ours:
     def again(self) -> None:
         """Run once more, the set-up included."""
         self.solver.trip = self.solver.step = 0
-        with in_double_precision():
+        with our_settings():
             self.solver._begin()
         self.finish()
 
@@ -148,7 +148,7 @@ def step_by_step() -> Iterator[tuple[str, ...]]:
     steps, trips = 404, 10
     ours = Ours(trips, steps)
     ours.solver.trip = ours.solver.step = 0
-    with in_double_precision():
+    with our_settings():
         ours.solver._begin()
     found, sums = ours.finish(), sums_of_convolution(steps, trips)
     yield ("round trip", "a step", "its echo, once", "convolution: compiled sums of a step")
@@ -187,7 +187,7 @@ def loops() -> Iterator[tuple[str, ...]]:
 
 def exponentials_in_jax(decay: Any, gain: Any, slip: Floats) -> float:
     """Return the time (s) of the solver's own update, of twenty in a loop."""
-    with in_double_precision():
+    with our_settings():
         decay, gain = jnp.asarray(decay[:, None]), jnp.asarray(gain[:, None])
 
         def twenty(memory: Any, inherited: Any) -> Any:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.foundation.netcdf_file import Variable, write, write_variables
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.netcdf_file import Variable, read_tables, seal, write, write_variables
 from tests.problems import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
 
 RUNS = {
@@ -60,6 +62,30 @@ def test_arrays_make_the_same_file_as_their_dataset(tmp_path: Path) -> None:
     ours = write_variables(variables, attributes, tmp_path / "ours.nc")
     other = write(xr.Dataset({name: tuple(one) for name, one in variables.items()}, attrs=attributes), tmp_path / "other.nc")
     assert ours.read_bytes() == other.read_bytes()
+
+
+def test_tables_of_a_run_are_read_as_xarray_reads_them(tmp_path: Path) -> None:
+    path = ss.simulate(rate_law_slab(), 12.0).to_netcdf(tmp_path / "run.nc")
+    tables = read_tables(path)
+    with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
+        assert set(tables.variables) == set(file.variables)
+        assert tables.attrs == file.attrs
+        for name, one in file.variables.items():
+            ours = tables.variables[str(name)]
+            assert (ours.dims, dict(ours.attrs)) == (one.dims, one.attrs), name
+            assert np.array_equal(ours.values, one.values, equal_nan=one.dtype.kind == "f"), name
+        assert {name: tables.sizes[str(name)] for name in file.sizes} == dict(file.sizes)
+
+
+def test_a_dimension_of_several_lengths_is_refused(tmp_path: Path) -> None:
+    with h5py.File(path := tmp_path / "two.nc", "w") as file:
+        file["x"], file["y"], file["z"] = np.arange(3.0), np.arange(3.0), np.arange(2.0)
+        file["x"].make_scale("x")
+        for name in ("y", "z"):
+            file[name].dims[0].attach_scale(file["x"])
+    seal(path)
+    with pytest.raises(InputError, match="'x' is of several lengths in it"):
+        read_tables(path)
 
 
 def test_file_holds_scenario_and_provenance(tmp_path: Path) -> None:

@@ -27,6 +27,8 @@ from stickslip.foundation.errors import InputError
 try:  # all names of typer that it does not document
     from typer.core import TyperArgument, TyperCommand, TyperGroup
     from typer.exceptions import TyperException as TyperException
+
+    from stickslip.cli.typed import OfTyped
 except ImportError as error:
     raise InputError(f"typer {typer.__version__} does not suit ({error}); 0.29 does: pip install 'typer>=0.29,<0.30'") from None
 
@@ -44,15 +46,15 @@ def prose_of(command: Callable[..., Any]) -> str:
     return "\n\n".join(text.replace(r"\b", "\b") if text.startswith(r"\b") else " ".join(text.split("\n")) for text in paragraphs)
 
 
-class CommandWithSections(TyperCommand):
+class CommandWithSections(OfTyped, TyperCommand):
     """A command whose help shows its options by groups, with the names that they accept."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write the arguments and the options."""
-        for one in self.params:
+        for one in self.get_params(ctx):
             names = CHOICES.get(str(one.name))
             if names is not None:
-                one.help = f"{one.help} One of: {', '.join(names())}."  # type: ignore[attr-defined] # typer's options have one
+                one.help = f"{one.help} One of: {', '.join(names())}."
         sections_of(self, ctx, formatter)
 
 
@@ -129,7 +131,7 @@ STYLE: dict[str, Any] = {
 """Plain help, because boxes and colours take as long to load as all else that `stickslip --help` does."""
 
 
-class Commands(TyperGroup):
+class Commands(OfTyped, TyperGroup):
     """The commands of `stickslip`. Only the one that is asked for is built, because each takes some milliseconds."""
 
     def __init__(self, **given: Any) -> None:

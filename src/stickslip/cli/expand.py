@@ -7,8 +7,6 @@ from dataclasses import fields, is_dataclass
 from inspect import Parameter, Signature, signature
 from typing import Any, get_type_hints
 
-from stickslip.foundation.given import shown_in
-
 
 def expanded(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that takes an option for each field of those of its parameters that are dataclasses."""
@@ -16,6 +14,8 @@ def expanded(command: Callable[..., None]) -> Callable[..., None]:
     hints = {name: known.get(name, str if p.default in (Parameter.empty, None) else type(p.default)) for name, p in taken.items()}
 
     def called(**typed: Any) -> None:
+        from stickslip.foundation.given import shown_in  # here, with the table of units, which help does without
+
         with shown_in({}):  # each command shows results in the units of its own problem
             command(**{name: _made(hint, typed) if is_dataclass(hint) else typed[name] for name, hint in hints.items()})
 

@@ -7,12 +7,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import show_in
 from stickslip.problem import SHORTEST_EVENT, Problem, check_creep_rtol, check_rtol, check_shortest_event, units_given
@@ -30,6 +29,9 @@ from stickslip.problem.scenarios import (
     typed_number,
     with_values,
 )
+
+if TYPE_CHECKING:
+    from stickslip.foundation.axis import Axis
 
 OptionReader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""
@@ -146,6 +148,8 @@ def read_axis(problem: Problem, text: str, where: str) -> Axis:
 
     The axis has 40 points if no number is given. Raises InputError with a message that begins with `where`.
     """
+    from stickslip.foundation.axis import Axis, TypedRange  # here, because only maps have axes
+
     name, _, ends = text.partition("=")
     typed = TypedRange.of(ends, f"{where}: {shown(name.strip())}")
     if typed is None:

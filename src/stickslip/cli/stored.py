@@ -36,14 +36,14 @@ def _netcdf(path: Path) -> Stored:
     from stickslip.run import PausedCatalogue
     from stickslip.solution.files import CATALOGUE, read_table, to_solution
 
-    dataset = netcdf_file.read(path, "a result")
-    if CATALOGUE in dataset.attrs:
+    tables = netcdf_file.read_tables(path, "a result")
+    if CATALOGUE in tables.attrs:
         rows = PausedCatalogue.read(path).rows
-        return _events(path, read_table(rows.path if rows.path.exists() else rows.growing), dataset.attrs)
-    if "event" in dataset.dims and "history_rate" not in dataset:
-        return _events(path, dataset.to_dataframe().reset_index(drop=True), dataset.attrs)
-    solution = to_solution(dataset, path)
-    return Stored(path, dataset.attrs, WholeRun(solution.scenario(path.stem), solution))
+        return _events(path, read_table(rows.path if rows.path.exists() else rows.growing), tables.attrs)
+    if "event" in tables.sizes and "history_rate" not in tables.variables:
+        return _events(path, read_table(path), tables.attrs)
+    solution = to_solution(tables, path)
+    return Stored(path, tables.attrs, WholeRun(solution.scenario(path.stem), solution))
 
 
 def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> Stored:

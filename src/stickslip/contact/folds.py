@@ -10,7 +10,8 @@ from functools import lru_cache
 from typing import ClassVar, Literal
 
 from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
-from stickslip.contact.turns import PROVEN, find_turns, folds_of
+from stickslip.contact.turn_search import PROVEN
+from stickslip.contact.turns import find_turns, folds_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
 from stickslip.problem import Resistance
@@ -79,10 +80,12 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
     reach = FASTEST
-    found = find_turns(pieces_of([g]), budget, MOST_FOLDS)
+    pieces = pieces_of([g])
+    found = find_turns(pieces, budget, MOST_FOLDS)
     if len(found.known) > MOST_FOLDS:
         reach = g.reach if g.damping else FASTEST
-        found = find_turns(pieces_of([g], reach), budget, MOST_FOLDS)
+        pieces = pieces_of([g], reach)
+        found = find_turns(pieces, budget, MOST_FOLDS)
     if len(found.known) > MOST_FOLDS:
         raise InputError(
             f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times up to {reach:.3g} {g.rate_unit}: "
@@ -96,7 +99,7 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     sure = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known == PROVEN]
     open_ = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known != PROVEN]
     at_rest = None if found.at_rest[0] == 0 else bool(found.at_rest[0] > 0)
-    rates = tuple(folds_of(found, lambda rate, _: g.slope(rate))[0].tolist())
+    rates = tuple(folds_of(pieces, found)[0].tolist())
     if reach < FASTEST and rates and g.slope(reach) <= 0.0:
         rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
     return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)

@@ -5,6 +5,7 @@ The formulas of their laws are bounded by interval arithmetic that includes roun
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,8 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula import Enclosure, Expression, add, multiply
+from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
+from stickslip.foundation.kernels.kernels import exact, exact_entry
+from stickslip.friction.formula import Enclosure, Expression
+from stickslip.friction.formula.at_points import AtPoints
+from stickslip.friction.formula.differences import points_of, tape_of_changes
+from stickslip.friction.formula.on_cells import OnCells, enclose
+from stickslip.friction.formula.operations.enclosures import add, multiply
 from stickslip.problem import Resistance
 
 Integers = NDArray[np.int64]
@@ -31,8 +37,64 @@ NARROW = 1e-15
 """Cells narrower than this, relative to their upper end, are not cut any more."""
 MOST_EVALUATIONS = 200_000
 """Largest number of bounds of g' (on cells and at single rates) for one contact; remaining cells are left undecided."""
-AT_ONCE = 10_000
-"""Number of cells to bound at once; it limits the memory needed."""
+
+
+class Bounds(NamedTuple):
+    """Bounds of g' (Pa s/m) and of g'' (Pa s2/m2) on one cell."""
+
+    low: float
+    high: float
+    bend_low: float
+    bend_high: float
+
+
+DAMPING, NORMAL, SLOW, FAST, BEGIN, END = range(6)
+"""Columns of `Contacts.pieces`, which are the fields of `Pieces` with the same names."""
+
+
+class Contacts(NamedTuple):
+    """What compiled code needs to bound g': the formulas of the pieces of the laws, and six numbers of each piece."""
+
+    formulas: OnCells
+    pieces: Floats2
+
+
+@exact
+def slope_bounds(of: Contacts, piece: int, low: float, high: float) -> Bounds:
+    """Bound g' and g'' on a cell of slip rates (m/s)."""
+    w, normal, damping = of.formulas.room, of.pieces[piece, NORMAL], of.pieces[piece, DAMPING]
+    row = enclose(of.formulas, piece, low, high)
+    a, b = multiply(normal, normal, w[row, 1], w[row, 4])
+    a, b = add(damping, damping, a, b)
+    c, d = multiply(2.0 * normal, 2.0 * normal, w[row, 2], w[row, 5])
+    return Bounds(a, b, c, d)
+
+
+@exact
+def sign_of(of: Bounds) -> int:
+    """Return the sign that all values of g' in a cell share, or 0 if they do not share one."""
+    return 1 if of.low > 0.0 else -1 if of.high < 0.0 else 0
+
+
+@exact
+def bend_sign(of: Bounds) -> int:
+    """Return the sign that all values of g'' in a cell share, or 0 if they do not share one."""
+    return 1 if of.bend_low > 0.0 else -1 if of.bend_high < 0.0 else 0
+
+
+@exact
+def reach_of(of: Bounds, low: float, middle: float, high: float) -> float:
+    """Return how far g' may be from its value in the middle of a cell, by the mean value theorem."""
+    steepest = max(abs(of.bend_low), abs(of.bend_high))
+    return steepest * max(high - middle, middle - low) * (1.0 + 1e-15)
+
+
+@exact
+def cut(low: float, high: float) -> float:
+    """Return where a cell is cut: in the geometric middle if its ends differ by more than a factor of four."""
+    if low == 0.0:
+        return high / RATIO
+    return math.sqrt(low) * math.sqrt(high) if high > 4.0 * low else 0.5 * (low + high)
 
 
 class Slopes(NamedTuple):
@@ -80,32 +142,32 @@ class Pieces:
 
     def friction(self, piece: Integers, low: Floats, high: Floats) -> Floats:
         """Bound mu, dmu/dv and half of d2mu/dv2 on cells of slip rates (m/s), shape (2, 3, cells)."""
-        found = np.zeros((2, 3, len(low)))
-        for first in range(0, len(low), AT_ONCE):
-            some = slice(first, first + AT_ONCE)
-            for k, formula in enumerate(self._enclosures):
-                cells = some if len(self.trees) == 1 else first + np.flatnonzero(self.formula[piece[some]] == k)
-                bounds = formula.on(low[cells], high[cells], piece[cells])
-                found[:, : bounds.shape[1], cells] = bounds
-        return found
+        return self.enclosure.on(low, high, piece)
 
     @cached_property
-    def _enclosures(self) -> list[Enclosure]:
-        return [Enclosure(tree, self.numbers, self.slip) for tree in self.trees]
+    def enclosure(self) -> Enclosure:
+        """The bounds of the pieces' formulas."""
+        return Enclosure(tuple(self.trees), self.numbers, self.slip, self.formula)
 
     def slopes(self, piece: Integers, low: Floats, high: Floats) -> Slopes:
         """Bound g' and g'' on cells of slip rates (m/s)."""
-        normal = self.normal[piece] * np.array([[1.0], [2.0]])
-        friction = self.friction(piece, low, high)[:, 1:]
-        with np.errstate(all="ignore"):
-            found = multiply(np.array([normal, normal]), friction)
-            found[:, :1] = add(self.damping[piece], found[:, :1])
-        return Slopes(*found[:, 0], *found[:, 1])
+        found = np.empty((4, len(low)))
+        bound_cells(self.for_code, piece, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
+        return Slopes(*found)
 
-    def seen(self, piece: Integers, low: Floats, middle: Floats, high: Floats) -> tuple[Slopes, Slopes]:
-        """Bound g' and g'' on cells, and in the middle of each."""
-        both = self.slopes(np.tile(piece, 2), np.concatenate((low, middle)), np.concatenate((high, middle)))
-        return Slopes._make(one[: len(low)] for one in both), Slopes._make(one[len(low) :] for one in both)
+    @cached_property
+    def for_code(self) -> Contacts:
+        """What compiled code needs to bound g'."""
+        of = (self.damping, self.normal, self.slowest, self.fastest, self.begin, self.end)
+        return Contacts(self.enclosure.formulas, np.column_stack(of))
+
+    @cached_property
+    def points(self) -> AtPoints:
+        """What compiled code needs for friction at slip rates."""
+        numbers = np.empty((len(self.slip), len(self.numbers) + 1))
+        for column, values in zip(numbers.T, (*self.numbers.values(), self.slip), strict=True):
+            column[:] = values
+        return points_of(tape_of_changes(tuple(self.trees), tuple(self.numbers)), self.formula, numbers)
 
     def slopes_between(self, piece: Integers, edges: Floats) -> tuple[Slopes, Slopes]:
         """Bound g' and g'' at edges, and on the cells between those that follow each other along the first axis."""
@@ -123,6 +185,13 @@ class Pieces:
             after = np.where(edges[-1] < 0.5 * start, start, after)
             edges.append(np.where(2.0 * after > self.end, self.end, after))
         return np.array(edges)
+
+
+@exact_entry
+def bound_cells(of: Contacts, piece: Integers1, low: Floats1, high: Floats1, found: Floats2) -> None:
+    """Bound g' and g'' on cells of slip rates (m/s); `found` has the rows of `Slopes`."""
+    for k in range(len(low)):
+        found[0, k], found[1, k], found[2, k], found[3, k] = slope_bounds(of, piece[k], low[k], high[k])
 
 
 def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST) -> Pieces:

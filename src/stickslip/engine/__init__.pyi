@@ -73,20 +73,8 @@ from stickslip.engine.state.layout import (
 from stickslip.foundation.kernels.code import (
     announce_by,  # Say that something is compiled by the given function instead of on standard error.
 )
-from stickslip.foundation.kernels.kernels import (
-    entry,  # Return a function of the engine that compiled code and Python call.
-    kernel,  # Return a function of the engine that compiled code calls.
-)
 from stickslip.foundation.kernels.memory.simd import (
-    WIDTH,  # Number of lanes: as many as fit in a register of this processor, or in two of 128 bits.
-)
-from stickslip.foundation.kernels.signature import (
-    Flags1,  # Arrays with their number of dimensions, which machine code must know; their numbers lie without gaps, as in C.
-    Floats1,
-    Floats2,
-    Floats3,
-    Floats4,
-    Integers1,
+    WIDTH,  # Number of lanes.
 )
 from stickslip.foundation.kernels.uncompiled import (
     UNCOMPILED,  # True if kernels run as plain Python.
@@ -106,16 +94,10 @@ __all__ = [
     "WIDTH",
     "Checkpoint",
     "Epoch",
-    "Flags1",
     "Floats",
-    "Floats1",
-    "Floats2",
-    "Floats3",
-    "Floats4",
     "History",
     "HistoryPiece",
     "Integers",
-    "Integers1",
     "LadderCell",
     "Positions",
     "Reach",
@@ -130,9 +112,7 @@ __all__ = [
     "creep_note",
     "creep_table",
     "engine_key",
-    "entry",
     "history_table",
-    "kernel",
     "largest_of",
     "lend_part",
     "reach_of",

@@ -53,9 +53,9 @@ from stickslip.engine.state.layout import NO_DISC, EnginePart, Incoming, NearFol
 from stickslip.engine.state.workspace import ROOM, Run, borrow, lacks_rows
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
+from stickslip.foundation.arrays import Integers1
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
-from stickslip.foundation.kernels.signature import Integers1
 from stickslip.problem import Stop
 
 LARGEST_STALL = 1000

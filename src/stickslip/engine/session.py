@@ -36,6 +36,7 @@ from stickslip.engine.state.workspace import (
     with_more_rows,
 )
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
+from stickslip.foundation.kernels.kernels import ready
 from stickslip.problem import Problem, RunNumbers, Stop, creep_tolerance
 
 FIRST_CAPACITY = 256
@@ -89,6 +90,7 @@ class Session(Generic[Options]):
     def __post_init__(self) -> None:
         self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
+        self._memory = ready(self.memory)
         self.last = split_time(self.options.numbers.duration, self.problem.round_trip_time)
         if self.leaps is not None:
             self.leaps.begin(self.count)
@@ -174,7 +176,7 @@ class Session(Generic[Options]):
 
         The branches of a law of slip and slip rate are computed again when the engine asks for them.
         """
-        code = run_until(self.memory, *self.last, budget)
+        code = run_until(self._memory, *self.last, budget)
         if code == Stop.NEED_PART:
             lend_part(self.memory)
             return Stop.NONE

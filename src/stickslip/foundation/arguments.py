@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from datetime import date, time
-from functools import cache, wraps
+from functools import cache, lru_cache, wraps
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
@@ -98,7 +98,8 @@ class CheckedArguments(NamesAttributes):
 
     def __new__(cls, *given: Any, **named: Any) -> Self:
         """Check the names of the arguments; their values are checked once they are in their fields."""
-        check_names(cls.__name__, _taken(cls), given, named)  # type: ignore[arg-type] # classes are hashable
+        if not _fits(cls, len(given), frozenset(named)):  # type: ignore[arg-type] # classes are hashable
+            check_names(cls.__name__, _taken(cls), given, named)  # type: ignore[arg-type] # classes are hashable
         return super().__new__(cls)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -114,6 +115,16 @@ def _empty(cls: type) -> Any:
 def _taken(cls: type) -> tuple[inspect.Parameter, ...]:
     """Return the arguments that a class takes."""
     return tuple(inspect.signature(cls.__init__).parameters.values())[1:]  # type: ignore[misc] # of the class itself
+
+
+@lru_cache(maxsize=1024)
+def _fits(cls: type, places: int, names: frozenset[str]) -> bool:
+    """Return True if a class can be called with so many arguments by position, and with these names."""
+    try:
+        check_names("", _taken(cls), (None,) * places, dict.fromkeys(names))
+    except ArgumentError:
+        return False
+    return True
 
 
 def check_names(who: str, taken: Sequence[inspect.Parameter], given: Sequence[Any], named: Mapping[str, Any]) -> None:

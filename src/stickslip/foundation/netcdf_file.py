@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import check_ordinary
 from stickslip.foundation.atomic_write import FULL, SafeSink, write_atomically
@@ -39,8 +40,6 @@ AT_A_TIME = 2**20
 MOST_TABLES, MOST_ATTRIBUTES = 256, 256
 """Largest number of tables in a file, and of attributes of the file or of a table; a run's file has some seventy and thirty. The
 libraries take 5 ms for each."""
-
-
 OF_NETCDF = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_NCProperties", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
 """Attributes that netCDF uses to store dimensions."""
 
@@ -51,6 +50,18 @@ class Variable(NamedTuple):
     dims: tuple[str, ...]
     values: ArrayLike
     attrs: Mapping[str, Any] = {}
+
+
+class Tables(NamedTuple):
+    """What a file holds: its arrays by name, the lengths of their dimensions, and the attributes of the file."""
+
+    variables: dict[str, Variable]
+    sizes: dict[str, int]
+    attrs: dict[str, Any]
+
+    def array(self, name: str) -> NDArray[Any]:
+        """Return an array, in the order of C. Raises KeyError if there is none of this name."""
+        return np.ascontiguousarray(self.variables[name].values)
 
 
 class FullDiskError(InputError):
@@ -171,31 +182,45 @@ def digest_of(file: Any, size: int) -> str:
 
 def read(path: Path, what: str = "a file") -> xr.Dataset:
     """Read a file that `write` wrote. Raises InputError for any other file, and for one whose tables claim more than its size."""
-    import xarray as xr  # here, because it takes a quarter of a second to import
+    import xarray as xr  # here, because it takes half a second to import, with pandas, pint, and dask where it is installed
 
+    tables = read_tables(path, what)
+    with _readable(path):
+        return xr.decode_cf(xr.Dataset(tables.variables, attrs=tables.attrs), decode_times=False)
+
+
+def read_tables(path: Path, what: str = "a file") -> Tables:
+    """Read a file that `write_variables` wrote, without xarray. Raises InputError as `read` does."""
     check(path, what)
-    try:
+    with _readable(path):
         _check_sizes(path)
-        return xr.decode_cf(_tables(path), decode_times=False)
+        return _tables(path)
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Turn any other error than an InputError into one."""
+    try:
+        yield
     except InputError:
         raise
     except Exception as error:  # a file made by hand can carry a valid checksum and still make any library raise anything
         raise InputError(f"{path}: not a netCDF file that can be read: {' '.join(str(error).split())[:200]}") from None
 
 
-def _tables(path: Path) -> xr.Dataset:
+def _tables(path: Path) -> Tables:
     """Return the tables of a netCDF file as they are stored. h5netcdf takes three times as long: it looks for each often."""
     import h5py
-    import xarray as xr
 
     with h5py.File(path, "r") as file:
-        tables = {name: table for name, table in file.items() if not _is_axis(table)}
-        found = {}
-        for name, table in tables.items():
-            is_text = h5py.check_string_dtype(table.dtype)
-            values = np.asarray(table.asstr()[...], str) if is_text else np.asarray(table[...])
-            found[name] = xr.Variable(_dimensions(table), values, _about(table))
-        return xr.Dataset(found, attrs=_about(file))
+        found = Tables({}, {}, _about(file))
+        for name, table in ((name, table) for name, table in file.items() if not _is_axis(table)):
+            values = np.asarray(table.asstr()[...], str) if h5py.check_string_dtype(table.dtype) else np.asarray(table[...])
+            found.variables[name] = Variable(tuple(_dimensions(table)), values, _about(table))
+            for axis, size in zip(found.variables[name].dims, values.shape, strict=True):
+                if found.sizes.setdefault(axis, size) != size:
+                    raise InputError(f"{path}: not a file of stickslip: '{axis}' is of several lengths in it")
+        return found
 
 
 def _dimensions(table: h5py.Dataset) -> list[str]:

@@ -10,7 +10,7 @@ import dataclasses
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
@@ -88,7 +88,8 @@ class Quantity:
         if self.whole:
             return 1.0, 0.0
         beyond = -math.inf if self.above is None else max(self.above + SMALLEST, math.nextafter(self.above, math.inf))
-        return max(beyond, -LARGEST if self.at_least is None else self.at_least, -LARGEST), LARGEST
+        most = math.inf if self.infinite else LARGEST
+        return max(beyond, -most if self.at_least is None else self.at_least, -most), most
 
     def _rules(self, number: Any) -> Iterator[tuple[Any, str]]:
         """Yield for each rule where a number, or each number of an array, breaks it, and what the rule demands."""
@@ -345,7 +346,12 @@ def given_in(owner: Any) -> str:
 def in_units(declared: _Declared, units: Mapping[str, str]) -> _Declared:
     """Return a declaration with its unit, or that of its items, replaced as `units` says."""
     if isinstance(declared, NumberSeries) and declared.item.unit in units:
-        return dataclasses.replace(declared, item=dataclasses.replace(declared.item, unit=units[declared.item.unit]))
+        return dataclasses.replace(declared, item=_in_unit(declared.item, units[declared.item.unit]))
     if isinstance(declared, Quantity) and declared.unit in units:
-        return dataclasses.replace(declared, unit=units[declared.unit])
+        return _in_unit(declared, units[declared.unit])  # type: ignore[return-value] # of the same class
     return declared
+
+
+@lru_cache(maxsize=1024)
+def _in_unit(declared: Quantity, unit: str) -> Quantity:
+    return dataclasses.replace(declared, unit=unit)

@@ -51,7 +51,7 @@ class LawValues(LawContract):
     def piece_values(self, i: int) -> tuple[float, ...]:
         """Return the values of `parameters` in piece i: the values of the law, unless its pieces have different values."""
         values = (getattr(self, name) for name in self.parameters())
-        return tuple(value if np.ndim(value) else float(value) for value in values)
+        return tuple(value if isinstance(value, float) or np.ndim(value) else float(value) for value in values)
 
     def numbers(self, i: int = 0) -> dict[str, float]:
         """Return the values of `parameters` in piece i, by name."""
@@ -91,7 +91,10 @@ class LawValues(LawContract):
 
         At a knot it is the piece above the knot.
         """
-        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
+        slip, rate = np.asarray(u, float), np.asarray(v, float)
+        if not (isinstance(self.knots, np.ndarray) or self.knots):
+            return np.zeros(slip.shape if slip.shape == rate.shape else np.broadcast_shapes(slip.shape, rate.shape), np.intp)
+        slip, rate = np.broadcast_arrays(slip, rate)
         return np.asarray(np.searchsorted(np.asarray(self.knots), slip if self.knot_variable == "slip" else rate, side="right"))
 
     def piece_coefficient(self, i: int, u: Any, v: Any, w: Any = 0.0) -> Any:
@@ -110,12 +113,18 @@ class LawValues(LawContract):
         the state in the form that the formulas use (`inner_state`); for several states it is an array with one more axis in front.
         """
         slip, rate, *states = self._broadcast(u, v, w)
+        if len(self.pieces) == 1 and not slip.ndim:
+            return self._at_one_point(slip[()], rate[()], [state[()] for state in states])
         values = np.empty(slip.shape)
         with np.errstate(over="ignore", under="ignore"):  # exp(-v / 1e-9) may underflow; in a denominator exp(v / 1e-9) overflows
             for i, chosen in self._by_piece(slip, rate):
                 there = one_argument([state[chosen] for state in states])
                 values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen], there)
         return values
+
+    def _at_one_point(self, slip: Any, rate: Any, states: Sequence[Any]) -> NDArray[np.float64]:
+        with np.errstate(over="ignore", under="ignore"):
+            return np.asarray(self.piece_coefficient(0, slip, rate, one_argument(states)), float)
 
     def static_coefficient(self, u: ArrayLike) -> NDArray[np.float64]:
         """Return the static friction coefficient at slip u (m): the largest |traction| / normal stress while v = 0."""

@@ -25,7 +25,12 @@ from stickslip.problem.ground import (
 from stickslip.problem.limits import (
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
     LARGEST_SHARE,
+    # Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond.
+    MOST_PIECES,
     MOST_ROUND_TRIPS,  # Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps.
+    # Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces
+    # and 0.1 s.
+    PATIENCE,
     automatic_length,  # Return the shortest event (s) of automatic lumping.
     check_creep_rtol,  # Check a tolerance of leaps over creep that `simulate` takes (None is automatic).
     check_round_trips,  # Refuse a run of more than 2^53 round trips of `round_trip` seconds, which cannot be counted exactly.
@@ -135,7 +140,9 @@ __all__ = [
     "LARGEST_SHARE",
     "LOAD",
     "MAY_VARY",
+    "MOST_PIECES",
     "MOST_ROUND_TRIPS",
+    "PATIENCE",
     "PERFECT_DELAY",
     "PRESSING",
     "RTOL",

@@ -268,7 +268,7 @@ class ProblemFields(CheckedArguments):
         if self.one_way and is_number(self.initial_rate) and self.initial_rate < 0.0:  # type: ignore[operator]
             raise InputError("Problem: initial_rate is backwards, where a contact that slips one way only does not go")
 
-    @property
+    @cached_property
     def _varying(self) -> tuple[str, ...]:
         return tuple(name for name in MAY_VARY if isinstance(getattr(self, name), LoadingHistory))
 
@@ -277,7 +277,7 @@ class ProblemFields(CheckedArguments):
         """The names of what varies and acts on the body: a far stress behind a driver that stays rigid does not."""
         return tuple(name for name in self._varying if name != "far_stress" or not self.is_driven_rigidly)
 
-    @property
+    @cached_property
     def varies(self) -> bool:
         """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or is a machine."""
         return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self.body.has_machine

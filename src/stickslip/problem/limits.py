@@ -23,6 +23,13 @@ PER_ROOT_RTOL = 0.1
 TIGHTEST, LOOSEST = 1e-6, 1e-3
 """Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
 
+PATIENCE = 200
+"""Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and
+0.1 s.
+"""
+MOST_PIECES = 4096
+"""Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond."""
+
 Over = Literal["creep", "swinging creep", "slow sliding", "steady sliding", ""]
 """What a run may leap over: creep under a law of slip (of a slab, or of a block, which swings), slow or only steady sliding, or
 nothing."""

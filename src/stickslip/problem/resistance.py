@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief_repr
 from stickslip.friction import FrictionLaw
-from stickslip.friction.formula import Expression, difference, evaluate
+from stickslip.friction.formula import AtPoints, Expression, changes, evaluate, points_of, tape_of_changes
 
 _LOADS = 2.0
 """Many solutions are distinguished up to this load, as a multiple (1) of the largest friction."""
@@ -84,7 +84,7 @@ class Resistance:
         rate = np.asarray(rate, float)
         piece = self.law.piece_at(self.law_slip, rate)
         excess, slope = self._by_formula(piece, rate)
-        if self.plateaus:
+        if self.rate_knots and self.plateaus:
             level = self._levels[piece]
             flat = ~np.isnan(level)
             excess, slope = np.where(flat, level, excess), np.where(flat, 0.0, slope)
@@ -92,18 +92,26 @@ class Resistance:
 
     def _by_formula(self, piece: NDArray[np.intp], rate: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return excess and slope from the formulas of the pieces; pieces that share a formula are evaluated together."""
-        step, slope = np.empty(rate.shape), np.empty(rate.shape)
-        first, home = self._home
-        used, place = np.unique(piece, return_inverse=True)
-        values = np.array([self.law.piece_values(i) for i in used.tolist()])
-        for tree in dict.fromkeys(self.trees[i] for i in used.tolist()):
-            own = np.array([self.trees[i] is tree for i in used.tolist()])
-            chosen = own[place].reshape(rate.shape)
-            numbers = dict(zip(self.law.parameters(), values[place.reshape(rate.shape)[chosen]].T, strict=True))
-            step[chosen], slope[chosen] = difference(tree, numbers, self.law_slip, 0.0, rate[chosen])
-            if (piece[chosen] != first).any():
-                step[chosen] += np.where(piece[chosen] == first, 0.0, self._at_rest(tree, numbers) - home)
+        step, slope = changes(self._points, piece, 0.0, rate)
+        first, home = self._home if len(self.trees) > 1 else (0, 0.0)
+        if len(self.trees) > 1 and (piece != first).any():
+            used, place = np.unique(piece, return_inverse=True)
+            values, offset = np.array([self.law.piece_values(i) for i in used.tolist()]), np.zeros(len(used))
+            for tree in dict.fromkeys(self.trees[i] for i in used.tolist()):
+                own = np.array([self.trees[i] is tree for i in used.tolist()]) & (used != first)
+                numbers = dict(zip(self.law.parameters(), values[own].T, strict=True))
+                offset[own] = self._at_rest(tree, numbers) - home
+            step += offset[place.reshape(rate.shape)]
         return self.damping * rate + self.normal * step + self.start, self.damping + self.normal * slope
+
+    @cached_property
+    def _points(self) -> AtPoints:
+        """What compiled code needs for the friction of each piece of the law."""
+        trees = tuple(dict.fromkeys(self.trees))
+        place = {tree: k for k, tree in enumerate(trees)}
+        numbers = np.array([(*self.law.piece_values(i), self.law_slip) for i in range(len(self.trees))], float)
+        formula = np.array([place[tree] for tree in self.trees])
+        return points_of(tape_of_changes(trees, self.law.parameters()), formula, numbers)
 
     @cached_property
     def rate_knots(self) -> tuple[float, ...]:

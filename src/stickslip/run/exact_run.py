@@ -10,10 +10,11 @@ import numpy as np
 from typing_extensions import override
 
 from stickslip.engine import SPARE, Checkpoint, Session
-from stickslip.engine.input import MOST_PIECES, PATIENCE
 from stickslip.problem import (
     ENOUGH_EVENTS,
     FULL_HISTORY,
+    MOST_PIECES,
+    PATIENCE,
     STATUSES,
     UNDER_WAY,
     Crowd,

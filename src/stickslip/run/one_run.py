@@ -1,19 +1,13 @@
-"""Studies of a single problem or run: critical values, steady sliding, predictability, severity, statistics of a catalogue."""
+"""Steady sliding of one problem, with runs from rest where a critical pull rate asks for them."""
 
 from dataclasses import replace
 from pathlib import Path
 
-from stickslip.contact import SteadySlidings, critical_value, proven_slidings
+from stickslip.contact import SteadySlidings, proven_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import Scenario, read_source
-from stickslip.run.find import from_rest as runs_from_rest
 from stickslip.run.study import TextProgress, telling
-from stickslip.solution.observables import catalogue_statistics
-from stickslip.solution.observables.predictability import predictability
-from stickslip.solution.observables.severity import severity
-
-__all__ = ["catalogue_statistics", "critical_value", "predictability", "severity", "steady"]
 
 
 @for_users
@@ -63,5 +57,7 @@ def steady(
     found = proven_slidings(one)
     if not from_rest or found.regained is None:
         return found
+    from stickslip.run.find import from_rest as runs_from_rest  # here, because most contacts need no runs
+
     with telling(progress, "steady") as tell:
         return replace(found, from_rest=runs_from_rest(one, found, tell))

@@ -110,10 +110,10 @@ class PausedCatalogue:
     @classmethod
     def read(cls, path: Path) -> Self:
         """Read a checkpoint. Raises InputError for a file that is not the checkpoint of a catalogue."""
-        dataset = read(path, CATALOGUE)
-        stopped = to_solution(dataset, path)
+        tables = read(path, CATALOGUE)
+        stopped = to_solution(tables, path)
         try:
-            return cls(path, stopped, check_place(dataset.attrs, path))
+            return cls(path, stopped, check_place(tables.attrs, path))
         except (KeyError, TypeError) as error:
             raise InputError(f"{path}: not a file that stickslip has written: {error} is missing or wrong") from None
 

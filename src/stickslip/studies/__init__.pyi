@@ -1,3 +1,4 @@
+from stickslip.contact import critical_value
 from stickslip.extensions.inference.infer import infer
 from stickslip.extensions.inference.inference import Inference, ranking
 from stickslip.extensions.inference.record.record import Record
@@ -7,7 +8,10 @@ from stickslip.extensions.studies.analogy import Analogy, analogy
 from stickslip.extensions.studies.compare import Comparison, compare
 from stickslip.extensions.studies.ensemble import Ensemble, ensemble
 from stickslip.run.find import Edge, find
-from stickslip.run.one_run import catalogue_statistics, critical_value, predictability, severity, steady
+from stickslip.run.one_run import steady
+from stickslip.solution.observables import catalogue_statistics
+from stickslip.solution.observables.predictability import predictability
+from stickslip.solution.observables.severity import severity
 
 __all__ = [
     "Analogy",

@@ -103,42 +103,10 @@ def test_a_scenario_comes_from_standard_input(command, monkeypatch: pytest.Monke
         assert shown.err.startswith(f"stickslip: {message}")
 
 
-def test_help_is_fast_because_it_compiles_and_validates_nothing():
-    code = limit_of_process(5) + (
-        "import sys\nfrom stickslip.cli.main import main\ntry:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
-        "print(*({'numba', 'pydantic', 'pandas', 'pint', 'matplotlib'} & set(sys.modules)), end='', file=sys.stderr)"
-    )
+def test_help_needs_few_seconds_of_the_processor():
+    code = limit_of_process(5) + "from stickslip.cli.main import main\nmain(['--help'])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stderr == ""
-    assert done.returncode == 0
-
-
-@pytest.mark.sampled(every=6)
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["run", "fig6-slab"],
-        ["run", "fig6-slab", "--out", "a.nc"],
-        ["run", "fig6-slab", "--figure", "a.png"],
-        ["check", "fig6-slab"],
-        ["new", "slab"],
-        ["new", "--list"],
-    ],
-    ids=" ".join,
-)
-def test_warm_commands_load_no_library_that_they_do_not_need(tmp_path, arguments):
-    """Neither do they make the compiler ready, by which numba loads scipy's linear algebra."""
-    heavy = {"pandas", "xarray", "pint", "scipy.linalg", "numba.np.linalg"} | (set() if "--figure" in arguments else {"matplotlib"})
-    code = (
-        f"import sys\nfrom stickslip.cli.main import main\ntry:\n    main({arguments!r})\nexcept SystemExit:\n    pass\n"
-        f"heavy = {heavy}\n"
-        "print(*(heavy & set(sys.modules)), file=sys.stderr)"
-    )
-    for _ in range(2):
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
-        if done.stderr == "\n":  # else it may have had to compile
-            break
-    assert done.stderr == "\n"
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("name", templates.template_names())

@@ -59,19 +59,19 @@ def refuses(**_: object) -> None:
 @pytest.mark.parametrize(
     ("name", "put", "said"),
     [
-        ("os.access", lambda *_: False, "the folder . is not writable"),
+        ("stickslip.cli.output.files.os.access", lambda *_: False, "the folder . is not writable"),
         (
-            "os.access",
+            "stickslip.cli.output.files.os.access",
             lambda path, mode: Path(path).is_dir() or mode != os.W_OK,
             "exists and is write-protected: choose another name",
         ),
-        ("TemporaryFile", refuses, "nothing can be written in the folder .: Read-only file system"),
+        ("tempfile.TemporaryFile", refuses, "nothing can be written in the folder .: Read-only file system"),
     ],
 )
 def test_what_cannot_be_written_is_refused_before_the_run(command, monkeypatch: pytest.MonkeyPatch, name: str, put, said: str):
     if "exists" in said:
         Path("a.nc").touch()
-    monkeypatch.setattr(f"stickslip.cli.output.files.{name}", put)
+    monkeypatch.setattr(name, put)
     monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
     assert command("run", "fig6-slab", "--out", "a.nc").refusal == f"--out a.nc: {said}\n"
 

@@ -9,7 +9,8 @@ import stickslip as ss
 from stickslip.contact.folds import certificate
 from stickslip.contact.lowest_slope import lowest_slope, lowest_slopes
 from stickslip.contact.slopes import pieces_of
-from stickslip.contact.turns import PROVEN, find_turns
+from stickslip.contact.turn_search import PROVEN
+from stickslip.contact.turns import find_turns
 from stickslip.problem.resistance import Resistance
 
 from .laws import S, Z

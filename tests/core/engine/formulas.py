@@ -26,7 +26,7 @@ def enclose(
 ) -> NDArray[np.float64]:
     """Bounds of mu, dmu/dv and d2mu/dv2, shape (3, 2, cells), at a slip or between two, on cells of slip rates."""
     ends = np.broadcast_arrays(np.atleast_1d(np.asarray(low, float)), np.asarray(high, float))
-    bounds = Enclosure(tree, parameters, slip).on(*ends, np.arange(len(ends[0])))
+    bounds = Enclosure((tree,), parameters, slip).on(*ends, np.arange(len(ends[0])))
     found = np.zeros((3, 2, len(ends[0])))
     found[: bounds.shape[1]] = np.moveaxis(bounds, 0, 1)
     with np.errstate(over="ignore"):

@@ -21,7 +21,7 @@ from stickslip.foundation.kernels.code import compiled_sources
 from stickslip.friction.piecewise import PiecewiseLaw
 from tests.core.engine.compiled import compiled
 
-COMPILERS = ("kernel", "inlined", "entry")
+COMPILERS = ("kernel", "inlined", "entry", "exact", "exact_entry")
 """Decorators of compiled functions."""
 OTHER_LOOPS = {
     ("taylor_step.py", "expand_series"): "unit is at most 1, and falls by 1e-3 each time until it is below 1e-300",

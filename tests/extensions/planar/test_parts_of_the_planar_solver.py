@@ -16,7 +16,7 @@ from stickslip.extensions.planar import echo as echoes
 from stickslip.extensions.planar.driving import locked_load
 from stickslip.extensions.planar.memory import advanced, recurrence
 from stickslip.extensions.planar.nodes import node_values
-from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from stickslip.extensions.planar.solver import PlanarSolver, our_settings
 from tests.extensions.planar.patches import SLAB, patch
 
 RANDOM = np.random.default_rng(3)
@@ -94,7 +94,7 @@ def test_the_echo_of_three_round_trips_is_the_sum_written_out() -> None:
     sent[1:, 0] = sent[:-1, -1]  # a round trip begins where the one before it ended
     sent[0, 0] = 0.0
     path = np.concatenate([sent[0], *sent[1:, 1:]])
-    with in_double_precision():
+    with our_settings():
         spectra = jnp.asarray(echoes.kernel_spectra(weights, steps, np.arange(3)))
         echo = echoes.silent(trips, steps, (2, 3))
         for trip in range(trips):

@@ -19,7 +19,7 @@ import stickslip as ss
 from stickslip.extensions.planar.echo import echo_weights
 from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
 from stickslip.extensions.planar.memory import exponentials
-from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from stickslip.extensions.planar.solver import PlanarSolver, our_settings
 from tests.extensions.planar.patches import LAW, SLAB, patch
 
 DENSITY, SPEED, THICKNESS, STRESS = 2800.0, 3500.0, 1e4, 1e8
@@ -78,7 +78,7 @@ def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pyt
     slab = ss.PlanarSlab(problem, nodes=64, length=2e4)
     nodes, contact = Nodes.of(slab.values, slab.locked, impedance), ContactOfNodes.of(law)
     rates, slip, states = np.geomspace(1e-9, 10.0, 64), np.zeros(64), slab.values.states
-    with in_double_precision():
+    with our_settings():
         load = impedance * rates + 1e8 * contact.coefficient(nodes, slip, rates, states)
         found = contact.rate(nodes, load, slip, states, rates * np.where(np.arange(64) % 2, 1.01, 1.0))
         missed = impedance * found + 1e8 * contact.coefficient(nodes, slip, found, states) - load
@@ -233,7 +233,7 @@ import json, re, sys
 import jax, numpy as np
 if len(sys.argv) > 1:
     jax.distributed.initialize(sys.argv[1], num_processes=2, process_id=int(sys.argv[2]))
-from stickslip.extensions.planar.solver import PlanarSolver, in_double_precision
+from stickslip.extensions.planar.solver import PlanarSolver, our_settings
 from tests.extensions.planar.patches import patch
 found = []
 for grid in ({"nodes": 32, "length": 2e4}, {"nodes": 32, "length": 2e4, "width": 2e4, "width_nodes": 16}):
@@ -241,7 +241,7 @@ for grid in ({"nodes": 32, "length": 2e4}, {"nodes": 32, "length": 2e4, "width":
     while run.advance(1000):
         pass
     found.append(run.now().slip.ravel().tolist())
-with in_double_precision():
+with our_settings():
     step = run.functions.march.lower(run.motion, run.waves, run.constants, run.loading[0], np.array([0, 1])).compile().as_text()
 print(json.dumps([len(jax.devices()), found, sorted(set(re.findall("all-[a-z-]+[a-z]", step)))]))
 """

@@ -20,7 +20,7 @@ CASES = [
     ),
     (["sweep", "fig6-slab", *FOUR_KEYS, "--figure", "a.png"], "sweep: --figure draws one to three keys, but here 4 keys vary"),
     (["sweep", "fig6-slab"], "sweep: needs either --vary or --list, got neither"),
-    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got both"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got --vary and --list"),
     (["sweep", "fig6-slab", "-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
     (
         ["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "xyz"],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,19 +13,15 @@ import typer
 
 from stickslip.cli.options import Changes, ScenarioName, axes_of, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
-from stickslip.cli.output.show import print_words, say, titled
+from stickslip.cli.output.show import print_words, titled
 from stickslip.foundation.errors import InputError, InputWarning
-from stickslip.foundation.show import brief, clean, exact_range, exactly, with_unit
 
 if TYPE_CHECKING:
-    from stickslip.contact import Fold, SteadySlidings, Uniqueness
+    from stickslip.contact import SteadySlidings
     from stickslip.problem.scenarios import Scenario
-    from stickslip.run.check import Examination
 
 PARAMETERS = "List the names, units and meanings of all numbers that --set, --vary and --free take, and stop."
 RUNS = "Make a dozen short exact runs from rest, where steady sliding becomes stable at a critical rate."
-MOST_UNDECIDED = 10
-"""Largest number of intervals of slip rates that are listed as undecided, because they may or may not hold a fold."""
 
 
 def check(
@@ -62,6 +58,7 @@ def check(
       stickslip check fig6-slab --map alpha=0.01..10:40:log \
         --map "normal_stress=10 MPa..500 MPa" --figure map.png
     """
+    from stickslip.cli.output.examination import show_examination
     from stickslip.cli.overrides import load
     from stickslip.run.check.examine import examine
 
@@ -107,6 +104,7 @@ def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
 
 def _show_special(loaded: Scenario, drawing_wanted: object) -> None:
     """Print what is found about a scenario that the solver of an extension runs. Raises InputError if a drawing is wanted."""
+    from stickslip.cli.output.examination import show_examination
     from stickslip.run import special_solver_of
 
     tables = "] and [".join(name for name, _ in loaded.tables)
@@ -146,65 +144,3 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     with progress_line("map:") as report:
         found = regime_map(loaded.problem, x, y, lambda done, count: report(f"{done} of {count} points"))
     return partial(regimes.draw, loaded.problem, found, loaded.heading)
-
-
-def show_examination(scenario: Scenario, found: Examination) -> None:
-    """Print what was found about a scenario on standard output."""
-    screen = titled(scenario)
-    if scenario.description:
-        say(screen, clean(scenario.description))
-    rows: list[tuple[str, ...]] = []
-    for heading, facts in [*((f"[{name}]", facts) for name, facts in found.given.items()), ("what follows", found.derived)]:
-        rows.append((heading,))
-        rows += [
-            (one.name, one.value if isinstance(one.value, str) else with_unit(one.value, one.unit), one.meaning) for one in facts
-        ]
-    print_words(screen, ("", "value", "meaning"), rows)
-    screen.print()
-    findings = [*_findings(found), *(("warning", warning) for warning in found.warnings)]
-    print_words(screen, ("", ""), findings, {"warning": "yellow"})
-
-
-def _findings(found: Examination) -> Iterator[tuple[str, str]]:
-    """Yield the name and the text of each finding but the warnings."""
-    yield "start", found.start
-    for line in found.chosen:
-        yield "chosen", line
-    if found.stability:
-        yield "stability", found.stability
-    for line in found.steady.lines():
-        yield "steady sliding", line
-    yield "uniqueness", found.uniqueness.summary
-    if found.along_slip:
-        yield "along slip", found.along_slip
-    for fact in found.critical:
-        yield "critical value", f"{fact.name} = {brief(float(fact.value), fact.unit, 9)}; {fact.meaning}"
-    contact = found.uniqueness
-    assert contact.problem is not None
-    loads, rates = contact.problem.load_unit, contact.problem.unit_of("slip_rate")
-    for fold in contact.folds:
-        yield "fold", f"slip rate {exactly(fold.rate, rates)}, load {brief(fold.load, loads, 12)}{_proof(fold, rates)}"
-    for low, high in contact.undecided[:MOST_UNDECIDED]:
-        yield "not decided", f"whether there is a fold between {exact_range((low, high), rates, between=' and ')}"
-    yield from _by_rule(contact, loads, rates)
-
-
-def _proof(fold: Fold, unit: str) -> str:
-    """Return how closely a fold is proven, as the end of a sentence, with the unit of slip rates."""
-    if fold.enclosure is None:
-        return "; not proven"
-    low, high = fold.enclosure
-    return f"; proven to within {exactly(high - low, unit, 1)}" if high > low else "; proven, at a kink of the law"
-
-
-def _by_rule(contact: Uniqueness, loads: str, unit: str) -> Iterator[tuple[str, str]]:
-    """Yield what depends on the selection rule: the jumps, and the loop that they enclose, with the units of loads and rates."""
-    for jump in contact.jumps:
-        change = jump.traction_after - jump.traction_before
-        span = exact_range((jump.rate_before, jump.rate_after), unit)
-        rates = f"slip rate {span} at a load of {brief(jump.load, loads, 12)}"
-        yield f"jump {jump.direction} *", f"{rates}; traction changes by {brief(change, loads)}"
-    if contact.jumps:
-        retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
-        yield "loop *", f"the load going up and down encloses {brief(contact.loop_area, f'{loads} {unit}')}{retraced}"
-        yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."

@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Annotated, Any, NamedTuple
 
 import typer
@@ -121,6 +120,8 @@ def check_folder(path: Path, option: str) -> None:
 def _check_writable(folder: Path, where: str) -> None:
     if not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{where}: the folder {folder} is not writable")
+    from tempfile import TemporaryFile  # here, because it loads hashes and random numbers
+
     try:
         with TemporaryFile(dir=folder):  # some file systems refuse only now
             pass

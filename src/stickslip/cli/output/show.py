@@ -1,6 +1,6 @@
 """Show results on the terminal: one console, sentences and tables that fit it without breaking a number.
 
-rich is imported when the first of them is shown, because help does without it.
+What needs rich or numpy is imported when the first of them is shown, because help does without both.
 """
 
 from __future__ import annotations
@@ -9,9 +9,6 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
-
-from stickslip.foundation.given import show_in
-from stickslip.foundation.show import clean, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -54,6 +51,8 @@ def say(screen: Console, *texts: str, style: str | None = None) -> None:
 
 def titled(scenario: Scenario) -> Console:
     """Print the title of a scenario, or its name, on the console for results, and return the console."""
+    from stickslip.foundation.given import show_in
+    from stickslip.foundation.show import clean
     from stickslip.problem import units_given
 
     screen = console()
@@ -64,6 +63,8 @@ def titled(scenario: Scenario) -> Console:
 
 def print_sentences(screen: Console, *texts: str) -> None:
     """Print texts as sentences, each on a line of its own; empty ones are left out."""
+    from stickslip.foundation.show import sentence
+
     say(screen, *(sentence(text) for text in texts if text))
 
 

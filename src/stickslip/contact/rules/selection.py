@@ -97,7 +97,7 @@ def levels(rule: str, start: Floats, end: Floats) -> tuple[Floats, Floats, Float
 
 
 def _table(rule: str, stable: Branches) -> SelectionTable:
-    start, end = np.reshape([(b.excess_from, b.excess_to) for b in stable], (-1, 2)).T
+    start, end = np.array([b.excess_from for b in stable], float), np.array([b.excess_to for b in stable], float)
     stick_to, keep_from, keep_to = levels(rule, start, end)
     return SelectionTable(float(stick_to), tuple(keep_from.tolist()), tuple(keep_to.tolist()))
 

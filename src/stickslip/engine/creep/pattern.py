@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from stickslip.engine.history.series import horner
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.foundation.arrays import Floats1, Floats2
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
-from stickslip.foundation.kernels.signature import Floats1, Floats2
 
 SMALLEST = 1e-300
 """Smallest divisor: it keeps a division by zero from occurring."""

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.engine.history.history import NO_LEAPS
-from stickslip.engine.input.limits import PATIENCE
 from stickslip.engine.state.layout import Counts, Floats, Incoming
-from stickslip.problem import Problem, leaps_over
+from stickslip.problem import PATIENCE, Problem, leaps_over
 
 if TYPE_CHECKING:
     from stickslip.engine.creep.leaping_run import LeapingRun

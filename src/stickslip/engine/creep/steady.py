@@ -193,8 +193,8 @@ class SteadyLeaps:
     def _slopes(self, low: float, high: float, piece: int) -> tuple[float, float]:
         """Return the least and the greatest slope of friction between two slip rates (m/s), Pa s/m or N s/m."""
         law, slip, normal = self.problem.friction, self.problem.law_slip, self.problem.normal
-        mu = Enclosure(law.trees()[piece], law.numbers(piece), slip).on(np.array([max(low, 0.0)]), np.array([high]))
-        return (normal * float(mu[0, 1, 0]), normal * float(mu[1, 1, 0])) if mu.shape[1] > 1 else (0.0, 0.0)
+        mu = Enclosure((law.trees()[piece],), law.numbers(piece), slip).on(np.array([max(low, 0.0)]), np.array([high]))
+        return normal * float(mu[0, 1, 0]), normal * float(mu[1, 1, 0])
 
     def _of_length(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int) -> Leap | None:
         """Return the leap over so many round trips, None if what a deviation does in them is not known."""

@@ -13,10 +13,9 @@ from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.history.series import integrals_at, values_at
 from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.engine.state.layout import Integers, Store
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Floats1, Integers1
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import entry
-from stickslip.foundation.kernels.signature import Floats1, Integers1
 from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem
 

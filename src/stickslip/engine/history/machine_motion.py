@@ -19,10 +19,9 @@ from numpy.typing import NDArray
 from stickslip.engine.history.series import horner
 from stickslip.engine.input.forcing import EDGE, Inflow, inflow_of, machine_at_first, pull_of, settled_rate, wave_before
 from stickslip.engine.state.layout import TERMS, Store
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Floats1, Floats2, Floats3
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import entry
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3
 from stickslip.problem import Problem
 
 FINEST = 0.5

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
+from stickslip.foundation.arrays import Integers1
 from stickslip.foundation.kernels.kernels import entry, kernel
-from stickslip.foundation.kernels.signature import Integers1
 
 NOTHING = -1
 """Marks a phase without a recorded piece."""

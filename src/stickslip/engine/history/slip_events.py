@@ -12,10 +12,10 @@ from stickslip.engine.history.turning_points import FULL, Known, SearchMemory, S
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
+from stickslip.foundation.arrays import Floats1, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.pointers import record_at
 from stickslip.foundation.kernels.memory.records import MemoryRecord
-from stickslip.foundation.kernels.signature import Floats1, Integers1, Integers2
 from stickslip.problem import default_event_rate
 
 LAST_THIRD = 2.0 / 3.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.contact import driven_at, regime_when_pressed, slides_on, steady_slidings
+from stickslip.contact import regime_when_pressed
 from stickslip.engine.history.history import History, Positions
 from stickslip.engine.input.branch_table import is_algebraic
 from stickslip.problem import Problem, leaps_over
@@ -108,6 +108,8 @@ STEADY = 1e-3
 
 def _slides_steadily(history: History) -> bool:
     """Return True if a history that leaps over sliding ends in steady sliding."""
+    from stickslip.contact import steady_slidings  # here and below, because only leaps over sliding need it
+
     over, rate = leaps_over(history.problem), float(history.store.rate[-1].sum())
     steady = (one.rate for one in steady_slidings(history.problem).slidings)
     return over == "steady sliding" or (over == "slow sliding" and any(abs(rate - one) <= STEADY * abs(one) for one in steady))
@@ -115,6 +117,8 @@ def _slides_steadily(history: History) -> bool:
 
 def _lasts(problem: Problem) -> str:
     """Return a few words on a contact that slides steadily at the end of its run."""
+    from stickslip.contact import driven_at, slides_on, steady_slidings
+
     found = steady_slidings(problem).slidings
     if len(found) != 1:
         return "it slides steadily up to the end"

@@ -8,10 +8,10 @@ from typing import NamedTuple
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, differentiate, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece
 from stickslip.engine.state.workspace import pieces_in
+from stickslip.foundation.arrays import Floats2, Integers2
 from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.pointers import record_at
 from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_inside
-from stickslip.foundation.kernels.signature import Floats2, Integers2
 
 SAME = 1e-12
 """If a slip rate is closer to the threshold, or a bound closer to zero, than this (relative), rounding may decide its sign."""

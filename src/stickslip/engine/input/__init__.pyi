@@ -19,20 +19,11 @@ from stickslip.engine.input.ladder import (
     ladder_of,  # Return the table of `LadderCell` of a problem; an empty one for a body that is uniform.
     sides_of,  # Yield the sides of the contact as they are at the start.
 )
-from stickslip.engine.input.limits import (
-    # Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond.
-    MOST_PIECES,
-    # Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces
-    # and 0.1 s.
-    PATIENCE,
-)
 from stickslip.engine.input.prepare import (
     SAFETY,  # Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md).
 )
 
 __all__ = [
-    "MOST_PIECES",
-    "PATIENCE",
     "SAFETY",
     "Inflow",
     "far_at_first",

@@ -51,9 +51,9 @@ def table_of_branches(problem: Problem, law_slip: float, pressing: float = 0.0) 
         change += pressing * problem.normal * float(problem.friction.static_coefficient(problem.law_slip + law_slip))
     found = BranchRow.of(table)
     found.rate_from, found.rate_to = [one.rate_from for one in branches], [one.rate_to for one in branches]
-    found.keep_from, found.keep_to = np.array(levels.keep_from) + change, np.array(levels.keep_to) + change
-    found.excess_from = np.array([one.excess_from for one in branches]) + change
-    found.excess_to = np.array([one.excess_to for one in branches]) + change
+    found.keep_from, found.keep_to = [one + change for one in levels.keep_from], [one + change for one in levels.keep_to]
+    found.excess_from = [one.excess_from + change for one in branches]
+    found.excess_to = [one.excess_to + change for one in branches]
     return table, levels.stick_to
 
 
@@ -62,6 +62,8 @@ def strength_change(problem: Problem, law_slip: float) -> float:
 
     The result is exact to the rounding of the difference.
     """
+    if law_slip == 0.0:
+        return 0.0
     law, start = problem.friction, problem.law_slip
     home = int(law.piece_at(start))
     if law.knot_variable == "slip" and int(law.piece_at(start + law_slip)) != home:

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.waves.tone import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.problem import SILENT, Ground, LoadingHistory, Problem, Segment, Tone
@@ -115,6 +114,8 @@ class Inflow:
 
     def _summed(self, trips: Floats) -> Floats:
         """Return the sum of the tone over the given number of round trips, divided by the tone at their mean time."""
+        from stickslip.engine.waves.tone import dirichlet  # compiled, which `stickslip check` does without
+
         return np.array([dirichlet(count, self.tone.frequency * self.round_trip_time) for count in trips.tolist()])
 
     def _swung(self, low: Floats, high: Floats) -> Floats:

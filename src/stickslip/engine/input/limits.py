@@ -19,14 +19,7 @@ import math
 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
-from stickslip.problem import Problem, check_round_trips, leaps_but_for_pull, lumps_by_itself
-
-PATIENCE = 200
-"""Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and
-0.1 s.
-"""
-MOST_PIECES = 4096
-"""Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond."""
+from stickslip.problem import MOST_PIECES, PATIENCE, Problem, check_round_trips, leaps_but_for_pull, lumps_by_itself
 
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:

@@ -59,8 +59,15 @@ def first_disc(tolerance: Any) -> Any:
 
     The last terms of a step are at the tolerance, and terms grow with the radius: near this one they are as large as the slip rate.
     """
+    if isinstance(tolerance, float):
+        return _one_disc(tolerance)
     reach = np.asarray(tolerance) ** (-1.0 / (at.TERMS - 1))
     return np.argmin(abs(np.log(RATIOS) - np.log(reach)[..., None]), axis=-1)
+
+
+@lru_cache(maxsize=32)
+def _one_disc(tolerance: float) -> int:
+    return int(first_disc(np.array(tolerance)))
 
 
 @lru_cache(maxsize=32)
@@ -156,7 +163,7 @@ def parameters_of(problem: Problem) -> Params:
 
 def together(numbers: Sequence[Any]) -> at.Floats:
     """Return one table of numbers; it has a column for each member if any of them is an array."""
-    if any(np.ndim(number) for number in numbers):
+    if any(isinstance(number, np.ndarray) and number.ndim for number in numbers):
         return np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*numbers)])
     return np.array(numbers, float)
 
@@ -312,7 +319,7 @@ def law_tables(problem: Problem) -> tuple[at.Integers, at.Floats]:
     """Return the pieces of the law as a table of `LawPiece`, and the constants of their formulas."""
     law, start = problem.contact_law, problem.law_slip
     formulas = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
-    static, home = float(law.static_coefficient(start)), int(law.piece_at(start))
+    home, static = int(law.piece_at(start)), float(law.static_coefficient(start)) if len(formulas) > 1 else 0.0
     references, numbers = references_of(problem, home, static, lambda i, slip: float(law.piece_coefficient(i, slip, 0.0)))
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
     for i, (row, formula) in enumerate(zip(constants, formulas, strict=True)):

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import branches_in
+from stickslip.foundation.arrays import Floats1, Floats2, Floats3, Integers1
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead, bits_of, call_value, float_of, floats, room_for
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Integers1
 
 MOST_BRANCHES = 4
 """Room of tables for branches."""

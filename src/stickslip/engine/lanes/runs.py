@@ -28,11 +28,11 @@ from stickslip.engine.lanes.workspace import LaneStage, Setups, Workspace
 from stickslip.engine.loop import run_until
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
+from stickslip.foundation.arrays import Floats2, Floats3, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import CallAt, ahead, call_prepare, floats, integers
 from stickslip.foundation.kernels.memory.pointers import numbers_of, whole_numbers_of
 from stickslip.foundation.kernels.memory.simd import WIDTH
-from stickslip.foundation.kernels.signature import Floats2, Floats3, Integers1, Integers2
 from stickslip.problem import BAD_PARAMETERS, Stop
 
 BUDGET = 200_000

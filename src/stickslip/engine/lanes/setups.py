@@ -29,7 +29,7 @@ from stickslip.engine.state.layout import BranchRow, Counts, Floats, Integers, L
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
-from stickslip.friction.formula import bends_one_way, difference
+from stickslip.friction.formula import bends_one_way
 from stickslip.problem import Problem, default_event_rate
 from stickslip.problem.scenarios import Scenario
 
@@ -193,13 +193,8 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
 
 def ends_of_branches(of: Pieces) -> tuple[Integers, Floats]:
     """Return the number of branches of each member, NEVER_RISES or TOO_MANY, and the slip rates (m/s) of their ends."""
-
-    def slope(rate: Floats, member: Integers) -> Floats:
-        numbers = {name: values[member] for name, values in of.numbers.items()}
-        return of.damping[member] + of.normal[member] * difference(of.trees[0], numbers, of.slip[member], 0.0, rate)[1]
-
     found = find_turns(of, most=MOST_TURNS)
-    rates, member = folds_of(found, slope, PARTS)
+    rates, member = folds_of(of, found, PARTS)
     count = np.bincount(member, minlength=len(of.slip))
     rises = count % 2 == 0
     branches = (count + rises + 1) // 2

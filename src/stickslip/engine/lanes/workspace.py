@@ -18,8 +18,8 @@ from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
+from stickslip.foundation.arrays import Floats1, Floats2, Floats3, Floats4, Integers1, Integers2, Integers3
 from stickslip.foundation.kernels.memory.simd import WIDTH
-from stickslip.foundation.kernels.signature import Floats1, Floats2, Floats3, Floats4, Integers1, Integers2, Integers3
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Initial and largest room of a lane in pieces of history; a member that needs more is run by itself."""

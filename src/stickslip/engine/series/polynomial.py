@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.arrays import Floats1
 from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 from stickslip.foundation.kernels.memory.simd import fused
-from stickslip.foundation.kernels.signature import Floats1
 
 Floats = NDArray[np.float64]
 

@@ -20,9 +20,9 @@ from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, re
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.merged_creep import plan_group
+from stickslip.foundation.arrays import Integers1
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import bits_of
-from stickslip.foundation.kernels.signature import Integers1
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""

@@ -23,6 +23,7 @@ import numpy as np
 from jax.sharding import PartitionSpec
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.compiled_before import COMPILED_BEFORE
 from stickslip.extensions.planar.driving import locked_load
 from stickslip.extensions.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
@@ -132,7 +133,7 @@ class PlanarSolver:
         self.layout, parameters = Layout(self.slab.shape, self.devices), tuple(self.slab.values.numbers[0])
         self.spread = Spread.of(self.layout, parameters)
         self.functions = functions_of(ContactOfNodes.of(self.slab.values.law), self.layout, parameters)
-        with in_double_precision():
+        with our_settings():
             self._begin()
 
     @property
@@ -201,7 +202,7 @@ class PlanarSolver:
         """
         if not self.steps_left:
             return 0
-        with in_double_precision():
+        with our_settings():
             if self.step == self.steps:
                 self.waves = self.waves._replace(arriving=self._turn(self.waves.sent))
                 self.trip, self.step = self.trip + 1, 0
@@ -224,19 +225,19 @@ class PlanarSolver:
 
     def now(self) -> PlanarMotion:
         """Return the motion at the present moment as numpy arrays."""
-        with in_double_precision():
+        with our_settings():
             return PlanarMotion(*(whole(one) for one in self.motion))
 
     # ---- stop, and continue ------------------------------------------------------------------------------------------------------
 
     def sent(self, since: int) -> Floats:
         """Return W from a step of this round trip to the present one: (steps, 2, wavenumbers), without those that are filled up."""
-        with in_double_precision():
+        with our_settings():
             return np.asarray(whole(self.waves.sent[since : self.step + 1]))[..., : self.layout.half]
 
     def state(self) -> dict[str, Floats]:
         """Return what a run needs to continue, beside W since its start."""
-        with in_double_precision():
+        with our_settings():
             waves = {f"waves_{name}": whole(getattr(self.waves, name))[..., : self.layout.half] for name in KEPT}
         waves["waves_memory"] = np.stack([waves["waves_memory"].real, waves["waves_memory"].imag])
         return waves | {f"motion_{name}": one for name, one in self.now()._asdict().items()}
@@ -252,7 +253,7 @@ class PlanarSolver:
         def filled(amplitudes: Any) -> Any:
             return np.pad(amplitudes, [(0, 0)] * (amplitudes.ndim - 1) + [(0, more)])
 
-        with in_double_precision():
+        with our_settings():
             where, arriving = self.spread.waves, self.waves.arriving
             for n in range(trip):  # the echoes follow from what was sent
                 arriving = self._turn(self.layout.put(filled(sent(n)), where.sent))
@@ -271,7 +272,7 @@ KEPT = tuple(name for name in PlanarWaves._fields if name not in ("arriving", "s
 
 
 @contextmanager
-def in_double_precision() -> Iterator[None]:
-    """Have JAX compute with 64 bits, here only: other code of the user keeps its setting."""
-    with jax.enable_x64(True):
+def our_settings() -> Iterator[None]:
+    """Have JAX compute with 64 bits and keep what it compiles, here only: other code of the user keeps its settings."""
+    with COMPILED_BEFORE.in_use(), jax.enable_x64(True):
         yield

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from importlib import resources
-from importlib.resources.abc import Traversable
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,8 @@ from stickslip.foundation.quantities import Choice, Quantity
 from stickslip.problem.scenarios import ScenarioTable
 
 if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
     from stickslip.extensions.planar.contact import Contact
     from stickslip.extensions.planar.slab import PlanarSlab
     from stickslip.problem import Problem
@@ -105,7 +106,7 @@ class ContactTable(ScenarioTable):
 
     @override
     def examples(self) -> Traversable:
-        return resources.files("stickslip.extensions.planar") / "bundled"
+        return Path(__file__).with_name("bundled")
 
 
 def contact_of(scenario: Scenario) -> Contact:

@@ -36,9 +36,8 @@ VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each ke
 Vary = Annotated[list[str] | None, option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]
 TABLE_HELP = "Members from a table instead (.csv): one column per key, one row per member."
 Table = Annotated[Path | None, option(TABLE_HELP, "--list")]
-DesignKind = Annotated[
-    str, typer.Option(help="A grid, or samples between LOW and HIGH: random, or a Latin hypercube.", autocompletion=complete_design)
-]
+DESIGN_HELP = "A grid, or samples between LOW and HIGH: random, or a Latin hypercube; or the members in FILE.csv, like --list."
+DesignKind = Annotated[str, typer.Option(help=DESIGN_HELP, autocompletion=complete_design)]
 Members = Annotated[int | None, option("How many samples.", "--members", "-m")]
 Seed = Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")]
 QUANTITY_HELP = "Quantity to keep of each run; may be repeated."
@@ -89,6 +88,7 @@ def sweep(
       stickslip sweep mine.toml -v alpha=0.1,1,10 -q recurrence -q heat
       stickslip sweep mine.toml -v alpha=0.1..10:log -v static=0.6..0.8 \
         --design lhs --members 1000 --out sample.zarr
+      stickslip sweep mine.toml --design members.csv -q slip
 
     After a stop, the same command continues where the store ends.
 
@@ -104,12 +104,13 @@ def sweep(
     from stickslip.extensions.sweeps.execution.plan import make_plan
     from stickslip.extensions.sweeps.summary import show_plan, show_slowest, show_sweep
 
-    _check_files(vary, table, out, figure)
+    _check_members(vary, table, design)
+    _check_files(out, figure)
     look.check(figure)
     chosen = load_with("sweep", scenario, changes, duration=duration)
     plan = make_plan(
         chosen,
-        table or typed_axes(chosen, vary or (), "--vary"),
+        table or (typed_axes(chosen, vary, "--vary") if vary else None),
         design=design,
         members=members,
         seed=seed,
@@ -132,7 +133,7 @@ def sweep(
 
         with FORMAT.reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
-    if (found.status == NOT_RUN).all():
+    if (found.status.values == NOT_RUN).all():
         announce(out)
         raise KeyboardInterrupt
     if figure is not None:
@@ -141,19 +142,27 @@ def sweep(
     if spent is not None:
         show_slowest(plan, spent)
     announce(out, figure)
-    if (found.status == NOT_RUN).any():
+    if (found.status.values == NOT_RUN).any():
         raise KeyboardInterrupt
     raise typer.Exit(code)
 
 
-def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, figure: Path | None) -> None:
-    """Raise InputError unless either axes or a table are given, and all files can be written."""
+def _check_members(vary: list[str] | None, table: Path | None, design: str) -> None:
+    """Raise InputError unless either axes, or one table of members, are given."""
+    from stickslip.extensions.sweeps.design.design import is_from_outside
+
+    given = {"--vary": vary, "--list": table, f"--design {design}": is_from_outside(design)}
+    found = [option for option, one in given.items() if one]
+    if len(found) != 1:
+        got = " and ".join(found) or "neither; as in --vary friction.alpha=0.1..1:20"
+        raise InputError(f"sweep: needs either --vary or --list, got {got}")
+
+
+def _check_files(out: Path | None, figure: Path | None) -> None:
+    """Raise InputError unless all files can be written."""
     from stickslip.cli.output.files import check_target
     from stickslip.extensions.sweeps.sweep import check_out
 
-    if (table is None) == (not vary):
-        got = "both" if vary else "neither; as in --vary friction.alpha=0.1..1:20"
-        raise InputError(f"sweep: needs either --vary or --list, got {got}")
     if out is not None:
         check_out(out, "--out")
     check_target(figure, "--figure")

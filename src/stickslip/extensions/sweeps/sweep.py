@@ -66,10 +66,10 @@ ProgressCallback = Callable[[SweepProgress], object]
 @for_users
 def sweep(
     scenario: Problem | Scenario | str | Path,
-    vary: Any,
+    vary: Any = None,
     *,
     duration: float | str | WithUnit | None = None,
-    design: str = "grid",
+    design: Any = "grid",
     members: int | None = None,
     seed: int = 0,
     quantities: Iterable[Wanted] = DEFAULT,
@@ -95,10 +95,13 @@ def sweep(
         each row.
     duration : float or str, optional
         Latest end of the runs (s, or a text with a unit). A problem needs it; a scenario has its own.
-    design : {"grid", "random", "lhs"}
+    design : {"grid", "random", "lhs"}, array, table or path
         "grid" runs every combination, with one dimension for each parameter. "random" and "lhs" (Latin hypercube) draw members:
         a tuple (LOW, HIGH) in place of values stands for all numbers between the two, (LOW, HIGH, "log") for the same spread
-        evenly in the logarithm, and from an array or a list one of the values is drawn.
+        evenly in the logarithm, and from an array or a list one of the values is drawn. Members that another library has chosen
+        take the place of these words: an array with a member in each row, whose columns `vary` names in a list, or, without
+        `vary`, a table whose columns have the names of parameters: a DataFrame, a mapping of columns, a list of records, or a
+        CSV file. Cells are numbers in SI or texts with units, or words.
     members : int, optional
         Number of members of the designs "random" and "lhs".
     seed : int
@@ -150,6 +153,12 @@ def sweep(
     0.1     0.0000
     0.5    17.7259
     1.0    23.4402
+
+    Members chosen elsewhere, one in each row:
+
+    >>> found = ss.sweep("fig6-slab", ["alpha", "thickness"], design=[[0.5, 10e3], [1.0, 20e3]])
+    >>> found.slip.values.round(3)
+    array([17.726, 46.88 ])
     """
     plan = make_plan(
         scenario,

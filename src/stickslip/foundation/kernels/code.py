@@ -20,6 +20,7 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +48,14 @@ COMPILED_FILES = (
     "engine/input/branch_table.py",
     "engine/loop.py",
     "engine/on_demand.py",
+    "contact/fold_rates.py",
+    "contact/slopes.py",
+    "contact/turn_search.py",
     "foundation/constants.py",
+    "friction/formula/at_points.py",
+    "friction/formula/on_boxes.py",
+    "friction/formula/on_cells.py",
+    "friction/formula/tape.py",
     "friction/formula/expression.py",
     "solution/observables/layer_records.py",
     "solution/observables/layer_replay.py",
@@ -199,13 +207,13 @@ def made_now(entry: Any) -> bytes:
     if os.environ.get("NUMBA_DISABLE_JIT", "") not in ("", "0"):
         raise InputError(f"{why_not_shipped()}, and NUMBA_DISABLE_JIT is set, so that nothing compiles it: unset it")
     try:
-        from stickslip.foundation.kernels.compiler.objects import object_of
+        compiler = import_module("stickslip.foundation.kernels.compiler.objects")  # loads numba, which nothing else does
     except ImportError as error:
         raise InputError(
             f"{why_not_shipped()}, and the compiler that would make it is missing ({error}): pip install 'stickslip[compiler]'"
         ) from None
     announce(f"compiling the engine, a minute or more, once: {why_not_shipped()}")
-    return object_of(entry, PROCESSOR)
+    return bytes(compiler.object_of(entry, PROCESSOR))
 
 
 def why_not_shipped() -> str:

@@ -12,18 +12,22 @@ from typing import Any, ClassVar, TypeVar
 
 from stickslip.foundation.kernels.code import address_of_entry
 from stickslip.foundation.kernels.lock import LOCK
-from stickslip.foundation.kernels.signature import flattened, signature_of
+from stickslip.foundation.kernels.signature import Ready, flattened, signature_of
 from stickslip.foundation.kernels.uncompiled import UNCOMPILED, as_python
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 class Kernel:
-    """A function that compiled code calls; one that `is_inlined` is put in place wherever it is called."""
+    """A function that compiled code calls.
 
-    def __init__(self, function: Callable[..., Any], is_inlined: bool = False) -> None:
+    One that `is_inlined` is put in place wherever it is called. In one that `is_exact` each operation is rounded by itself, as in
+    numpy; in others a product and a sum may be fused into one operation.
+    """
+
+    def __init__(self, function: Callable[..., Any], *, is_inlined: bool = False, is_exact: bool = False) -> None:
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
-        self.__wrapped__, self.is_inlined = function, is_inlined
+        self.__wrapped__, self.is_inlined, self.is_exact = function, is_inlined, is_exact
 
     @property
     def name(self) -> str:
@@ -41,8 +45,8 @@ class Entry(Kernel):
     known: ClassVar[dict[str, Entry]] = {}
     """All entries of the modules that are imported, by name."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
+    def __init__(self, function: Callable[..., Any], *, is_exact: bool = False) -> None:
+        super().__init__(function, is_exact=is_exact)
         self.known[self.name] = self
         self._called: Any = None
 
@@ -79,3 +83,18 @@ def inlined(function: F) -> F:
 def entry(function: F) -> F:
     """Return a function that compiled code and Python call."""
     return as_python(function) if UNCOMPILED else Entry(function)  # type: ignore[return-value]
+
+
+def exact(function: F) -> F:
+    """Return a function, like `kernel`, whose operations are rounded one by one: for bounds that contain rounding."""
+    return as_python(function) if UNCOMPILED else Kernel(function, is_exact=True)  # type: ignore[return-value]
+
+
+def exact_entry(function: F) -> F:
+    """Return a function, like `entry`, whose operations are rounded one by one."""
+    return as_python(function) if UNCOMPILED else Entry(function, is_exact=True)  # type: ignore[return-value]
+
+
+def ready(array: Any) -> Any:
+    """Return an array as entries take it fastest, if it is handed on again and again; it must keep its place and its shape."""
+    return array if UNCOMPILED else Ready(array)

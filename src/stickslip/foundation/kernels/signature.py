@@ -10,22 +10,12 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-Floats1 = Annotated[NDArray[np.float64], 1]
-Floats2 = Annotated[NDArray[np.float64], 2]
-Floats3 = Annotated[NDArray[np.float64], 3]
-Floats4 = Annotated[NDArray[np.float64], 4]
-Integers1 = Annotated[NDArray[np.int64], 1]
-Integers2 = Annotated[NDArray[np.int64], 2]
-Integers3 = Annotated[NDArray[np.int64], 3]
-Flags1 = Annotated[NDArray[np.bool_], 1]
-"""Arrays with their number of dimensions, which machine code must know; their numbers lie without gaps, as in C."""
-
 NUMBERS = {float: c_double, int: c_int64, bool: c_int64}
 """What C makes of Python's numbers."""
 
 
 @dataclass(frozen=True)
-class Numbers:
+class ArrayOf:
     """An array: the type of its numbers, and its number of dimensions."""
 
     of: np.dtype[Any]
@@ -40,7 +30,7 @@ class Fields:
     kinds: tuple[Kind, ...]
 
 
-Kind = type | Numbers | Fields
+Kind = type | ArrayOf | Fields
 """A kind of argument: float, int or bool, an array, or a named tuple of such."""
 
 
@@ -68,23 +58,36 @@ def _kind_of(hint: Any) -> Kind:
         return hint
     if get_origin(hint) is Annotated:
         array, dimensions = get_args(hint)
-        return Numbers(np.dtype(get_args(get_args(array)[1])[0]), dimensions)
+        return ArrayOf(np.dtype(get_args(get_args(array)[1])[0]), dimensions)
     return Fields(hint, tuple(map(_kind_of, get_type_hints(hint, include_extras=True).values())))
 
 
 def _in_c(kind: Kind) -> list[Any]:
-    if isinstance(kind, Numbers):
+    if isinstance(kind, ArrayOf):
         return [c_int64] * (1 + kind.dimensions)
     if isinstance(kind, Fields):
         return [one for each in kind.kinds for one in _in_c(each)]
     return [NUMBERS[kind]]
 
 
+class Ready:
+    """An array whose address and shape are looked up once, for one that is handed on again and again."""
+
+    __slots__ = ("array", "kind", "numbers")
+
+    def __init__(self, array: NDArray[Any]) -> None:
+        self.array, self.kind = array, ArrayOf(array.dtype, array.ndim)
+        self.numbers = flattened((self.kind,), (array,))
+
+
 def flattened(kinds: tuple[Kind, ...], given: tuple[Any, ...]) -> list[Any]:
     """Return arguments as C takes them. Raises TypeError for an array that machine code would misread."""
     flat: list[Any] = []
     for kind, one in zip(kinds, given, strict=True):
-        if isinstance(kind, Numbers):
+        if type(one) is Ready and one.kind == kind:
+            flat += one.numbers
+        elif isinstance(kind, ArrayOf):
+            one = one.array if type(one) is Ready else one
             if one.dtype != kind.of or one.ndim != kind.dimensions or not one.flags.c_contiguous:
                 raise TypeError(f"machine code takes {kind}, not {one.dtype} of shape {one.shape} and strides {one.strides}")
             flat += [one.ctypes.data, *one.shape]

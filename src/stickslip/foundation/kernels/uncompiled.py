@@ -112,6 +112,7 @@ MATHS = SimpleNamespace(
     **{name: getattr(np, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "expm1", "log1p")},
     **{name: getattr(np, name) for name in ("sinh", "cosh", "hypot", "floor", "ceil", "copysign", "fabs")},
     asinh=np.arcsinh,
+    pow=np.power,
     **{name: getattr(np, name) for name in ("isnan", "isfinite", "isinf")},
     inf=np.float64(np.inf),
     nan=np.float64(np.nan),

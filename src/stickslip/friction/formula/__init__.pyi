@@ -1,5 +1,8 @@
 # What others take from friction.formula. Each name is imported when it is first used; all else is the room's own.
 
+from stickslip.friction.formula.at_points import (
+    AtPoints,  # What compiled code needs to follow the formulas of members from point to point.
+)
 from stickslip.friction.formula.bounds import (
     Enclosure,  # Bounds of a formula's Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
     # Return True if a formula is proven to be convex, or concave, over all slip rates; slips (m) and numbers as in `bounds`.
@@ -8,11 +11,14 @@ from stickslip.friction.formula.bounds import (
     on_discs,  # Return a formula on the discs of its variables, which broadcast; `numbers` holds the law's parameters by name.
 )
 from stickslip.friction.formula.differences import (
+    changes,  # Return what `difference` does for points that have a rate and a member each.
     difference,  # Return mu(slip + slip_step, rate) - mu(slip, 0), and dmu/drate (s/m) at the end point.
     # Return the nodes whose every way into the formula leads to a denominator, or to an argument such as that of exp.
     harmless_overflows,
     limited,  # Return the exponentials of a formula whose exponents are limited to LARGEST_EXPONENT.
+    points_of,  # Return what compiled code needs to follow formulas of members, with a row of numbers each, the slip last.
     slope_formula,  # Return the derivative of a formula by a variable, one of VARIABLES.
+    tape_of_changes,  # Return formulas as a tape that says of each exponential whether its exponent is limited to LARGEST_EXPONENT.
     # Return a formula and its derivatives by slip, slip rate and each of the states, as an array with one axis more in front.
     value_and_slopes,
 )
@@ -60,6 +66,7 @@ __all__ = [
     "STATES",
     "TINIEST",
     "VARIABLES",
+    "AtPoints",
     "Disc",
     "Enclosure",
     "Expression",
@@ -67,6 +74,7 @@ __all__ = [
     "Scaled",
     "add",
     "bends_one_way",
+    "changes",
     "depends_on",
     "difference",
     "evaluate",
@@ -78,7 +86,9 @@ __all__ = [
     "oldest_first",
     "on_discs",
     "operation_of",
+    "points_of",
     "slope_formula",
     "sum_of",
+    "tape_of_changes",
     "value_and_slopes",
 ]

@@ -5,7 +5,8 @@ Bounds need not be sharp. Those of `Enclosure` and `on_discs` include rounding; 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -13,13 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.differences import slope_formula
+from stickslip.friction.formula.differences import slope_formula, tape_of_changes
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
+from stickslip.friction.formula.on_boxes import OnBoxes, bound_boxes
+from stickslip.friction.formula.on_cells import OnCells, enclose_cells
 from stickslip.friction.formula.operations import operation_of
-from stickslip.friction.formula.operations.enclosures import Rule
-from stickslip.friction.formula.operations.hyperbolic import logistic
+from stickslip.friction.formula.operations.enclosures import COUNT, ORDERS
 from stickslip.friction.formula.operations.sets import EVERYTHING, Disc, Interval
+from stickslip.friction.formula.tape import tape_of_bounds
 
 
 def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: Interval) -> Interval:
@@ -28,22 +30,40 @@ def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: I
     The law's numbers and the ends of intervals may be arrays with one entry for each member of a batch. A number may also be an
     interval: the bounds then hold for all numbers in it.
     """
-    given = {SLIP: slip, RATE: rate} | dict.fromkeys(STATES, EVERYTHING)
-    leaves = [node for node in nodes_of(tree) if not node.arguments]
-    ends = [_ends(given[node] if node in given else _number(node, numbers)) for node in leaves]
-    axes = max(one.ndim for one in ends)
-    found = {node: one.reshape(2, *(1,) * (axes - one.ndim), *one.shape[1:]) for node, one in zip(leaves, ends, strict=True)}
-    with np.errstate(all="ignore"):
-        for node in nodes_of(tree):
-            if node.arguments:
-                found[node] = operation_of(node).bounds(node, *(found[argument] for argument in node.arguments))
-    low, high = found[tree]
-    return low, high
+    names, free = _free(tree)
+    tape = tape_of_changes((tree,), names)
+    given = [_as_interval(numbers[name]) for name in names]
+    variables = [_as_interval(one) if is_free else EVERYTHING for one, is_free in zip((slip, rate), free, strict=True)]
+    shapes = {np.shape(end) for one in (*given, *variables) for end in one if not isinstance(end, float)}
+    shape = np.broadcast_shapes(*shapes) if shapes else ()
+    variables += [EVERYTHING] * len(STATES)
+    boxes, found = math.prod(shape), np.empty((2, *shape))
+    room = np.empty((tape.longest, 2))
+    ends = _ends_of(given, shape, boxes), _ends_of(variables, shape, boxes)
+    bound_boxes(OnBoxes(tape.steps, tape.values, *ends, room), found.reshape(2, boxes))
+    return found[0], found[1]
 
 
-def _ends(given: Any) -> Floats:
-    low, high = given if isinstance(given, tuple) else (given, given)
-    return np.array(np.broadcast_arrays(low, high), float)
+@lru_cache(maxsize=256)
+def _free(tree: Expression) -> tuple[tuple[str, ...], tuple[bool, bool]]:
+    """Return the names of the parameters in a formula, and whether slip and slip rate are in it."""
+    nodes = nodes_of(tree)
+    return tuple(node.name for node in nodes if node.operation == "parameter"), (SLIP in nodes, RATE in nodes)
+
+
+def _as_interval(given: Any) -> Interval:
+    return given if isinstance(given, tuple) else (given, given)
+
+
+def _ends_of(intervals: Sequence[Interval], shape: tuple[int, ...], boxes: int) -> Floats:
+    """Return low and high ends of numbers, which broadcast to a shape, for all boxes: shape (2, boxes, numbers)."""
+    if not shape:
+        return np.array([[interval] for interval in zip(*intervals, strict=True)] if intervals else np.empty((2, 1, 0)), float)
+    ends = np.empty((2, boxes, len(intervals)))
+    for place, interval in enumerate(intervals):
+        for column, end in zip(ends[:, :, place], interval, strict=True):
+            column[:] = np.broadcast_to(end, shape).reshape(-1)
+    return ends
 
 
 def _number(node: Expression, numbers: Mapping[str, Any]) -> Any:
@@ -51,63 +71,34 @@ def _number(node: Expression, numbers: Mapping[str, Any]) -> Any:
 
 
 class Enclosure:
-    """Bounds of a formula's Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
+    """Bounds of formulas' Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
 
-    Slip (m) and the law's numbers are single ones, have one entry for each member, or are intervals of such. What does not depend
-    on the slip rate is worked out once.
+    `numbers` holds the law's numbers by name. They and the slip (m) are single ones, have one entry for each member, or are
+    intervals of such. `formula` is the place of each member's formula in `trees`.
     """
 
-    def __init__(self, tree: Expression, numbers: Mapping[str, Any], slip: Any) -> None:
+    def __init__(self, trees: tuple[Expression, ...], numbers: Mapping[str, Any], slip: Any, formula: Any = 0) -> None:
         """Raise InputError for a formula with a state."""
-        self._steps = _steps(tree)
-        self._still: list[Floats | None] = []
-        with np.errstate(all="ignore"):
-            for node, rule, places in self._steps:
-                arguments = [self._still[place] for place in places]
-                if node is RATE or any(argument is None for argument in arguments):
-                    self._still.append(None)
-                elif rule is not None:
-                    self._still.append(rule(node, *arguments))
-                else:
-                    self._still.append(_ends(slip if node is SLIP else _number(node, numbers)).reshape(2, 1, -1))
+        tape = tape_of_bounds(trees, tuple(numbers))
+        given = (*numbers.values(), slip)
+        members = max(map(np.size, (formula, *(end for one in given for end in (one if isinstance(one, tuple) else (one,))))))
+        ends = np.empty((2, members, len(given)))
+        for place, one in enumerate(given):
+            ends[0, :, place], ends[1, :, place] = one if isinstance(one, tuple) else (one, one)
+        spans, room = np.empty((members, 2), np.int64), np.empty((tape.longest + 1, COUNT + 1))
+        spans[:], room[-1] = tape.spans[formula], -1.0
+        self.formulas = OnCells(tape.steps, tape.values, spans, ends, room)
 
     def on(self, low: Floats, high: Floats, member: Any = 0) -> Floats:
-        """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`.
+        """Return the bounds on cells of slip rates, from `low` to `high` (m/s), each of one `member`; shape (2, 3, cells).
 
-        They are an array as in `operations.enclosures`: low and high ends of mu, dmu/dv (s/m) and half of d2mu/dv2 (s2/m2), of
-        which those at the end may be left out if they are 0.
+        They are low and high ends of mu, dmu/dv (s/m) and half of d2mu/dv2 (s2/m2).
         """
-        one = np.ones_like(low)
-        rate = np.array([[low, one], [high, one]])
-        found: list[Floats] = []
-        with np.errstate(all="ignore"):
-            for (node, rule, places), still in zip(self._steps, self._still, strict=True):
-                if still is not None:
-                    found.append(still if still.shape[2] == 1 else still[:, :, member])
-                else:
-                    found.append(rate if rule is None else rule(node, *(found[place] for place in places)))
-        return found[-1]
-
-
-@lru_cache(maxsize=256)
-def _steps(tree: Expression) -> tuple[tuple[Expression, Rule | None, tuple[int, ...]], ...]:
-    """Return the nodes of a formula in order, each with its rule and the places of its arguments."""
-    made: dict[Expression, Expression] = {}
-    for node in nodes_of(tree):
-        arguments = tuple(made[argument] for argument in node.arguments)
-        copy = Expression(node.operation, arguments, node.name, node.value)
-        made[node] = operation_of(copy).bounded(copy) if arguments else {SLIP: SLIP, RATE: RATE}.get(node, node)
-    nodes = nodes_of(made[tree])
-    if not {*STATES}.isdisjoint(nodes):
-        raise InputError("the friction law has a state of its own: its slip rate is no root of the contact equation")
-    place = {node: k for k, node in enumerate(nodes)}
-    return tuple((node, _rule(node), tuple(place[argument] for argument in node.arguments)) for node in nodes)
-
-
-def _rule(node: Expression) -> Rule | None:
-    if node.operation == "logistic":
-        return logistic
-    return operation_of(node).taylor if node.arguments else None
+        found = np.empty((len(low), COUNT))
+        alone = len(self.formulas.spans) == 1
+        members = np.zeros(len(low), np.int64) if alone else np.ascontiguousarray(np.broadcast_to(member, low.shape), np.int64)
+        enclose_cells(self.formulas, members, np.ascontiguousarray(low), np.ascontiguousarray(high), found)
+        return found.T.reshape(2, ORDERS, -1)
 
 
 def bends_one_way(tree: Expression, numbers: Mapping[str, Any], slip: Interval) -> bool:

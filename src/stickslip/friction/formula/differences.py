@@ -1,23 +1,24 @@
 """Compute friction on arrays, its value, its slopes and its difference from rest without cancellation; derive a formula.
 
 The difference is mu(u + du, v) - mu(u, 0), which keeps its digits where the two are nearly equal. The rules for each node (sin(r+e)
-- sin(r), expm1, log1p ...) are those that `stickslip.engine.formula_code.taylor_series` compiles. Here numpy evaluates them, for
+- sin(r), expm1, log1p ...) are those that `stickslip.engine.formula_code.taylor_series` compiles. Here they work on arrays, for
 quantities that are computed once per problem rather than once per step. Near the critical value of a rate law all folds of the
 contact equation lie within 3e-4 Pa at a load of 8e7 Pa: they are visible only in differences.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, as_expression, depends_on, nodes_of
-from stickslip.friction.formula.operations import LARGEST_EXPONENT, operation_of
-from stickslip.friction.formula.operations.operation import Change
+from stickslip.friction.formula.at_points import MANY, AtPoints, changes_at, slopes_at
+from stickslip.friction.formula.expression import Expression, as_expression, depends_on, nodes_of
+from stickslip.friction.formula.operations import operation_of
+from stickslip.friction.formula.tape import Integers, Tape, written
 
 ZERO, ONE = as_expression(0.0), as_expression(1.0)
 
@@ -85,12 +86,35 @@ def difference(
     healed, at both points. Raise KeyError for a parameter without a value.
     """
     du, v = np.asarray(slip_step, float), np.asarray(rate, float)
-    if du.shape != v.shape:
-        du, v = np.broadcast_arrays(du, v)
-    ends = {SLIP: Change(slip, du, slip + du, 0.0), RATE: Change(0.0, v, v, 1.0)}
-    ends |= dict.fromkeys(STATES, Change(0.0, 0.0, 0.0, 0.0))
-    result = _evaluated(tree, parameters, ends)
-    return _of_shape(result.step, v.shape), _of_shape(result.slope, v.shape)
+    shape = v.shape if du.shape in ((), v.shape) else np.broadcast_shapes(du.shape, v.shape)
+    given = (*parameters.values(), slip)
+    many = any(map(np.ndim, given))
+    numbers = _columns(given, shape if many else ())
+    tape = tape_of_changes((tree,), tuple(parameters))
+    of = points_of(tape, np.zeros(len(numbers), np.int64), numbers)
+    return changes(of, np.arange(len(numbers)) if many else np.zeros(int(np.prod(shape)), np.int64), du, np.broadcast_to(v, shape))
+
+
+def points_of(tape: Tape, formula: Integers, numbers: Floats) -> AtPoints:
+    """Return what compiled code needs to follow formulas of members, with a row of numbers each, the slip last."""
+    return AtPoints(tape.steps, tape.values, tape.spans[formula], numbers, np.empty((MANY + tape.longest + 1, 4)))
+
+
+def changes(of: AtPoints, member: Integers, slip_step: ArrayLike, rate: Floats) -> tuple[Floats, Floats]:
+    """Return what `difference` does for points that have a rate and a member each."""
+    step, found = np.asarray(slip_step, float), np.empty((2, *rate.shape))
+    steps = np.ascontiguousarray(np.broadcast_to(step, rate.shape) if step.ndim else step).reshape(-1)
+    changes_at(of, member.reshape(-1), steps, np.ascontiguousarray(rate).reshape(-1), found.reshape(2, -1))
+    return found[0], found[1]
+
+
+def _columns(numbers: Iterable[ArrayLike], shape: tuple[int, ...]) -> Floats:
+    """Return the law's numbers as columns of a table with a row for each point, or with one row for all if `shape` is empty."""
+    given = list(numbers)
+    found = np.empty((int(np.prod(shape)), len(given)))
+    for column, number in zip(found.T, given, strict=True):
+        column[:] = np.broadcast_to(number, shape).reshape(-1)
+    return found
 
 
 def value_and_slopes(
@@ -102,52 +126,18 @@ def value_and_slopes(
     each point may have its own.
     """
     shape = np.broadcast_shapes(*(np.shape(given) for given in (slip, rate, *states, *parameters.values())))
-    many = 2 + len(states)
-    seeds = np.eye(many).reshape(many, many, *(1 for _ in shape))
-    given = zip(VARIABLES, (slip, rate, *states), seeds, strict=False)
-    result = _evaluated(tree, parameters, {symbol: Change(x := np.asarray(at, float), 0.0, x, seed) for symbol, at, seed in given})
-    return _of_shape(result.value, shape), _of_shape(result.slope, (many, *shape))
-
-
-def _of_shape(result: ArrayLike, shape: tuple[int, ...]) -> Floats:
-    """Return a result in a new array of this shape."""
-    return np.broadcast_to(result, shape) + 0.0 if np.shape(result) != shape else np.add(result, 0.0)
-
-
-def _evaluated(tree: Expression, parameters: Mapping[str, ArrayLike], variables: Mapping[Expression, Change]) -> Change:
-    """Return the change of a whole formula from those of its variables."""
-    found: list[Change] = []
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):
-        for node, places, is_limited in _order(tree):
-            if places:
-                given = [found[place] for place in places]
-                if is_limited:
-                    given = [_at_most(given[0], LARGEST_EXPONENT)]
-                operation = operation_of(node)
-                start = operation.on_arrays(*[one.reference for one in given])
-                end = operation.on_arrays(*[one.value for one in given])
-                found.append(Change(start, operation.step(start, end, *given), end, operation.slope(end, *given)))
-            elif node in variables:
-                found.append(variables[node])
-            else:
-                number = parameters[node.name] if node.operation == "parameter" else node.value
-                found.append(Change(number, 0.0, number, 0.0))
-    return found[-1]
+    points = _columns((slip, rate, *states), shape)
+    numbers = _columns(parameters.values(), shape if any(map(np.ndim, parameters.values())) else ())
+    tape = tape_of_changes((tree,), tuple(parameters))
+    found = np.empty((1 + points.shape[1], len(points)))
+    slopes_at(points_of(tape, np.zeros(len(numbers), np.int64), numbers), points, found)
+    return found[0].reshape(shape), found[1:].reshape(-1, *shape)
 
 
 @lru_cache(maxsize=256)
-def _order(tree: Expression) -> tuple[tuple[Expression, tuple[int, ...], bool], ...]:
-    """Return the nodes of a formula, arguments first: each with the places of its arguments, and whether its exponent is limited.
-
-    To look for nodes by their hashes would take half of the time of an evaluation.
-    """
-    nodes, cut = nodes_of(tree), limited(tree)
-    place = {node: n for n, node in enumerate(nodes)}
-    return tuple((node, tuple(place[argument] for argument in node.arguments), node in cut) for node in nodes)
-
-
-def _at_most(a: Change, largest: float) -> Change:
-    """Return the change of min(a, largest)."""
-    start, end = np.minimum(a.reference, largest), np.minimum(a.value, largest)
-    within = (np.asarray(a.reference) <= largest) & (np.asarray(a.value) <= largest)
-    return Change(start, np.where(within, a.step, end - start), end, np.where(np.asarray(a.value) <= largest, a.slope, 0.0))
+def tape_of_changes(trees: tuple[Expression, ...], parameters: tuple[str, ...]) -> Tape:
+    """Return formulas as a tape that says of each exponential whether its exponent is limited to LARGEST_EXPONENT."""
+    formulas = [nodes_of(tree) for tree in trees]
+    limits = [limited(tree) for tree in trees]
+    others = [[int(node in cut) for node in nodes] for nodes, cut in zip(formulas, limits, strict=True)]
+    return written(formulas, parameters, others)

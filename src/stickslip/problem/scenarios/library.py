@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import tomllib
 from functools import cache
-from importlib import resources
-from importlib.resources.abc import Traversable
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.extension import tables
 from stickslip.foundation.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
 
 
 class BundledEntry(NamedTuple):
@@ -46,7 +48,7 @@ LISTED = "`stickslip new --list` lists them"
 def _files() -> dict[str, Traversable]:
     """Return the files of all bundled scenarios by their names, in alphabetical order: our own, and those of extensions."""
     added = [folder for table in tables().values() if (folder := table.examples()) is not None]
-    folders = (*added, resources.files("stickslip.problem.scenarios") / "bundled")  # no extension replaces one of the core
+    folders = (*added, Path(__file__).with_name("bundled"))  # no extension replaces one of the core
     found = {
         file.name.removesuffix(".toml"): file for folder in folders for file in folder.iterdir() if file.name.endswith(".toml")
     }

@@ -6,7 +6,6 @@ the tables of extensions. The last part of a name ("thickness") is sufficient if
 
 from __future__ import annotations
 
-import copy
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -91,6 +90,9 @@ def place_of(name: str, document: Any) -> tuple[Any, Any]:
 
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     """Return the parameter with this name, or whose name ends with it. Raises InputError if none fits, or several do."""
+    plain = next((one for one in entries_of(scenario.problem) if one.name == name), None)
+    if plain is not None:
+        return ParameterPath(plain.name, plain.declared, plain.written)
     found = {parameter.name: parameter for parameter in parameter_paths(scenario)}
     return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario", LISTED)]
 
@@ -106,9 +108,16 @@ def document_with(scenario: Scenario, changes: Changes, where: str) -> dict[str,
     """
     _check_together(scenario, changes, where)
     pressing = next((value for parameter, value in changes if parameter.name == PRESSING), None)
-    document = copy.deepcopy((scenario if pressing is None else _pressed(scenario, pressing)).document)
+    document: dict[str, Any] = _copied((scenario if pressing is None else _pressed(scenario, pressing)).document)
     _put(document, [one for one in changes if one[0].name != PRESSING])
     return document
+
+
+def _copied(document: Any) -> Any:
+    """Return a copy of a document, whose tables and lists may be changed."""
+    if isinstance(document, dict):
+        return {name: _copied(value) for name, value in document.items()}
+    return [_copied(value) for value in document] if isinstance(document, list) else document
 
 
 def put_into(document: Mapping[str, Any], scenario: Scenario, changes: Changes, where: str) -> dict[str, Any]:
@@ -118,7 +127,7 @@ def put_into(document: Mapping[str, Any], scenario: Scenario, changes: Changes, 
     Raises InputError as `document_with` does.
     """
     _check_together(scenario, changes, where)
-    found = copy.deepcopy(dict(document))
+    found: dict[str, Any] = _copied(dict(document))
     try:
         _put(found, changes)
     except KeyError:

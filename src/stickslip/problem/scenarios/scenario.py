@@ -7,11 +7,8 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from html import escape
 from pathlib import Path
 from typing import Any
-
-import tomli_w
 
 from stickslip.extension import tables as tables_of_extensions
 from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
@@ -131,6 +128,8 @@ class Scenario(CheckedArguments):
 
     def to_toml(self) -> str:
         """Return the scenario as TOML text, to the last digit: with values in SI, but for those in rpm, g, inch and the like."""
+        import tomli_w  # here, because few runs write a scenario
+
         problem = self.problem
         tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
         tables |= {"body": to_table(problem.body), "friction": to_table(problem.friction), "loading": {}, "initial": {}}
@@ -275,6 +274,8 @@ class BundledScenarios(Mapping[str, Scenario]):
         return "\n".join(f"{name:<{width}}  {entry.title}" for name, entry in library.entries().items())
 
     def _repr_html_(self) -> str:
+        from html import escape  # here, because only notebooks need it
+
         rows = "".join(
             f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{escape(entry.title)}</td>"
             f"<td style='text-align:left'>{escape(entry.description)}</td></tr>"

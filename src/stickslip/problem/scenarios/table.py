@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
-from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.errors import InputError
@@ -17,6 +16,8 @@ from stickslip.foundation.quantities import Choice, Quantity, quantities_of
 from stickslip.problem.scenarios.entries import Source, as_written
 
 if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
     from stickslip.problem.problem import Problem
     from stickslip.problem.scenarios.scenario import Scenario
     from stickslip.problem.scenarios.schema import Key

@@ -19,7 +19,6 @@ from stickslip.contact import (
     regimes_along_slip,
     uniqueness_of,
 )
-from stickslip.engine.input import MOST_PIECES, PATIENCE
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
@@ -29,6 +28,8 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.problem import (
+    MOST_PIECES,
+    PATIENCE,
     STEADY,
     VARYING,
     LoadingHistory,

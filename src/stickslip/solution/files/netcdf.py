@@ -31,7 +31,7 @@ from stickslip.foundation.arguments import as_path
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
-from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
+from stickslip.foundation.netcdf_file import FullDiskError, Tables, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import ENOUGH_EVENTS, HISTORIES, MAY_VARY, STATUSES, LoadingHistory, Problem, Status, default_event_rate
 from stickslip.problem import names as rule_names
@@ -278,15 +278,15 @@ def read_solution(path: Path) -> Solution:
     return to_solution(read(path), path)
 
 
-def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:
+def read(path: Path, kind: str = "stickslip_format") -> Tables:
     """Read a file of stickslip whose version is stored in the attribute `kind`. Raises InputError for any other file."""
     what = KINDS[kind].partition(":")[0]
-    dataset = netcdf_file.read(path, what)
-    if dataset.attrs.get(kind) != FORMAT:
-        other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in dataset.attrs), None)
-        found = f"it is {other}" if other else f"format {FORMAT} expected, found {dataset.attrs.get(kind, 'none')}"
+    tables = netcdf_file.read_tables(path, what)
+    if tables.attrs.get(kind) != FORMAT:
+        other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in tables.attrs), None)
+        found = f"it is {other}" if other else f"format {FORMAT} expected, found {tables.attrs.get(kind, 'none')}"
         raise InputError(f"{path}: not {what} of this version of stickslip ({found})")
-    return dataset
+    return tables
 
 
 def is_catalogue(path: Path) -> bool:
@@ -294,16 +294,16 @@ def is_catalogue(path: Path) -> bool:
     return CATALOGUE in netcdf_file.attributes(path)
 
 
-def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
-    """Return the solution in a dataset that was read from `path`.
+def to_solution(tables: Tables, path: Path) -> Solution:
+    """Return the solution in tables that were read from `path`.
 
     Raises InputError if a part is missing, a number is out of range, or the selection rule is not registered.
     """
-    if "time" in dataset.dims and "scenario" in dataset.attrs and "history_rate" not in dataset:
+    if "time" in tables.sizes and "scenario" in tables.attrs and "history_rate" not in tables.variables:
         whole = "`stickslip run --out` keeps a whole run"
         raise InputError(f"{path}: holds curves of a run, not the run: xarray.open_dataset reads them; {whole}")
     try:
-        found = _solution(dataset, path)
+        found = _solution(tables, path)
     except InputError:
         raise
     except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
@@ -314,34 +314,30 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     return found
 
 
-def _solution(dataset: xr.Dataset, path: Path) -> Solution:
-    attributes = dataset.attrs
+def _solution(tables: Tables, path: Path) -> Solution:
+    attributes, has = tables.attrs, tables.variables
     if attributes["selection_rule"] not in rule_names():
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     scenario = read_scenario(attributes["scenario"], str(path))
-    columns = {name: _array(dataset, f"history_{name}") for name in HISTORY_AXES}
-    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, 0, at.TERMS))
+    columns = {name: tables.array(f"history_{name}") for name in HISTORY_AXES}
+    state = tables.array("history_state") if "history_state" in has else np.empty((0, 0, at.TERMS))
     if state.ndim == 2:  # a file from before laws of two states
         state = state[:, None]
     asked = number(attributes, "asked_duration" if "asked_duration" in attributes else "duration", path)  # older files: asked alone
     rtol = number(attributes, "rtol", path)
     store = Store(history_table(columns, path), state)
-    creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
-    round_trip_time, ramp, reached = (float(dataset[name].item()) for name in ("round_trip_time", "ramp", "reached"))
+    creep = tables.array("history_creep") if "history_creep" in has else NO_LEAPS
+    round_trip_time, ramp, reached = (float(tables.array(name).item()) for name in ("round_trip_time", "ramp", "reached"))
     ended, why = (printable(str(attributes[name])) for name in ("status", "status_message"))
     status = Status(ended, why, bool(attributes["status_ok"]))
     counted = scenario.max_events if status.name == STATUSES[ENOUGH_EVENTS].name else None
     history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted)
     checkpoint = None
     if "engine" in attributes:
-        arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS if name != "waves" or "engine_waves" in dataset}
+        arrays = {name: tables.array(f"engine_{name}") for name in ARRAYS if name != "waves" or "engine_waves" in has}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (printable(str(attributes.get(name, ""))) for name in ("lumping", "rounding"))
     named = scenario.title, scenario.description
     return Solution(scenario.problem, asked, rtol, status, history, checkpoint, *about, lumping, rounding, *named)
-
-
-def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:
-    return np.ascontiguousarray(dataset[name].to_numpy())

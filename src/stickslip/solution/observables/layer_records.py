@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.engine import Flags1, Floats1, Floats2, Floats3, Floats4, Integers1
+from stickslip.foundation.arrays import Flags1, Floats1, Floats2, Floats3, Floats4, Integers1
 
 VALUE, TOTAL, PULL, SHARE = 0, 1, 2, 3
 """What drivers do: the load that they send, where it joins the waves (Pa), its integral in the round trip (Pa s), the driver's rate

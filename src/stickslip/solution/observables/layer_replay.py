@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine import Floats, entry, kernel
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
+from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.solution.observables.layer_records import (
     DRAGGED,
     MOVED,

@@ -18,12 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import comb
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import dct
-from scipy.special import comb
 
 from stickslip.engine import TERMS, History
 from stickslip.foundation.arrays import Floats
@@ -188,6 +187,10 @@ DEGREE = TERMS + 2
 POINTS_OF_STEP = 0.5 - 0.5 * np.cos(np.pi * np.arange(ORDER + 1) / ORDER)
 _POWERS = POINTS_OF_STEP ** np.arange(DEGREE)[:, None]
 """Powers of the Chebyshev points of a step, its two ends among them."""
+_HALF_AT_ENDS = np.array([0.5, *[1.0] * (ORDER - 1), 0.5])
+_COSINES = np.cos(np.pi / ORDER * (np.outer(np.arange(ORDER + 1), np.arange(ORDER + 1)) % (2 * ORDER)))
+TO_CHEBYSHEV = 2.0 / ORDER * np.outer(_HALF_AT_ENDS, _HALF_AT_ENDS) * _COSINES
+"""Matrix from values at these points to Chebyshev coefficients: a cosine transform of type I."""
 _SHIFT = np.array([[comb(n, k) * 0.5 ** (n - k) if k <= n else 0.0 for k in range(DEGREE)] for n in range(DEGREE)])
 """Matrix from coefficients in xi to those in y = xi - 1/2."""
 _RATIO = 2.0 * RADII + np.sqrt(4.0 * RADII**2 - 1.0)
@@ -296,8 +299,7 @@ def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
 def from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the largest value at the points of each step, the error between them, and a bound on both, from bounds M on RADII."""
     rounding, highest = values.radius.max(axis=1), np.abs(values.centre).max(axis=1)
-    parts = np.abs(dct(values.centre, type=1, axis=1)) / ORDER
-    parts[:, [0, -1]] *= 0.5
+    parts = np.abs(values.centre @ TO_CHEBYSHEV)
     hidden = (4.0 * everywhere * _RATIO**-ORDER / (_RATIO - 1.0)).min(axis=1)
     half = (2.0 * everywhere * _RATIO ** (-0.5 * ORDER) / (_RATIO - 1.0)).min(axis=1)
     by_sum = parts.sum(axis=1) + (ORDER + 1) ** 0.5 * 2.0 * rounding + hidden

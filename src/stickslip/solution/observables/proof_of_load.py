@@ -20,7 +20,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.observables.given_load import beside, breaks_at_contact, of_ground, pulled, sent_at, share_at
 from stickslip.solution.observables.given_on_discs import near_break
-from stickslip.solution.observables.layers_found_again import loads_of_layers
 from stickslip.solution.observables.proof import Places, chosen_steps
 from stickslip.solution.observables.waves import FromMachine
 
@@ -49,6 +48,8 @@ def load_compared(history: History) -> LoadCompared:
     """Return how far the loads of a history are from those that follow from its slip and its problem."""
     body = history.problem.body
     if isinstance(body, OfLayers):
+        from stickslip.solution.observables.layers_found_again import loads_of_layers  # here, because few bodies are of layers
+
         return LoadCompared(*loads_of_layers(history, body))
     n = chosen_steps(history.store, comparable(history))
     expected = _of_waves if body.has_waves else _of_spring

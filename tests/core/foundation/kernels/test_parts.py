@@ -13,12 +13,12 @@ import pytest
 from numba import types
 from numba.core.errors import NumbaError
 
+from stickslip.foundation.arrays import Floats1
 from stickslip.foundation.kernels.code import loaded
 from stickslip.foundation.kernels.compiler import parts
 from stickslip.foundation.kernels.compiler.objects import object_of
 from stickslip.foundation.kernels.kernels import Entry, Kernel
 from stickslip.foundation.kernels.processor import PROCESSOR
-from stickslip.foundation.kernels.signature import Floats1
 from tests.core.engine.compiled import compiled
 from tests.core.foundation.kernels.fresh import printed, python
 

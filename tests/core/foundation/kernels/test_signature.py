@@ -14,10 +14,11 @@ from numba import types
 
 from stickslip.engine import build
 from stickslip.engine.series.polynomial import crossings, restrict
+from stickslip.foundation.arrays import Flags1, Floats1, Floats2, Integers1
 from stickslip.foundation.code_key import PACKAGE
 from stickslip.foundation.kernels.compiler import objects
 from stickslip.foundation.kernels.kernels import Entry
-from stickslip.foundation.kernels.signature import Fields, Flags1, Floats1, Floats2, Integers1, Numbers, flattened, signature_of
+from stickslip.foundation.kernels.signature import ArrayOf, Fields, Ready, flattened, signature_of
 
 build.entries()
 ENTRIES = dict(Entry.known)
@@ -30,11 +31,11 @@ DTYPES: dict[Any, Any] = {types.float64: np.float64, types.int64: np.int64, type
 def decorated(path: Path) -> list[str]:
     """Return the names of all functions in a file that are entries, as their machine code is named."""
     text = path.read_text(encoding="utf-8")
-    functions = [one for one in ast.walk(ast.parse(text if "@entry" in text else "")) if isinstance(one, ast.FunctionDef)]
+    functions = [one for one in ast.walk(ast.parse(text if "entry\n" in text else "")) if isinstance(one, ast.FunctionDef)]
     return [
         f"{path.stem}.{function.name}"
         for function in functions
-        if any(isinstance(one, ast.Name) and one.id == "entry" for one in function.decorator_list)
+        if any(isinstance(one, ast.Name) and one.id in ("entry", "exact_entry") for one in function.decorator_list)
     ]
 
 
@@ -64,10 +65,10 @@ def test_python_hands_over_what_numba_compiles_for(name: str) -> None:
     ]
 
 
-def arrays_in(kind: Any) -> list[Numbers]:
+def arrays_in(kind: Any) -> list[ArrayOf]:
     if isinstance(kind, Fields):
         return [one for each in kind.kinds for one in arrays_in(each)]
-    return [kind] if isinstance(kind, Numbers) else []
+    return [kind] if isinstance(kind, ArrayOf) else []
 
 
 class Pair(NamedTuple):
@@ -97,15 +98,15 @@ def test_arguments_become_numbers_and_addresses_in_their_order() -> None:
 @pytest.mark.parametrize(
     ("place", "wrong", "said"),
     [
-        (0, np.zeros(3, np.float32), r"Numbers\(of=dtype\('float64'\), dimensions=1\), not float32 of shape \(3,\)"),
+        (0, np.zeros(3, np.float32), r"ArrayOf\(of=dtype\('float64'\), dimensions=1\), not float32 of shape \(3,\)"),
         (0, np.zeros(3, np.int64), "not int64"),
         (0, np.zeros(3, ">f8"), "not >f8"),
         (0, np.zeros((3, 1)), r"shape \(3, 1\)"),
         (0, np.zeros(6)[::2], r"strides \(16,\)"),
         (0, np.array(1.0), r"shape \(\)"),
-        (1, np.zeros(3), r"Numbers\(of=dtype\('int64'\), dimensions=1\), not float64"),
+        (1, np.zeros(3), r"ArrayOf\(of=dtype\('int64'\), dimensions=1\), not float64"),
         (1, np.zeros(3, np.int32), "not int32"),
-        (2, np.zeros(3, np.int8), r"Numbers\(of=dtype\('bool'\), dimensions=1\), not int8"),
+        (2, np.zeros(3, np.int8), r"ArrayOf\(of=dtype\('bool'\), dimensions=1\), not int8"),
         (3, Pair(np.zeros((2, 5)).T, 7), r"dimensions=2\), not float64 of shape \(5, 2\) and strides \(8, 40\)"),
         (3, Pair(np.zeros(5), 7), r"shape \(5,\)"),
     ],
@@ -115,6 +116,16 @@ def test_an_array_that_machine_code_would_misread_is_refused(place: int, wrong: 
     given[place] = wrong
     with pytest.raises(TypeError, match=said):
         flattened(signature_of(declared).kinds, tuple(given))
+
+
+def test_an_array_that_was_looked_up_before_is_taken_as_it_is_and_refused_where_another_kind_is_wanted() -> None:
+    kinds, (a, *rest) = signature_of(declared).kinds, SOUND
+    assert flattened(kinds, (Ready(a), *rest)) == flattened(kinds, SOUND)
+    for wrong in (np.zeros(3, np.int64), np.zeros((3, 1))):
+        with pytest.raises(TypeError, match="machine code takes"):
+            flattened(kinds, (Ready(wrong), *rest))
+    with pytest.raises(TypeError, match=r"strides \(16,\)"):
+        Ready(np.zeros(6)[::2])
 
 
 def test_a_call_with_too_few_or_too_many_arguments_is_refused() -> None:

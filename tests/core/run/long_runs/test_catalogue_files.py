@@ -11,11 +11,10 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.netcdf_file import write
+from stickslip.foundation.netcdf_file import read, write
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import checkpoint_of
 from stickslip.solution.files.catalogue_rows import Rows
-from stickslip.solution.files.netcdf import CATALOGUE, read
 from tests.core.run.long_runs.problems import RUNS
 
 PROBLEM, DURATION = RUNS["slab that heals"]
@@ -36,7 +35,7 @@ def began(tmp_path: Path, suffix: str = "csv") -> Path:
 
 
 def changed(path: Path, **attributes: object) -> None:
-    write(read(path, CATALOGUE).assign_attrs(attributes), path)
+    write(read(path).assign_attrs(attributes), path)
 
 
 @pytest.mark.sampled(every=2)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks.wrong_series import BLOCK, SLAB, bent, missed, names_of, worst_of, wrong_engine
+from scipy.fft import dct
 
 import stickslip as ss
 from stickslip.solution.observables import proof
@@ -122,3 +123,10 @@ def test_a_long_run_is_proven_anew_in_part(monkeypatch: pytest.MonkeyPatch) -> N
 def test_the_text_says_how_many_steps_are_proven_anew() -> None:
     run = ss.simulate(*CASES["block"])
     assert f"proven from the law's formula alone: {run.proven.steps} of {run.proven.steps} steps" in run.proven.text
+
+
+def test_chebyshev_coefficients_are_those_of_scipy() -> None:
+    values = np.random.default_rng(5).normal(size=(20, proof.ORDER + 1))
+    expected = dct(values, type=1, axis=1) / proof.ORDER
+    expected[:, [0, -1]] *= 0.5
+    assert np.abs(values @ proof.TO_CHEBYSHEV - expected).max() < 1e-14

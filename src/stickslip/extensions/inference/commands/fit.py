@@ -12,7 +12,6 @@ from stickslip.cli.options import Changes, Columns, FigureFile, complete_law, co
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, gathered
-from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
     from stickslip.friction import Fit, Points, Smooth
@@ -178,6 +177,8 @@ def _draw(result: Fit | Smooth, **place: Any) -> object:
 
 def _show_result(result: Fit | Smooth) -> None:
     """Print the numbers of a fit or of a smooth curve, and what was noticed."""
+    from stickslip.foundation.show import clean  # here and below, with numpy, which help does without
+
     screen = console()
     say(screen, clean(f"{result.points.name}: {result.title}"), style="bold")
     print_words(screen, ("", "value", "unit"), list(result.rows))
@@ -187,6 +188,7 @@ def _show_result(result: Fit | Smooth) -> None:
 def _best(points: Points) -> Fit:
     """Fit all laws that suit the points, print a comparison, and return the best fit. Raises InputError if there is none."""
     from stickslip import friction
+    from stickslip.foundation.show import clean
 
     fits = friction.fit_each(points)
     if not fits:

@@ -5,21 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.extensions.sweeps.design.axis import LARGEST_AXIS, DesignAxis, Values, read_values, typed_value
+from stickslip.extensions.sweeps.design.axis import LARGEST_AXIS, DesignAxis, Values
+from stickslip.extensions.sweeps.design.members import SUFFIX, columns_of, values_of
 from stickslip.foundation.arguments import check_whole, shown
-from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 GRID, RANDOM, LATIN_HYPERCUBE = KINDS = ("grid", "random", "lhs")
 """Designs made from axes: every combination, independent random samples, or a Latin hypercube."""
@@ -30,8 +26,6 @@ IN_WORDS = {
     LATIN_HYPERCUBE: "drawn as a Latin hypercube",
     LIST: "from a list",
 }
-LARGEST_TABLE = 1_000_000_000
-"""Largest size (bytes) of a CSV file of members; a larger one is refused before it fills the memory."""
 LARGEST_GRID = 1_000_000_000
 """Largest number of members of a grid: 8 GB for each quantity that is kept."""
 MEMBER = "member"
@@ -95,16 +89,22 @@ def in_words(kind: str, shape: tuple[int, ...]) -> str:
 
 
 def read_design(
-    scenario: Scenario, vary: Any, kind: str = GRID, *, members: int | None = None, seed: int = 0, where: str = "sweep: vary"
+    scenario: Scenario, vary: Any, kind: Any = GRID, *, members: int | None = None, seed: int = 0, where: str = "sweep: vary"
 ) -> Design:
     """Return the design that `vary` describes: a mapping or axes (`axes_of`), a table of members, or a finished design.
 
-    A table is a DataFrame or the `Path` of a CSV file. Raises InputError. A message on the axes or the table begins with `where`.
+    Members from outside are `vary` if that is a DataFrame or the `Path` of a CSV file, or stand in place of the `kind`
+    (`is_from_outside`); `vary` is then None, or names the columns of an array. Raises InputError. A message on `vary` begins with
+    `where`.
     """
     if isinstance(vary, Design):
         return vary
+    if is_from_outside(kind):
+        if members is not None:
+            raise InputError("sweep: members belongs to the designs random and lhs: leave it out")
+        return listed(scenario, kind, "sweep: design", vary)
     if isinstance(vary, Path) or hasattr(vary, "columns"):
-        return listed(scenario, read_csv(vary, where) if isinstance(vary, Path) else vary, where)
+        return listed(scenario, vary, where)
     axes = axes_of(scenario, vary, where, sampled=kind != GRID)
     if kind not in KINDS:
         raise InputError(f"sweep: design '{kind}' is unknown; {nearest(kind, KINDS)}")
@@ -113,6 +113,11 @@ def read_design(
     if members is not None:
         raise InputError("sweep: members belongs to the designs random and lhs: a grid has every combination of its axes")
     return grid(axes, where)
+
+
+def is_from_outside(design: Any) -> bool:
+    """Return True for members or a file of them in place of the name of a kind of design."""
+    return not isinstance(design, str) or design.endswith(SUFFIX)
 
 
 def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False) -> list[DesignAxis]:
@@ -127,7 +132,9 @@ def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False)
         axes = vary
     else:
         got = " ".join(shown(vary.tolist() if isinstance(vary, np.ndarray) else vary).split())
-        raise InputError(f"{where} must be a mapping from parameters to arrays, a DataFrame or the Path of a CSV file, got {got}")
+        hint = "; an array of members is a design, whose columns vary names" if isinstance(vary, np.ndarray | list) else ""
+        forms = "a mapping from parameters to arrays, a DataFrame or the Path of a CSV file"
+        raise InputError(f"{where} must be {forms}, got {got}{hint}")
     if not axes:
         raise InputError(f"{where} is missing: name at least one parameter to vary")
     _check_names([axis.parameter.name for axis in axes], where)
@@ -198,33 +205,13 @@ def _shares(kind: str, members: int, axes: int, seed: int) -> NDArray[np.float64
     return np.asarray(qmc.LatinHypercube(axes, rng=np.random.default_rng(seed)).random(members))
 
 
-def read_csv(path: Path, where: str) -> pd.DataFrame:
-    """Read a table of members from a CSV file: a header line with parameters, then one line for each member. Raises InputError."""
-    import pandas as pd
-
-    try:
-        content = BytesIO(read_bounded(path, LARGEST_TABLE))
-        return pd.read_csv(content, comment="#", dtype=str, keep_default_na=False, skipinitialspace=True)
-    except FileNotFoundError:
-        raise InputError(f"{where} {path}: no such file") from None
-    except InputError as error:
-        raise InputError(f"{where} {path}: {error}: not a table of members") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{where} {path}: not a table of members: {error}") from None
-
-
-def listed(scenario: Scenario, table: pd.DataFrame, where: str) -> Design:
-    """Return the design of a table with one member in each row.
+def listed(scenario: Scenario, given: Any, where: str, names: Any = None) -> Design:
+    """Return the design of a table or an array with one member in each row (`members.columns_of`).
 
     Columns are named by parameters, and cells hold numbers in SI or texts with units. Raises InputError.
     """
-    if not len(table) or not len(table.columns):
-        raise InputError(f"{where}: the table has no members")
-    parameters = tuple(find_parameter(scenario, str(name).strip(), where) for name in table.columns)
+    columns = columns_of(given, names, where)
+    parameters = tuple(find_parameter(scenario, name, where) for name, _ in columns)
     _check_names([parameter.name for parameter in parameters], where)
-    columns = (table.iloc[:, i] for i in range(len(parameters)))
-    values = (
-        read_values(parameter, (typed_value(parameter, cell) for cell in column), where, math.inf)
-        for parameter, column in zip(parameters, columns, strict=True)
-    )
+    values = (values_of(parameter, cells, where) for parameter, (_, cells) in zip(parameters, columns, strict=True))
     return Design(LIST, parameters, tuple(values))

@@ -75,7 +75,7 @@ def make_plan(
     vary: Any,
     *,
     duration: float | str | WithUnit | None = None,
-    design: str = GRID,
+    design: Any = GRID,
     members: int | None = None,
     seed: int = 0,
     quantities: Iterable[Wanted] = DEFAULT,

@@ -19,7 +19,7 @@ from numba.extending import models, register_model, typeof_impl
 from stickslip.foundation.kernels.kernels import Kernel
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "_nrt": False}
-"""Options of all kernels: divisions by zero give infinity or NaN as in numpy, and a product and a sum may be fused into one."""
+"""Options of kernels: divisions by zero give infinity or NaN as in numpy; a product and a sum may be fused where none is exact."""
 WHY_PLAIN = ""
 """Why every function is compiled by itself; empty if it is not."""
 
@@ -171,8 +171,9 @@ _parts: dict[Kernel, Any] = {}
 def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
     """Return the type that compiled code sees when it calls a kernel."""
     if kernel not in _parts:
-        inlined = {"forceinline": True} if kernel.is_inlined else {}
-        _parts[kernel] = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS, **inlined)(kernel.__wrapped__)
+        own: dict[str, Any] = {"forceinline": True} if kernel.is_inlined else {}
+        own |= {"fastmath": False} if kernel.is_exact else {}
+        _parts[kernel] = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS | own)(kernel.__wrapped__)
     return _Part(_parts[kernel])
 
 

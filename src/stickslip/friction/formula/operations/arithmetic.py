@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from fractions import Fraction
 from typing import Any
@@ -10,7 +11,9 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import (
     difference_of_series,
     product_of_series,
@@ -21,7 +24,6 @@ from stickslip.friction.formula.operations.operation import (
     TINIEST,
     UNITS,
     BallsWriter,
-    Change,
     Dimension,
     Levels,
     Operation,
@@ -32,7 +34,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import Disc, known, multiplied, squared, unless
+from stickslip.friction.formula.operations.sets import HIGH, LOW, Disc, multiplied, put, squared
 
 MOST_PARTS = 3
 """A linear combination of at most this many terms is taken apart (see `Operation.parts`); longer sums are added as a tree."""
@@ -47,6 +49,28 @@ def _same(node: Expression, a: Dimension, b: Dimension) -> Dimension:
         one, other = (unit_text(x) or "a pure number" for x in (a, b))
         raise InputError(f"{one} and {other} cannot be added or subtracted; {UNITS}")
     return b if node.arguments[0] == zero else a
+
+
+@exact
+def _add_change(w: Floats, n: int, i: int, j: int) -> None:
+    for k in range(4):
+        w[n, k] = w[i, k] + w[j, k]
+
+
+@exact
+def _sub_change(w: Floats, n: int, i: int, j: int) -> None:
+    for k in range(4):
+        w[n, k] = w[i, k] - w[j, k]
+
+
+@exact
+def _add_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    put(w, n, w[i, LOW] + w[j, LOW], w[i, HIGH] + w[j, HIGH])
+
+
+@exact
+def _sub_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    put(w, n, w[i, LOW] - w[j, HIGH], w[i, HIGH] - w[j, LOW])
 
 
 def _apart(a: Disc, b: Disc) -> Any:
@@ -116,10 +140,9 @@ ADD = Operation(
     sign="+",
     rank=1,
     value=operator.add,
-    step=lambda start, end, a, b: a.step + b.step,
-    slope=lambda end, a, b: a.slope + b.slope,
+    change=_add_change,
     slope_formula=lambda node, da, db: da + db,
-    bounds=lambda node, a, b: known(a + b),
+    bounds=_add_bounds,
     taylor=sum_of_series,
     disc=lambda a, b: Disc(a.centre + b.centre, a.radius + b.radius, 0.0).rounded(least=_apart(a, b)),
     unit=_same,
@@ -137,10 +160,9 @@ SUB = Operation(
     rank=1,
     numpy_name="subtract",
     value=operator.sub,
-    step=lambda start, end, a, b: a.step - b.step,
-    slope=lambda end, a, b: a.slope - b.slope,
+    change=_sub_change,
     slope_formula=lambda node, da, db: da - db,
-    bounds=lambda node, a, b: known(a - b[::-1]),
+    bounds=_sub_bounds,
     taylor=difference_of_series,
     disc=lambda a, b: Disc(a.centre - b.centre, a.radius + b.radius, 0.0).rounded(least=_apart(a, b)),
     unit=_same,
@@ -160,8 +182,19 @@ def _of_factors(a: Dimension, b: Dimension, sign: int) -> Dimension:
     return without_zeros({base: a.get(base, Fraction(0)) + sign * b.get(base, Fraction(0)) for base in {**a, **b}})
 
 
-def _mul_bounds(node: Expression, a: Floats, b: Floats) -> Floats:
-    return squared(a) if node.arguments[0] == node.arguments[1] else multiplied(a, b)
+@exact
+def _mul_change(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, REFERENCE], w[n, VALUE] = w[i, REFERENCE] * w[j, REFERENCE], w[i, VALUE] * w[j, VALUE]
+    w[n, STEP] = w[i, STEP] * w[j, REFERENCE] + w[i, VALUE] * w[j, STEP]
+    w[n, SLOPE] = w[i, SLOPE] * w[j, VALUE] + w[i, VALUE] * w[j, SLOPE]
+
+
+@exact
+def _mul_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    if i == j:
+        w[n, LOW], w[n, HIGH] = squared(w[i, LOW], w[i, HIGH])
+    else:
+        w[n, LOW], w[n, HIGH] = multiplied(w[i, LOW], w[i, HIGH], w[j, LOW], w[j, HIGH])
 
 
 def _mul_disc(a: Disc, b: Disc) -> Disc:
@@ -216,8 +249,7 @@ MUL = Operation(
     rank=2,
     numpy_name="multiply",
     value=operator.mul,
-    step=lambda start, end, a, b: a.step * b.reference + a.value * b.step,
-    slope=lambda end, a, b: a.slope * b.value + a.value * b.slope,
+    change=_mul_change,
     slope_formula=lambda node, da, db: da * node.arguments[1] + node.arguments[0] * db,
     bounds=_mul_bounds,
     taylor=product_of_series,
@@ -241,19 +273,24 @@ MUL = Operation(
 # ---- quotients ----------------------------------------------------------------------------------------------------------------
 
 
-def _div_step(start: Any, end: Any, a: Change, b: Change) -> Any:
-    """Return the change of a quotient; an exponential below that overflows makes it zero."""
-    with np.errstate(invalid="ignore"):
-        return np.where(np.isinf(b.value), end - start, (a.step - start * b.step) / b.value)
+@exact
+def _div_change(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the change of a quotient; an exponential below that overflows makes it zero."""
+    start, end = w[i, REFERENCE] / w[j, REFERENCE], w[i, VALUE] / w[j, VALUE]
+    w[n, REFERENCE], w[n, VALUE] = start, end
+    if math.isinf(w[j, VALUE]):
+        w[n, STEP], w[n, SLOPE] = end - start, 0.0
+    else:
+        w[n, STEP] = (w[i, STEP] - start * w[j, STEP]) / w[j, VALUE]
+        w[n, SLOPE] = (w[i, SLOPE] - end * w[j, SLOPE]) / w[j, VALUE]
 
 
-def _div_slope(end: Any, a: Change, b: Change) -> Any:
-    with np.errstate(invalid="ignore"):
-        return np.where(np.isinf(b.value), 0.0, (a.slope - end * b.slope) / b.value)
-
-
-def _div_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
-    return unless((b[0] <= 0.0) & (b[1] >= 0.0), multiplied(a, 1.0 / b[::-1]))
+@exact
+def _div_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    if w[j, LOW] <= 0.0 <= w[j, HIGH]:
+        w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    else:
+        w[n, LOW], w[n, HIGH] = multiplied(w[i, LOW], w[i, HIGH], 1.0 / w[j, HIGH], 1.0 / w[j, LOW])
 
 
 def _logistic_form(node: Expression) -> Expression:
@@ -316,8 +353,7 @@ DIV = Operation(
     rank=2,
     numpy_name="divide",
     value=operator.truediv,
-    step=_div_step,
-    slope=_div_slope,
+    change=_div_change,
     slope_formula=lambda node, da, db: (da - node * db) / node.arguments[1],
     bounds=_div_bounds,
     taylor=quotient_of_series,

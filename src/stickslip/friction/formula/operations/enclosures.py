@@ -1,7 +1,9 @@
 """Intervals that are rounded outwards, and the Taylor coefficients of operations as such intervals.
 
-The coefficients of a formula in the slip rate are its value, its first derivative and half its second one. Those of many cells are
-one array: low and high ends along the first axis, orders along the second, as many as are not zero, and cells along the last.
+The coefficients of a formula in the slip rate are its value, its first derivative and half its second one. Each node of a formula
+has a row of a table: the low ends of its coefficients in columns 0 to 2, the high ends in columns 3 to 5, and in the last column
+how many orders may differ from 0; the columns of others are not read. A rule writes the row n of a node from the rows i and j of
+its arguments, of which a function has only the first.
 
 An infinite end means that nothing is known on that side; it is never reached, so that 0 times such an end is 0.
 
@@ -10,18 +12,16 @@ Sources: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis; Griewa
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from itertools import product
-from typing import Any
-
-import numpy as np
+import math
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.sets import EVERYTHING, Interval, multiplied, squared
+from stickslip.foundation.kernels.kernels import exact
+from stickslip.friction.formula.operations.sets import multiplied, squared
 
 ORDERS = 3
 """Number of Taylor coefficients: value, first derivative and half the second one."""
+COUNT = 2 * ORDERS
+"""Column with the number of orders of a node, one more than the last column of ends."""
 ONE_STEP = 2.3e-16
 """Relative rounding error (1) of a sum, product or quotient, with room to spare: it is 1.2e-16 at most."""
 LIBRARY = 1.8e-15
@@ -30,160 +30,176 @@ SMALLEST = 1e-307
 """Absolute error assumed for all operations but sums: smaller results may lose digits or become 0."""
 _HUGE = 1.7e308
 """A number that is smaller than what overflows."""
-_OUT = np.array([-1.0, 1.0]).reshape(2, 1, 1)
+_INFINITE = math.inf
 
-Rule = Callable[..., Floats]
-"""What returns the Taylor coefficients of a node from the node and those of its arguments."""
-
-
-def outward(ends: Floats, error: float, smallest: float = SMALLEST, positive: Any = None) -> Floats:
-    """Move ends, which are overwritten, outwards by a relative error; where an end is not a number, nothing is known.
-
-    Low ends stay at least 0 where the values are `positive`, by default where they were.
-    """
-    size = np.abs(ends)
-    if not size.max(initial=0.0) < np.inf:
-        ends[0] = np.nan_to_num(ends[0], nan=-np.inf, posinf=_HUGE, neginf=-np.inf)
-        ends[1] = np.nan_to_num(ends[1], nan=np.inf, posinf=np.inf, neginf=-_HUGE)
-        size = np.abs(ends)
-    size *= error
-    if not smallest:
-        size *= _OUT
-        ends += size
-        return ends
-    if positive is None:
-        positive = ends[0] >= 0.0
-    size += smallest
-    size *= _OUT
-    ends += size
-    np.maximum(ends[0], 0.0, out=ends[0], where=positive)
-    return ends
+Ends = tuple[float, float]
+"""Low and high end of an interval."""
 
 
-def negative(a: Floats) -> Floats:
-    """Return -a."""
-    return -a[::-1]
+@exact
+def known(low: float, high: float) -> Ends:
+    """Return an interval, of which nothing is known on a side where the end is not a number; an overflow is not reached."""
+    if not (abs(low) < _INFINITE and abs(high) < _INFINITE):
+        low = -_INFINITE if math.isnan(low) else min(low, _HUGE)
+        high = _INFINITE if math.isnan(high) else max(high, -_HUGE)
+    return low, high
 
 
-def add(a: Floats, b: Floats) -> Floats:
-    """Return a + b."""
-    return outward(a + b, ONE_STEP, 0.0)
+@exact
+def rounded(low: float, high: float, error: float) -> Ends:
+    """Move ends outwards by a relative error, where no digits are lost and nothing becomes 0."""
+    low, high = known(low, high)
+    return low - abs(low) * error, high + abs(high) * error
 
 
-def multiply(a: Floats, b: Floats) -> Floats:
-    """Return a b."""
-    return outward(multiplied(a, b), ONE_STEP, positive=np.minimum(a[0], b[0]) >= 0.0)
+@exact
+def outward(low: float, high: float, error: float) -> Ends:
+    """Move ends outwards by a relative error and by SMALLEST; a low end stays at least 0 if it was."""
+    low, high = known(low, high)
+    return outward_from(low, high, error, low >= 0.0)
 
 
-def square(a: Floats) -> Floats:
-    """Return a**2, which is never negative."""
-    return outward(squared(a), ONE_STEP)
+@exact
+def outward_from(low: float, high: float, error: float, positive: bool) -> Ends:
+    """Do the same; low ends stay at least 0 where the values are `positive`."""
+    low, high = known(low, high)
+    low, high = low - (abs(low) * error + SMALLEST), high + (abs(high) * error + SMALLEST)
+    return (max(low, 0.0) if positive else low), high
 
 
-def reciprocal(a: Floats) -> Floats:
-    """Return 1 / a; nothing is known if the interval holds 0."""
-    holds_zero = (a[0] <= 0.0) & (a[1] >= 0.0)
-    found = outward(1.0 / a[::-1], ONE_STEP)
-    return np.where(holds_zero, np.reshape(EVERYTHING, (2, 1, 1)), found) if holds_zero.any() else found
+@exact
+def add(a: float, b: float, c: float, d: float) -> Ends:
+    """Return [a, b] + [c, d]."""
+    return rounded(a + c, b + d, ONE_STEP)
 
 
-def of_positive(a: Floats) -> Floats:
-    """Return 1 / a; nothing is known where a may not be positive."""
-    return reciprocal(np.where(a[0] > 0.0, a, _OUT))
+@exact
+def multiply(a: float, b: float, c: float, d: float) -> Ends:
+    """Return [a, b] times [c, d]."""
+    low, high = multiplied(a, b, c, d)
+    return outward_from(low, high, ONE_STEP, min(a, c) >= 0.0)
 
 
-# ---- sums, products and quotients of Taylor series ----------------------------------------------------------------------------
+@exact
+def square(a: float, b: float) -> Ends:
+    """Return [a, b] squared, which is never negative."""
+    low, high = squared(a, b)
+    return outward(low, high, ONE_STEP)
 
 
-def sum_of_series(_: Expression, a: Floats, b: Floats) -> Floats:
-    """Return the coefficients of a + b."""
-    more, less = (a, b) if a.shape[1] >= b.shape[1] else (b, a)
-    both = less.shape[1]
-    found = add(more[:, :both], less)
-    if more.shape[1] == both:
-        return found
-    return _stacked([found, more[:, both:]])
+@exact
+def reciprocal(a: float, b: float) -> Ends:
+    """Return 1 / [a, b]; nothing is known if the interval holds 0."""
+    if a <= 0.0 <= b:
+        return -_INFINITE, _INFINITE
+    return outward(1.0 / b, 1.0 / a, ONE_STEP)
 
 
-def difference_of_series(node: Expression, a: Floats, b: Floats) -> Floats:
-    """Return the coefficients of a - b."""
-    return sum_of_series(node, a, negative(b))
+@exact
+def of_positive(a: float, b: float) -> Ends:
+    """Return 1 / [a, b]; nothing is known where it may not be positive."""
+    if a > 0.0:
+        return reciprocal(a, b)
+    return -_INFINITE, _INFINITE
 
 
-def product_of_series(_: Expression, a: Floats, b: Floats) -> Floats:
-    """Return the coefficients of a b; a square is narrower than a product of two factors that vary independently."""
-    p, q = a.shape[1], b.shape[1]
-    if a is b:
-        return _square_of_series(a)
-    if p == 1 or q == 1:
-        return multiply(a, b)
-    pairs = sorted((pair for pair in product(range(p), range(q)) if sum(pair) < ORDERS), key=sum)
-    i, j = zip(*pairs, strict=True)
-    found = multiply(a[:, i], b[:, j])
-    orders = [found[:, :1], add(found[:, 1:2], found[:, 2:3])]
-    second = [found[:, k : k + 1] for k in range(3, len(pairs))]
-    for one in second[1:]:
-        second[0] = add(second[0], one)
-    return _stacked(orders + second[:1])
+# ---- rules of operations --------------------------------------------------------------------------------------------------------
 
 
-def _square_of_series(a: Floats) -> Floats:
-    orders = [square(a[:, :1])]
-    if a.shape[1] > 1:
-        twice = 2.0 * multiply(a[:, :1], a[:, 1:])
-        bent = square(a[:, 1:2])
-        orders += [twice[:, :1], add(twice[:, 1:], bent) if a.shape[1] > 2 else bent]
-    return _stacked(orders)
+@exact
+def sum_of_series(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the coefficients of a + b."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
+    for k in range(max(p, q)):
+        if k >= q:
+            w[n, k], w[n, k + 3] = w[i, k], w[i, k + 3]
+        elif k >= p:
+            w[n, k], w[n, k + 3] = w[j, k], w[j, k + 3]
+        else:
+            w[n, k], w[n, k + 3] = add(w[i, k], w[i, k + 3], w[j, k], w[j, k + 3])
 
 
-def quotient_of_series(_: Expression, a: Floats, b: Floats) -> Floats:
-    """Return the coefficients of a / b."""
-    share = reciprocal(b[:, :1])
-    if b.shape[1] == 1:
-        return multiply(a, share)
-    orders = [multiply(a[:, :1], share)]
-    known = negative(multiply(orders[0], b[:, 1:]))
-    first = add(a[:, 1:2], known[:, :1]) if a.shape[1] > 1 else known[:, :1]
-    orders.append(multiply(first, share))
-    left = negative(multiply(orders[1], b[:, 1:2]))
-    for row in (known[:, 1:], a[:, 2:]):
-        left = add(row, left) if row.shape[1] else left
-    return _stacked([*orders, multiply(left, share)])
+@exact
+def difference_of_series(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the coefficients of a - b."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
+    for k in range(max(p, q)):
+        if k >= q:
+            w[n, k], w[n, k + 3] = w[i, k], w[i, k + 3]
+        elif k >= p:
+            w[n, k], w[n, k + 3] = -w[j, k + 3], -w[j, k]
+        else:
+            w[n, k], w[n, k + 3] = add(w[i, k], w[i, k + 3], -w[j, k + 3], -w[j, k])
 
 
-def chain(value: Floats, slopes: Callable[[], tuple[Floats, Floats]], a: Floats) -> Floats:
-    """Return the coefficients of f(a) from those of a, f(a), and what returns bounds of f' and f''/2 there."""
-    if a.shape[1] == 1:
-        return value
-    first, second = slopes()
-    orders = a.shape[1]
-    factors = _stacked([*(first,) * (orders - 1), second])
-    found = multiply(factors, _stacked([a[:, 1:], square(a[:, 1:2])]))
-    return _stacked([value, found[:, :1], add(found[:, 1:2], found[:, 2:]) if orders > 2 else found[:, 1:]])
+@exact
+def product_of_series(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the coefficients of a b; a square is narrower than a product of two factors that vary independently."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
+    if i == j:
+        _square_of_series(w, n, i)
+    elif p == 1 or q == 1:
+        for k in range(max(p, q)):
+            x, y = min(k, p - 1), min(k, q - 1)
+            w[n, k], w[n, k + 3] = multiply(w[i, x], w[i, x + 3], w[j, y], w[j, y + 3])
+    else:
+        w[n, 0], w[n, 3] = multiply(w[i, 0], w[i, 3], w[j, 0], w[j, 3])
+        for k in range(1, ORDERS):
+            low, high, some = 0.0, 0.0, False
+            for x in range(max(0, k + 1 - q), min(p, k + 1)):
+                c, d = multiply(w[i, x], w[i, x + 3], w[j, k - x], w[j, k - x + 3])
+                low, high = add(low, high, c, d) if some else (c, d)
+                some = True
+            w[n, k], w[n, k + 3] = low, high
 
 
-def function(
-    values: Callable[[Any, Floats], Floats],
-    slopes: Callable[[Floats, Floats], tuple[Floats, Floats]],
-    error: float = LIBRARY,
-    within: Interval = EVERYTHING,
-) -> Rule:
-    """Return the rule of a function from that of its values, and from bounds of f' and f''/2 by those of f(a) and of a."""
-    ends = np.reshape(within, (2, 1, 1))
-
-    def rule(node: Expression, a: Floats) -> Floats:
-        here = a[:, :1]
-        value = outward(values(node, here), error)
-        if within is not EVERYTHING:
-            value = np.clip(value, ends[0], ends[1])
-        return chain(value, lambda: slopes(value, here), a)
-
-    return rule
+@exact
+def _square_of_series(w: Floats, n: int, i: int) -> None:
+    p = int(w[i, COUNT])
+    w[n, 0], w[n, 3] = square(w[i, 0], w[i, 3])
+    if p > 1:
+        low, high = multiply(w[i, 0], w[i, 3], w[i, 1], w[i, 4])
+        w[n, 1], w[n, 4] = 2.0 * low, 2.0 * high
+        low, high = square(w[i, 1], w[i, 4])
+        if p > 2:
+            c, d = multiply(w[i, 0], w[i, 3], w[i, 2], w[i, 5])
+            low, high = add(2.0 * c, 2.0 * d, low, high)
+        w[n, 2], w[n, 5] = low, high
 
 
-def _stacked(orders: list[Floats]) -> Floats:
-    """Return coefficients as one array."""
-    counts = {one.shape[2] for one in orders}
-    if len(counts) > 1:
-        orders = [np.broadcast_to(one, (*one.shape[:2], max(counts))) for one in orders]
-    return np.concatenate(orders, axis=1)
+@exact
+def quotient_of_series(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the coefficients of a / b."""
+    p, q = int(w[i, COUNT]), int(w[j, COUNT])
+    c, d = reciprocal(w[j, 0], w[j, 3])
+    for k in range(p if q == 1 else 1):
+        w[n, k], w[n, k + 3] = multiply(w[i, k], w[i, k + 3], c, d)
+    if q > 1:
+        low, high = multiply(w[n, 0], w[n, 3], w[j, 1], w[j, 4])
+        low, high = -high, -low
+        if p > 1:
+            low, high = add(w[i, 1], w[i, 4], low, high)
+        w[n, 1], w[n, 4] = multiply(low, high, c, d)
+        low, high = multiply(w[n, 1], w[n, 4], w[j, 1], w[j, 4])
+        low, high = -high, -low
+        if q > 2:
+            less, more = multiply(w[n, 0], w[n, 3], w[j, 2], w[j, 5])
+            low, high = add(-more, -less, low, high)
+        if p > 2:
+            low, high = add(w[i, 2], w[i, 5], low, high)
+        w[n, 2], w[n, 5] = multiply(low, high, c, d)
+
+
+@exact
+def chain(w: Floats, n: int, i: int, value: Ends, slopes: tuple[Ends, Ends]) -> None:
+    """Write the coefficients of f(a) from those of a, f(a), and bounds of f' and f''/2 there."""
+    p, (first, second) = int(w[i, COUNT]), slopes
+    w[n, 0], w[n, 3] = value
+    if p > 1:
+        w[n, 1], w[n, 4] = multiply(first[0], first[1], w[i, 1], w[i, 4])
+        low, high = square(w[i, 1], w[i, 4])
+        low, high = multiply(second[0], second[1], low, high)
+        if p > 2:
+            c, d = multiply(first[0], first[1], w[i, 2], w[i, 5])
+            low, high = add(c, d, low, high)
+        w[n, 2], w[n, 5] = low, high

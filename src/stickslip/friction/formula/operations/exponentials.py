@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import LIBRARY, function, outward
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, outward
 from stickslip.friction.formula.operations.operation import (
     LARGEST_EXPONENT,
     TINIEST,
     BallsWriter,
-    Change,
     Levels,
     Operation,
     Radius,
@@ -22,7 +22,7 @@ from stickslip.friction.formula.operations.operation import (
     Scaled,
     SeriesWriter,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 STAYS_LARGE = LARGEST_EXPONENT - 10.0
 """A harmless overflow counts as constant as long as its exponent stays above this. It begins to count at a larger exponent, so that
@@ -41,21 +41,41 @@ def below(limit: float, argument: str) -> str:
     return f"min(max(1e300 * ({limit!r} - {argument}), 0.0), 1.0)"
 
 
-def _exp_step(start: Any, end: Any, a: Change) -> Any:
-    near = np.abs(a.step) < 1.0  # for larger steps a subtraction loses nothing, and expm1 may overflow where start underflows
-    with np.errstate(invalid="ignore"):
-        return np.where(near, start * np.expm1(np.where(near, a.step, 0.0)), end - start)
+@exact
+def _exp_change(w: Floats, n: int, i: int, j: int) -> None:
+    start, end, step = math.exp(w[i, REFERENCE]), math.exp(w[i, VALUE]), w[i, STEP]
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = start, end, end * w[i, SLOPE]
+    # for larger steps a subtraction loses nothing, and expm1 may overflow where start underflows
+    w[n, STEP] = start * math.expm1(step) if abs(step) < 1.0 else end - start
 
 
-def _exp_slope(end: Any, a: Change) -> Any:
-    with np.errstate(invalid="ignore"):
-        return end * a.slope
+@exact
+def _expm1_change(w: Floats, n: int, i: int, j: int) -> None:
+    _exp_change(w, n, i, j)
+    w[n, REFERENCE], w[n, VALUE] = math.expm1(w[i, REFERENCE]), math.expm1(w[i, VALUE])
 
 
-def _exp_slopes(a: Floats) -> tuple[Floats, Floats]:
-    """Return bounds of f' and f''/2 of an exponential on an interval."""
-    value = outward(np.exp(a), LIBRARY)
-    return value, 0.5 * value
+@exact
+def _exp_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.exp(w[i, LOW]), math.exp(w[i, HIGH])
+
+
+@exact
+def _expm1_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.expm1(w[i, LOW]), math.expm1(w[i, HIGH])
+
+
+@exact
+def _exp_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = outward(math.exp(w[i, 0]), math.exp(w[i, 3]), LIBRARY)
+    chain(w, n, i, (low, high), ((low, high), (0.5 * low, 0.5 * high)))
+
+
+@exact
+def _expm1_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = outward(math.expm1(w[i, 0]), math.expm1(w[i, 3]), LIBRARY)
+    a, b = outward(math.exp(w[i, 0]), math.exp(w[i, 3]), LIBRARY)
+    chain(w, n, i, (max(low, -1.0), max(high, -1.0)), ((a, b), (0.5 * a, 0.5 * b)))
 
 
 def _exp_disc(a: Disc) -> Disc:
@@ -117,11 +137,10 @@ def _exp_least(balls: BallsWriter, node: Expression, _: str) -> str:
 EXP = Operation(
     name="exp",
     value=np.exp,
-    step=_exp_step,
-    slope=_exp_slope,
+    change=_exp_change,
     slope_formula=lambda node, da: node * da,
-    bounds=growing(np.exp),
-    taylor=function(growing(np.exp), lambda value, a: (value, 0.5 * value)),
+    bounds=_exp_bounds,
+    taylor=_exp_series,
     disc=_exp_disc,
     order_zero=_exp_order_zero,
     derivative=_exp_derivative,
@@ -160,11 +179,10 @@ def _expm1_disc(a: Disc) -> Disc:
 EXPM1 = Operation(
     name="expm1",
     value=np.expm1,
-    step=lambda start, end, a: _exp_step(np.exp(a.reference), np.exp(a.value), a),
-    slope=lambda end, a: _exp_slope(np.exp(a.value), a),
+    change=_expm1_change,
     slope_formula=lambda node, da: exp_of(node) * da,
-    bounds=growing(np.expm1),
-    taylor=function(growing(np.expm1), lambda value, a: _exp_slopes(a), within=(-1.0, np.inf)),
+    bounds=_expm1_bounds,
+    taylor=_expm1_series,
     disc=_expm1_disc,
     order_zero=_expm1_order_zero,
     derivative=lambda writer, node, da: f"{writer.coefficient(exp_of(node), 0)} * {da}",

@@ -3,33 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression, nodes_of
-from stickslip.friction.formula.operations.enclosures import LIBRARY, function, multiply, negative, outward, square
-from stickslip.friction.formula.operations.operation import Change, Levels, Operation, Radius, Recurrence, SeriesWriter
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain, multiply, outward, square
+from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
-def _tanh_step(start: Any, end: Any, a: Change) -> Any:
-    """Return the change of tanh, with tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference.
+@exact
+def _tanh_change(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the change of tanh, with tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference.
 
     Farther from it a subtraction loses no digits.
     """
+    a, step, now = w[i, REFERENCE], w[i, STEP], w[i, VALUE]
+    start, end, across = math.tanh(a), math.tanh(now), math.cosh(now)  # where it overflows, 1 / cosh is 0
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = start, end, w[i, SLOPE] / across / across
     # with the same sign, both may differ from 1 or -1 only in their last digits: subtraction would cancel even for large steps
-    one_side = (np.abs(a.step) < 300.0) & (np.multiply(a.reference, a.value) > 0.0)
-    near = (np.abs(a.step) < 1.0) | one_side
-    across = np.cosh(a.value)  # where it overflows, 1 / cosh is 0
-    return np.where(near, np.sinh(np.where(near, a.step, 0.0)) / np.cosh(a.reference) / across, end - start)
-
-
-def _tanh_slope(end: Any, a: Change) -> Any:
-    across = np.cosh(a.value)
-    return a.slope / across / across
+    near = abs(step) < 1.0 or (abs(step) < 300.0 and a * now > 0.0)
+    w[n, STEP] = math.sinh(step) / math.cosh(a) / across if near else end - start
 
 
 def _tanh_disc(a: Disc) -> Disc:
@@ -45,31 +42,50 @@ def _tanh_disc(a: Disc) -> Disc:
     return Disc(centre, np.fmin(near, far), 0.0).rounded(OF_FUNCTION)
 
 
-def _falling(function: Callable[[Floats], Floats], a: Floats, error: float) -> Floats:
-    """Bound a function that falls from 1 to 0 with the magnitude of its argument."""
-    sizes = np.array([np.maximum(-a[0], a[1]), np.maximum(np.maximum(a[0], -a[1]), 0.0)])
-    return np.minimum(outward(function(sizes), error), 1.0)
+@exact
+def _sizes(a: float, b: float) -> Ends:
+    """Return the largest and the smallest magnitude in an interval."""
+    return max(-a, b), max(max(a, -b), 0.0)
 
 
-def _across(x: Floats) -> Floats:
+@exact
+def _across(x: float) -> float:
     """Return 1 / cosh(x)**2 for x >= 0."""
-    e = np.exp(-2.0 * np.minimum(x, 1e3))
+    e = math.exp(-2.0 * min(x, 1e3))
     return 4.0 * e / ((1.0 + e) * (1.0 + e))
 
 
-def _tanh_slopes(value: Floats, a: Floats) -> tuple[Floats, Floats]:
-    slope = _falling(_across, a, 4.0 * LIBRARY)
-    return slope, negative(multiply(value, slope))
+@exact
+def _across_on(a: float, b: float) -> Ends:
+    """Return the bounds of 1 / cosh(x)**2, which falls with the magnitude of x."""
+    largest, smallest = _sizes(a, b)
+    low, high = outward(_across(largest), _across(smallest), 4.0 * LIBRARY)
+    return min(low, 1.0), min(high, 1.0)
 
 
-def _logistic_slopes(_: Floats, a: Floats) -> tuple[Floats, Floats]:
-    half = outward(np.tanh(0.5 * a), LIBRARY)
-    slope = 0.25 * _falling(_across, 0.5 * a, 4.0 * LIBRARY)
-    return negative(slope), 0.5 * multiply(half, slope)
+@exact
+def _tanh_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.tanh(w[i, LOW]), math.tanh(w[i, HIGH])
 
 
-logistic = function(lambda _, a: 1.0 / (1.0 + np.exp(a[::-1])), _logistic_slopes, 2.0 * LIBRARY, within=(0.0, 1.0))
-"""The rule of `Operation.taylor` for 1 / (1 + exp(a)), which is no operation of its own but in `Operation.bounded`."""
+@exact
+def _tanh_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = outward(math.tanh(w[i, 0]), math.tanh(w[i, 3]), LIBRARY)
+    low, high = max(low, -1.0), min(high, 1.0)
+    a, b = _across_on(w[i, 0], w[i, 3])
+    less, more = multiply(low, high, a, b)
+    chain(w, n, i, (low, high), ((a, b), (-more, -less)))
+
+
+@exact
+def logistic(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the coefficients of 1 / (1 + exp(a)), which is no operation of its own but in `Operation.bounded`."""
+    low, high = outward(1.0 / (1.0 + math.exp(w[i, 3])), 1.0 / (1.0 + math.exp(w[i, 0])), 2.0 * LIBRARY)
+    a, b = _across_on(0.5 * w[i, 0], 0.5 * w[i, 3])
+    a, b = 0.25 * a, 0.25 * b
+    c, d = outward(math.tanh(0.5 * w[i, 0]), math.tanh(0.5 * w[i, 3]), LIBRARY)
+    less, more = multiply(c, d, a, b)
+    chain(w, n, i, (max(low, 0.0), min(high, 1.0)), ((-b, -a), (0.5 * less, 0.5 * more)))
 
 
 def tanh_difference(value: float, now: float, step: float) -> float:
@@ -98,11 +114,10 @@ def _tanh_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
 TANH = Operation(
     name="tanh",
     value=np.tanh,
-    step=_tanh_step,
-    slope=_tanh_slope,
+    change=_tanh_change,
     slope_formula=lambda node, da: (1.0 - node * node) * da,
-    bounds=growing(np.tanh),
-    taylor=function(growing(np.tanh), _tanh_slopes, within=(-1.0, 1.0)),
+    bounds=_tanh_bounds,
+    taylor=_tanh_series,
     disc=_tanh_disc,
     order_zero=_tanh_order_zero,
     derivative=_tanh_derivative,
@@ -120,22 +135,37 @@ def root_of(node: Expression) -> Expression:
     return Expression("sqrt", (1.0 + node.arguments[0] * node.arguments[0],))
 
 
-def _arcsinh_step(start: Any, end: Any, a: Change) -> Any:
-    """Return the change of arcsinh, by arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)).
+@exact
+def _arcsinh_change(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the change of arcsinh, by arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)).
 
     Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2). Where the squares would overflow, subtract.
     """
-    x, y = a.value, a.reference
-    with np.errstate(invalid="ignore"):
-        p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
-        gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
-        step = np.arcsinh(a.step * (1.0 + gap) / (p + q))
-    return np.where(np.maximum(p, q) > 1e150, end - start, step)
+    x, y = w[i, VALUE], w[i, REFERENCE]
+    p, q, xy = math.hypot(1.0, x), math.hypot(1.0, y), x * y
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = math.asinh(y), math.asinh(x), w[i, SLOPE] / p
+    if max(p, q) > 1e150:
+        w[n, STEP] = w[n, VALUE] - w[n, REFERENCE]
+    else:
+        gap = (1.0 + x * x + y * y) / (p * q + xy) if xy > 0.0 else p * q - xy
+        w[n, STEP] = math.asinh(w[i, STEP] * (1.0 + gap) / (p + q))
 
 
-def _arcsinh_slopes(_: Floats, a: Floats) -> tuple[Floats, Floats]:
-    slope = _falling(lambda x: 1.0 / np.hypot(1.0, x), a, 2.0 * LIBRARY)
-    return slope, -0.5 * multiply(a, multiply(square(slope), slope))[::-1]
+@exact
+def _arcsinh_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = math.asinh(w[i, LOW]), math.asinh(w[i, HIGH])
+
+
+@exact
+def _arcsinh_series(w: Floats, n: int, i: int, j: int) -> None:
+    largest, smallest = _sizes(w[i, 0], w[i, 3])
+    a, b = outward(1.0 / math.hypot(1.0, largest), 1.0 / math.hypot(1.0, smallest), 2.0 * LIBRARY)
+    a, b = min(a, 1.0), min(b, 1.0)
+    c, d = square(a, b)
+    c, d = multiply(c, d, a, b)
+    less, more = multiply(w[i, 0], w[i, 3], c, d)
+    value = outward(math.asinh(w[i, 0]), math.asinh(w[i, 3]), LIBRARY)
+    chain(w, n, i, value, ((a, b), (-0.5 * more, -0.5 * less)))
 
 
 def arcsinh_difference(reference: float, now: float, step: float) -> float:
@@ -166,11 +196,10 @@ ARCSINH = Operation(
     name="arcsinh",
     math_name="asinh",
     value=np.arcsinh,
-    step=_arcsinh_step,
-    slope=lambda end, a: a.slope / np.hypot(1.0, a.value),
+    change=_arcsinh_change,
     slope_formula=lambda node, da: da / root_of(node),
-    bounds=growing(np.arcsinh),
-    taylor=function(growing(np.arcsinh), _arcsinh_slopes),
+    bounds=_arcsinh_bounds,
+    taylor=_arcsinh_series,
     # its derivative 1 / sqrt((z - i)(z + i)) has its singularities at i and -i
     disc=lambda a: Disc(np.arcsinh(a.centre), -np.log1p(-a.radius / np.hypot(1.0, a.centre)), 0.0).rounded(OF_FUNCTION),
     order_zero=_arcsinh_order_zero,

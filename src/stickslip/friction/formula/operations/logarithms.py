@@ -7,10 +7,12 @@ import math
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import ONE_STEP, function, of_positive, outward, square
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, of_positive, outward, rounded, square
 from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
 def log_difference(reference: float, now: float, step: float) -> float:
@@ -20,10 +22,54 @@ def log_difference(reference: float, now: float, step: float) -> float:
     return math.log(now / reference)
 
 
-def _slopes(a: Floats) -> tuple[Floats, Floats]:
-    """Return bounds of f' and f''/2 of a logarithm."""
-    inverse = of_positive(a)
-    return inverse, -0.5 * square(inverse)[::-1]
+@exact
+def _log_change(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, REFERENCE], w[n, VALUE] = math.log(w[i, REFERENCE]), math.log(w[i, VALUE])
+    w[n, STEP], w[n, SLOPE] = math.log1p(w[i, STEP] / w[i, REFERENCE]), w[i, SLOPE] / w[i, VALUE]
+
+
+@exact
+def _log1p_change(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, REFERENCE], w[n, VALUE] = math.log1p(w[i, REFERENCE]), math.log1p(w[i, VALUE])
+    w[n, STEP], w[n, SLOPE] = math.log1p(w[i, STEP] / (1.0 + w[i, REFERENCE])), w[i, SLOPE] / (1.0 + w[i, VALUE])
+
+
+@exact
+def _log_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    if w[i, HIGH] >= 0.0:
+        w[n, LOW], w[n, HIGH] = math.log(max(w[i, LOW], 0.0)), math.log(w[i, HIGH])
+
+
+@exact
+def _log1p_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    if w[i, HIGH] >= -1.0:
+        w[n, LOW], w[n, HIGH] = math.log1p(max(w[i, LOW], -1.0)), math.log1p(w[i, HIGH])
+
+
+@exact
+def _log_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = -math.inf, math.inf
+    if w[i, 3] >= 0.0:
+        low, high = outward(math.log(max(w[i, 0], 0.0)), math.log(w[i, 3]), LIBRARY)
+    _by_inverse(w, n, i, (low, high), (w[i, 0], w[i, 3]))
+
+
+@exact
+def _log1p_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = -math.inf, math.inf
+    if w[i, 3] >= -1.0:
+        low, high = outward(math.log1p(max(w[i, 0], -1.0)), math.log1p(w[i, 3]), LIBRARY)
+    _by_inverse(w, n, i, (low, high), rounded(1.0 + w[i, 0], 1.0 + w[i, 3], ONE_STEP))
+
+
+@exact
+def _by_inverse(w: Floats, n: int, i: int, value: Ends, argument: Ends) -> None:
+    """Write the coefficients of a logarithm from its bounds and those of the argument of which it is the logarithm."""
+    c, d = of_positive(argument[0], argument[1])
+    less, more = square(c, d)
+    chain(w, n, i, value, ((c, d), (-0.5 * more, -0.5 * less)))
 
 
 def _coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
@@ -39,11 +85,10 @@ def _log_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
 LOG = Operation(
     name="log",
     value=np.log,
-    step=lambda start, end, a: np.log1p(a.step / a.reference),
-    slope=lambda end, a: a.slope / a.value,
+    change=_log_change,
     slope_formula=lambda node, da: da / node.arguments[0],
-    bounds=growing(np.log, least=0.0),
-    taylor=function(growing(np.log, least=0.0), lambda value, a: _slopes(a)),
+    bounds=_log_bounds,
+    taylor=_log_series,
     disc=lambda a: Disc(np.log(a.centre), a.turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log_order_zero,
     derivative=lambda writer, node, da: f"{da} / {writer.coefficient(node.arguments[0], 0)}",
@@ -64,11 +109,10 @@ def _log1p_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
 LOG1P = Operation(
     name="log1p",
     value=np.log1p,
-    step=lambda start, end, a: np.log1p(a.step / (1.0 + a.reference)),
-    slope=lambda end, a: a.slope / (1.0 + a.value),
+    change=_log1p_change,
     slope_formula=lambda node, da: da / (1.0 + node.arguments[0]),
-    bounds=growing(np.log1p, least=-1.0),
-    taylor=function(growing(np.log1p, least=-1.0), lambda value, a: _slopes(outward(1.0 + a, ONE_STEP, 0.0))),
+    bounds=_log1p_bounds,
+    taylor=_log1p_series,
     disc=lambda a: Disc(np.log1p(a.centre), Disc(1.0 + a.centre, a.radius, 0.0).turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log1p_order_zero,
     derivative=lambda writer, node, da: f"{da} / (1.0 + {writer.coefficient(node.arguments[0], 0)})",

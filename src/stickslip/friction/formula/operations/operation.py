@@ -10,14 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import Expression, as_expression
-from stickslip.friction.formula.operations.enclosures import Rule
 from stickslip.friction.formula.operations.sets import Disc
 
 LARGEST_EXPONENT = 150.0
@@ -33,19 +31,6 @@ Dimension = dict[str, Fraction]
 """Exponents of m, kg and s in a unit; those that are zero are left out."""
 UNITS = "u is in m, v in m/s, a number without unit is a pure number"
 """End of a message about a wrong unit."""
-
-
-class Change(NamedTuple):
-    """A node's value at the reference point, its change to the end point, its value there, and its derivative there.
-
-    The derivative is that by the slip rate or, with one more axis in front, those by VARIABLES. The value at the
-    end point is computed independently: reference + step would lose the digits of a value that has become small.
-    """
-
-    reference: Any
-    step: Any
-    value: Any
-    slope: Any
 
 
 class Levels(Protocol):
@@ -193,16 +178,14 @@ class Operation:
     name: str
     value: Callable[..., Any]
     """Its value from numbers or arrays."""
-    step: Callable[..., Any]
-    """How far its value changes between two points, without cancellation: from the values at both, and each argument's `Change`."""
-    slope: Callable[..., Any]
-    """Its derivative at the end point: from its value there, and each argument's `Change`."""
+    change: Callable[..., None]
+    """How far its value changes between two points, without cancellation, and its derivative: see `operations.changes`."""
     slope_formula: Callable[..., Expression]
     """The formula of its derivative: from the node, and the formula of each argument's derivative."""
-    bounds: Callable[..., Floats]
-    """Bounds of its value: from the node and the interval of each argument, both ends as one array. They leave out rounding."""
-    taylor: Rule
-    """Its Taylor coefficients by the slip rate as intervals, rounding included: from the node and those of its arguments."""
+    bounds: Callable[..., None]
+    """Bounds of its value, which leave out rounding: see `operations.sets`."""
+    taylor: Callable[..., None]
+    """Its Taylor coefficients by the slip rate as intervals, rounding included: see `operations.enclosures`."""
     disc: Callable[..., Disc]
     """The disc that holds its values, rounding included: from that of each argument."""
     order_zero: Callable[[Levels, Expression], Mapping[str, str]]

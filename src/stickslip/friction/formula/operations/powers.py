@@ -11,11 +11,12 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import RATE, Expression, depends_on
-from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, chain, function, multiply, of_positive, outward
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, multiply, of_positive, outward, rounded
 from stickslip.friction.formula.operations.operation import (
     BallsWriter,
-    Change,
     Dimension,
     Levels,
     Operation,
@@ -27,13 +28,13 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing, hull, unless
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
-def chained(outer: Any, inner: Any) -> Any:
+@exact
+def _chained(outer: float, inner: float) -> float:
     """Return outer * inner, and 0 where inner is 0: without dependence the product is 0 even if the outer slope is infinite."""
-    inner = np.asarray(inner, float)
-    return np.multiply(outer, inner, where=inner != 0.0, out=np.zeros(np.broadcast_shapes(np.shape(outer), inner.shape)))
+    return outer * inner if inner != 0.0 else 0.0
 
 
 def _raised(base: Dimension, exponent: Fraction) -> Dimension:
@@ -48,27 +49,56 @@ def _pow_unit(node: Expression, base: Dimension, exponent: Dimension) -> Dimensi
     return _raised(base, Fraction(node.arguments[1].value).limit_denominator(1000)) if base else {}
 
 
-def _pow_step(start: Any, end: Any, a: Change, b: Change) -> Any:
-    near = (np.asarray(a.reference) > 0) & (np.asarray(a.value) > 0)
-    ratio = np.divide(a.step, a.reference, where=near, out=np.zeros(np.broadcast_shapes(near.shape, np.shape(a.step))))
-    return np.where(near, start * np.expm1(b.reference * np.log1p(ratio)), end - start)
+@exact
+def _pow_change(w: Floats, n: int, i: int, j: int) -> None:
+    base, exponent = w[i, REFERENCE], w[j, REFERENCE]
+    start, end = math.pow(base, exponent), math.pow(w[i, VALUE], w[j, VALUE])
+    w[n, REFERENCE], w[n, VALUE], w[n, STEP] = start, end, end - start
+    if base > 0.0 and w[i, VALUE] > 0.0:
+        w[n, STEP] = start * math.expm1(exponent * math.log1p(w[i, STEP] / base))
+    w[n, SLOPE] = _chained(exponent * math.pow(w[i, VALUE], exponent - 1.0), w[i, SLOPE])
 
 
-def _pow_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
-    return unless(a[0] < 0.0, hull(*(np.power(base, exponent) for base in a for exponent in b)))
+@exact
+def _hull_of_powers(a: float, b: float, c: float, d: float) -> Ends:
+    """Return [a, b] to the power of [c, d], without rounding."""
+    e, f, g, h = math.pow(a, c), math.pow(a, d), math.pow(b, c), math.pow(b, d)
+    if a < 0.0 or math.isnan(e) or math.isnan(f) or math.isnan(g) or math.isnan(h):
+        return -math.inf, math.inf
+    return min(min(e, f), min(g, h)), max(max(e, f), max(g, h))
 
 
-def _pow_taylor(node: Expression, a: Floats, b: Floats) -> Floats:
-    """Return the coefficients of a power; with an exponent that varies it is `bounded` as an exponential."""
+@exact
+def _pow_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = _hull_of_powers(w[i, LOW], w[i, HIGH], w[j, LOW], w[j, HIGH])
 
-    def power(exponent: Floats) -> Floats:
-        return outward(_pow_bounds(node, a[:, :1], exponent), 2.0 * LIBRARY)
 
-    def slopes() -> tuple[Floats, Floats]:
-        less, twice_less = (outward(b - k, ONE_STEP, 0.0) for k in (1.0, 2.0))
-        return multiply(b, power(less)), 0.5 * multiply(multiply(b, less), power(twice_less))
+@exact
+def _sqrt_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    w[n, LOW], w[n, HIGH] = -math.inf, math.inf
+    if w[i, HIGH] >= 0.0:
+        w[n, LOW], w[n, HIGH] = math.sqrt(max(w[i, LOW], 0.0)), math.sqrt(w[i, HIGH])
 
-    return chain(power(b), slopes, a)
+
+@exact
+def _power(a: float, b: float, c: float, d: float) -> Ends:
+    """Return [a, b] to the power of [c, d]."""
+    low, high = _hull_of_powers(a, b, c, d)
+    return outward(low, high, 2.0 * LIBRARY)
+
+
+@exact
+def _pow_series(w: Floats, n: int, i: int, j: int) -> None:
+    """Write the coefficients of a power; with an exponent that varies it is `bounded` as an exponential."""
+    a, b, c, d = w[i, 0], w[i, 3], w[j, 0], w[j, 3]
+    less, more = rounded(c - 1.0, d - 1.0, ONE_STEP)
+    least, most = rounded(c - 2.0, d - 2.0, ONE_STEP)
+    low, high = _power(a, b, less, more)
+    first = multiply(c, d, low, high)
+    low, high = _power(a, b, least, most)
+    least, most = multiply(c, d, less, more)
+    low, high = multiply(least, most, low, high)
+    chain(w, n, i, _power(a, b, c, d), (first, (0.5 * low, 0.5 * high)))
 
 
 def _pow_bounded(node: Expression) -> Expression:
@@ -139,11 +169,10 @@ POW = Operation(
     rank=4,
     numpy_name="power",
     value=operator.pow,
-    step=_pow_step,
-    slope=lambda end, a, b: chained(b.reference * np.power(a.value, b.reference - 1.0), a.slope),
+    change=_pow_change,
     slope_formula=lambda node, da, _: node.arguments[1] * node.arguments[0] ** (node.arguments[1] - 1.0) * da,
     bounds=_pow_bounds,
-    taylor=_pow_taylor,
+    taylor=_pow_series,
     bounded=_pow_bounded,
     disc=_pow_disc,
     unit=_pow_unit,
@@ -163,13 +192,22 @@ POW = Operation(
 )
 
 
-def _sqrt_step(start: Any, end: Any, a: Change) -> Any:
-    return np.divide(a.step, start + end, where=np.asarray(start + end) > 0, out=np.zeros(np.shape(end)))
+@exact
+def _sqrt_change(w: Floats, n: int, i: int, j: int) -> None:
+    start, end = math.sqrt(w[i, REFERENCE]), math.sqrt(w[i, VALUE])
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = start, end, _chained(0.5 / end, w[i, SLOPE])
+    w[n, STEP] = w[i, STEP] / (start + end) if start + end > 0.0 else 0.0
 
 
-def _sqrt_slopes(value: Floats, a: Floats) -> tuple[Floats, Floats]:
-    slope = of_positive(2.0 * value)
-    return slope, -0.25 * multiply(slope, of_positive(a))[::-1]
+@exact
+def _sqrt_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = -math.inf, math.inf
+    if w[i, 3] >= 0.0:
+        low, high = outward(math.sqrt(max(w[i, 0], 0.0)), math.sqrt(w[i, 3]), LIBRARY)
+    a, b = of_positive(2.0 * low, 2.0 * high)
+    c, d = of_positive(w[i, 0], w[i, 3])
+    less, more = multiply(a, b, c, d)
+    chain(w, n, i, (low, high), ((a, b), (-0.25 * more, -0.25 * less)))
 
 
 def _sqrt_disc(a: Disc) -> Disc:
@@ -191,11 +229,10 @@ def _sqrt_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
 SQRT = Operation(
     name="sqrt",
     value=np.sqrt,
-    step=_sqrt_step,
-    slope=lambda end, a: chained(np.divide(0.5, end), a.slope),
+    change=_sqrt_change,
     slope_formula=lambda node, da: 0.5 * da / node,
-    bounds=growing(np.sqrt, least=0.0),
-    taylor=function(growing(np.sqrt, least=0.0), _sqrt_slopes),
+    bounds=_sqrt_bounds,
+    taylor=_sqrt_series,
     disc=_sqrt_disc,
     unit=lambda node, a: _raised(a, Fraction(1, 2)),
     order_zero=_sqrt_order_zero,

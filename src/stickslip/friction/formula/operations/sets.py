@@ -3,72 +3,52 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact
 
 Interval = tuple[Any, Any]
-"""Lower and upper end of an interval: numbers, or arrays with the ends of many. Rules have both ends as one array."""
+"""Lower and upper end of an interval: numbers, or arrays with the ends of many."""
 EVERYTHING: Interval = (-math.inf, math.inf)
 """The interval of a value about which nothing is known."""
 
 
-def hull(*ends: Any) -> Floats:
-    """Return the smallest interval with these numbers; everything where one of them is not a number."""
-    low = reduce(np.minimum, ends)
-    return unless(np.isnan(low), np.array([low, reduce(np.maximum, ends)]))
+LOW, HIGH = range(2)
+"""Columns of the ends of a node's interval; rules write the row n of a node from the rows i and j of its arguments."""
 
 
-def known(ends: Floats) -> Floats:
-    """Return an interval, or everything where an end is not a number."""
-    return unless(np.isnan(ends).any(axis=0), ends)
+@exact
+def put(w: Floats, n: int, low: float, high: float) -> None:
+    """Write an interval, or everything where an end is not a number."""
+    if math.isnan(low) or math.isnan(high):
+        low, high = -math.inf, math.inf
+    w[n, LOW], w[n, HIGH] = low, high
 
 
-def unless(unknown: Any, known: Floats) -> Floats:
-    """Return an interval, or everything where nothing is known."""
-    return np.array([np.where(unknown, -np.inf, known[0]), np.where(unknown, np.inf, known[1])]) if unknown.any() else known
+@exact
+def times(x: float, y: float) -> float:
+    """Return x y, with 0 times infinity equal to 0: an infinite end of an interval is never reached."""
+    return 0.0 if x == 0.0 or y == 0.0 else x * y
 
 
-def multiplied(a: Floats, b: Floats) -> Floats:
-    """Return a b: the hull of the four products of the ends.
-
-    0 times infinity is 0: an infinite end of an interval is never reached.
-    """
-    found = _hull_of_four(*(x * y for x in a for y in b))
-    return found if not np.isnan(found).any() else _hull_of_four(*(times(x, y) for x in a for y in b))
-
-
-def times(x: Any, y: Any) -> Any:
-    """Return x y, with 0 times infinity equal to 0."""
-    return np.nan_to_num(np.multiply(x, y), nan=0.0, posinf=np.inf, neginf=-np.inf)
+@exact
+def multiplied(a: float, b: float, c: float, d: float) -> tuple[float, float]:
+    """Return [a, b] times [c, d], without rounding: the hull of the four products of the ends."""
+    p, q, r, s = a * c, a * d, b * c, b * d
+    if math.isnan(p + q + r + s):
+        p, q, r, s = times(a, c), times(a, d), times(b, c), times(b, d)
+    return min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
 
 
-def _hull_of_four(p: Any, q: Any, r: Any, s: Any) -> Floats:
-    return np.array(
-        [np.minimum(np.minimum(p, q), np.minimum(r, s)), np.maximum(np.maximum(p, q), np.maximum(r, s))],
-    )
-
-
-def squared(a: Floats) -> Floats:
-    """Return a**2, which is never negative."""
-    first, last = a * a
-    return np.array([np.where(a[0] * a[1] <= 0.0, 0.0, np.minimum(first, last)), np.maximum(first, last)])
-
-
-def growing(function: Callable[[Any], Any], least: float = -math.inf) -> Callable[..., Floats]:
-    """Return the rule that bounds a function which grows with its argument, from the least argument that it has on."""
-
-    def bounds(_: Any, a: Floats) -> Floats:
-        if math.isinf(least):
-            return np.asarray(function(a))
-        return unless(a[1] < least, np.asarray(function(np.maximum(a, least))))
-
-    return bounds
+@exact
+def squared(a: float, b: float) -> tuple[float, float]:
+    """Return [a, b] squared, which is never negative, without rounding."""
+    first, last = a * a, b * b
+    return 0.0 if a * b <= 0.0 else min(first, last), max(first, last)
 
 
 ROUNDING = 1.2e-16

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, negative, outward
+from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain
 from stickslip.friction.formula.operations.operation import (
     BallsWriter,
-    Change,
     Levels,
     Operation,
     Radius,
@@ -20,7 +21,7 @@ from stickslip.friction.formula.operations.operation import (
     Scaled,
     SeriesWriter,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 
 def both(node: Expression) -> tuple[Expression, Expression]:
@@ -28,54 +29,76 @@ def both(node: Expression) -> tuple[Expression, Expression]:
     return Expression("sin", node.arguments), Expression("cos", node.arguments)
 
 
-def _sin_step(start: Any, end: Any, a: Change) -> Any:
-    half = np.sin(0.5 * a.step)
-    return 2.0 * half * (np.cos(a.reference) * np.cos(0.5 * a.step) - np.sin(a.reference) * half)
+@exact
+def _sin_change(w: Floats, n: int, i: int, j: int) -> None:
+    a, step, end = w[i, REFERENCE], w[i, STEP], w[i, VALUE]
+    half = math.sin(0.5 * step)
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = math.sin(a), math.sin(end), math.cos(end) * w[i, SLOPE]
+    w[n, STEP] = 2.0 * half * (math.cos(a) * math.cos(0.5 * step) - math.sin(a) * half)
 
 
-def _cos_step(start: Any, end: Any, a: Change) -> Any:
-    half = np.sin(0.5 * a.step)
-    return -2.0 * half * (np.sin(a.reference) * np.cos(0.5 * a.step) + np.cos(a.reference) * half)
+@exact
+def _cos_change(w: Floats, n: int, i: int, j: int) -> None:
+    a, step, end = w[i, REFERENCE], w[i, STEP], w[i, VALUE]
+    half = math.sin(0.5 * step)
+    w[n, REFERENCE], w[n, VALUE], w[n, SLOPE] = math.cos(a), math.cos(end), -math.sin(end) * w[i, SLOPE]
+    w[n, STEP] = -2.0 * half * (math.sin(a) * math.cos(0.5 * step) + math.cos(a) * half)
 
 
 TURN = 2.0 * np.pi
 """One period of sin and cos (rad)."""
 
 
-def _bounds(function: Callable[[Any], Any], top: float) -> Callable[..., Floats]:
-    """Return the rule that bounds sin or cos, whose largest value is `top` turns beyond 0."""
-
-    def bounds(_: Any, a: Floats) -> Floats:
-        low, high = a
-        is_short = (np.abs(low) < 1e15) & (np.abs(high) < 1e15) & (high - low < TURN)
-        ends = np.sort(function(np.where(is_short, a, 0.0)), axis=0)
-        ends[0, ~is_short | _holds_a_turn(low, high, top + 0.5)] = -1.0
-        ends[1, ~is_short | _holds_a_turn(low, high, top)] = 1.0
-        return ends
-
-    return bounds
+@exact
+def _holds(low: float, high: float, offset: float) -> bool:
+    """Return True if `offset` plus a whole number of turns may lie in an interval (rad), rounding included."""
+    first, last = low / TURN - offset, high / TURN - offset
+    slack = LIBRARY * (2.0 + max(abs(first), abs(last)))
+    return math.floor(last + slack) >= math.ceil(first - slack)
 
 
-def _holds_a_turn(a: Any, b: Any, offset: float) -> Any:
-    """Return True where `offset` plus a whole number of turns may lie in [a, b] (rad), rounding included."""
-    first, last = a / TURN - offset, b / TURN - offset
-    slack = LIBRARY * (2.0 + np.maximum(np.abs(first), np.abs(last)))
-    return np.floor(last + slack) >= np.ceil(first - slack)
+@exact
+def _between(low: float, high: float, one: float, other: float, top: float) -> Ends:
+    """Return the bounds of sin or cos from its values at both ends, without rounding; the largest is `top` turns beyond 0."""
+    if not (abs(low) < 1e15 and abs(high) < 1e15 and high - low < TURN):
+        return -1.0, 1.0
+    least = -1.0 if _holds(low, high, top + 0.5) else min(one, other)
+    return least, 1.0 if _holds(low, high, top) else max(one, other)
 
 
-_sin_bounds, _cos_bounds = _bounds(np.sin, 0.25), _bounds(np.cos, 0.0)
+@exact
+def _within_one(low: float, high: float, one: float, other: float, top: float) -> Ends:
+    """Return the same, rounding included."""
+    least, most = _between(low, high, one, other, top)
+    return max(least - LIBRARY, -1.0), min(most + LIBRARY, 1.0)
 
 
-def _sine(a: Floats) -> Floats:
-    return _within_one(_sin_bounds(None, a))
+@exact
+def _sin_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = w[i, LOW], w[i, HIGH]
+    w[n, LOW], w[n, HIGH] = _between(low, high, math.sin(low), math.sin(high), 0.25)
 
 
-def _cosine(a: Floats) -> Floats:
-    return _within_one(_cos_bounds(None, a))
+@exact
+def _cos_bounds(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = w[i, LOW], w[i, HIGH]
+    w[n, LOW], w[n, HIGH] = _between(low, high, math.cos(low), math.cos(high), 0.0)
 
 
-def _within_one(found: Floats) -> Floats:
-    return np.clip(outward(found, 0.0, LIBRARY, positive=False), -1.0, 1.0)
+@exact
+def _sin_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = w[i, 0], w[i, 3]
+    a, b = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
+    c, d = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
+    chain(w, n, i, (a, b), ((c, d), (-0.5 * b, -0.5 * a)))
+
+
+@exact
+def _cos_series(w: Floats, n: int, i: int, j: int) -> None:
+    low, high = w[i, 0], w[i, 3]
+    a, b = _within_one(low, high, math.cos(low), math.cos(high), 0.0)
+    c, d = _within_one(low, high, math.sin(low), math.sin(high), 0.25)
+    chain(w, n, i, (a, b), ((-d, -c), (-0.5 * b, -0.5 * a)))
 
 
 def _disc(own: Any, other: Any, radius: Any) -> Disc:
@@ -115,11 +138,10 @@ def _grown(writer: SeriesWriter, node: Expression, partner: int, k: int) -> str:
 SIN = Operation(
     name="sin",
     value=np.sin,
-    step=_sin_step,
-    slope=lambda end, a: np.cos(a.value) * a.slope,
+    change=_sin_change,
     slope_formula=lambda node, da: both(node)[1] * da,
     bounds=_sin_bounds,
-    taylor=lambda node, a: chain(_sine(a[:, :1]), lambda: (_cosine(a[:, :1]), -0.5 * _sine(a[:, :1])[::-1]), a),
+    taylor=_sin_series,
     disc=lambda a: _disc(np.sin(a.centre), np.cos(a.centre), a.radius),
     order_zero=lambda writer, node: _order_zero(writer, node, is_sine=True),
     derivative=lambda writer, node, da: f"{writer.coefficient(both(node)[1], 0)} * {da}",
@@ -131,11 +153,10 @@ SIN = Operation(
 COS = Operation(
     name="cos",
     value=np.cos,
-    step=_cos_step,
-    slope=lambda end, a: -np.sin(a.value) * a.slope,
+    change=_cos_change,
     slope_formula=lambda node, da: 0.0 - both(node)[0] * da,
     bounds=_cos_bounds,
-    taylor=lambda node, a: chain(_cosine(a[:, :1]), lambda: (negative(_sine(a[:, :1])), -0.5 * _cosine(a[:, :1])[::-1]), a),
+    taylor=_cos_series,
     disc=lambda a: _disc(np.cos(a.centre), np.sin(a.centre), a.radius),
     order_zero=lambda writer, node: _order_zero(writer, node, is_sine=False),
     derivative=lambda writer, node, da: f"-{writer.coefficient(both(node)[0], 0)} * {da}",

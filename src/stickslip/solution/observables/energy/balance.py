@@ -22,7 +22,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import ENERGY_NAMES, in_files
 from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
-from stickslip.solution.observables.energy.layers import LayerEnergy
 from stickslip.solution.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
 from stickslip.solution.observables.waves import Radiation, Waves
 
@@ -148,6 +147,8 @@ def trapped_note(history: History) -> str:
     elif len(history) * sum(body.cells.counts) > MOST_REPLAYED:
         return ""
     else:
+        from stickslip.solution.observables.energy.layers import LayerEnergy  # here and below, because few bodies are of layers
+
         energy = float(LayerEnergy(history, body).inside([end]).trapped[0])
     holds = history.problem.strength**2 / (2.0 * body.stiffness)
     energy_unit = history.problem.unit_of("energy").replace("^", "")
@@ -175,6 +176,8 @@ def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Fl
 
 def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[str, Floats]:
     """Return the energies of a body of layers at positions, without heat; see `energies`."""
+    from stickslip.solution.observables.energy.layers import LayerEnergy
+
     energy, now = LayerEnergy(history, body), epochs(history, at)
     contact = 0.5 * body.inertia * speed(history, at) ** 2
     layers = energy.inside(now)
