@@ -16,8 +16,8 @@ from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.engine.contact_step import certificate
 from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
-from stickslip.foundation.kernels.memory.records import FLOATS, MemoryRecord
 from stickslip.engine.state import layout, workspace
+from stickslip.foundation.kernels.memory.records import FLOATS, MemoryRecord
 from stickslip.friction.formula.expression import Expression
 from stickslip.problem import run_codes
 

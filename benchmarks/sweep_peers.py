@@ -20,8 +20,8 @@ from stickslip.engine.lanes.runs import Group, engine_address, run_group
 from stickslip.engine.lanes.setups import set_up
 from stickslip.engine.lanes.vectorised_problem import member
 from stickslip.engine.lanes.workspace import new_workspace, table_of
-from stickslip.foundation.kernels.memory.simd import WIDTH
 from stickslip.extensions.sweeps.batch import QUANTITIES, run_members
+from stickslip.foundation.kernels.memory.simd import WIDTH
 from stickslip.friction import SinusoidalSlip
 from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.scenarios.scenario import Scenario

@@ -44,6 +44,15 @@ os.environ |= {
 }
 
 
+def pytest_report_header() -> str:
+    """Say whether the machine code that came is that of the sources: if not, it is made in the tests, and commands say so."""
+    from stickslip.foundation.code_key import SHIPPED
+    from stickslip.foundation.kernels.code import NAME
+
+    up_to_date = (SHIPPED / NAME).is_dir()
+    return f"machine code: {NAME}" if up_to_date else "machine code: out of date; `python -m stickslip.engine.build` makes it"
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
     """Collect tests without looking for garbage, which takes a fifth of that time and finds none.
@@ -88,15 +97,6 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.figures.runs.energy.TIMES", 200)
 
 
-@pytest.fixture(scope="session")
-def compiled_engine() -> None:
-    """Compile the engine and its parts before any test looks at what a command says on standard error; `make` has done so."""
-    if "COMPILED_FIRST" not in os.environ:
-        from tests import compile_first
-
-        compile_first.main()
-
-
 @pytest.fixture
 def pictures(request: pytest.FixtureRequest) -> None:
     """Leave pictures blank, and what they would show coarse, but for tests that look at them or at what is said of them."""
@@ -110,7 +110,6 @@ def command(
     capsys: pytest.CaptureFixture[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    compiled_engine: None,
     pictures: None,
 ) -> Callable[..., Outcome]:
     """Run `stickslip` with arguments as the shell does, in an empty folder."""

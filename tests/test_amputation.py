@@ -115,7 +115,7 @@ def _but(folder: Path, name: str) -> Any:
 def python(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Run Python in a copy, whose package it finds before any other."""
     paths = [str(place / "src"), str(place), os.environ.get("PYTHONPATH", "")]
-    settings = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths)), "COMPILED_FIRST": "1", "OPENBLAS_NUM_THREADS": "1"}
+    settings = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths)), "OPENBLAS_NUM_THREADS": "1"}
     for one in ("PYTEST_XDIST_WORKER", "PYTEST_CURRENT_TEST"):
         settings.pop(one, None)
     return subprocess.run([sys.executable, *arguments], cwd=place, env=settings, capture_output=True, text=True, check=False)

@@ -21,13 +21,15 @@ FACES = {"__init__.py", "__main__.py", "extension.py", "studies"}
 HEAVY = {
     "jinja2": {"figures"},
     "matplotlib": {"figures"},
-    "numba": {"engine"},
+    "numba": {"foundation"},
     "scipy": {"run"},
     "typer": {"cli"},
     "xarray": {"figures"},
     "zarr": {"foundation", "solution"},
 }
 """The rooms of the core that import a heavy library as soon as one of their files is imported."""
+COMPILER, COMPILER_MODULE = "foundation/kernels/compiler/", "stickslip.foundation.kernels.compiler"
+"""What makes machine code when the package is built."""
 OTHERS = ("dask", "distributed", "jax", "panel", "bokeh", "pandas", "pint", "h5py", "sympy")
 """Libraries that no room of the core imports before they are used."""
 
@@ -73,6 +75,16 @@ def test_heavy_libraries_are_known_to_few_rooms_of_the_core() -> None:
     assert {library: rooms & set(CORE) for library, rooms in found.items() if rooms & set(CORE)} == HEAVY
 
 
+def test_only_the_compiler_imports_numba_and_only_kernels_and_formulas_llvmlite() -> None:
+    """Machine code comes with the package: what is imported when the engine runs does without the compiler, at any time."""
+    homes = {"numba": (COMPILER,), "llvmlite": ("foundation/kernels/", "engine/formula_code/")}
+    for file, imported in HOUSE.imported.items():
+        for _, module, _ in imported:
+            assert file.startswith(homes.get(module.split(".")[0], ("",))), f"{file} imports {module}"
+    into = {(file, when) for file, all_of in HOUSE.imported.items() for when, module, _ in all_of if COMPILER_MODULE in module}
+    assert {one for one in into if not one[0].startswith(COMPILER)} <= {("foundation/kernels/code.py", "later")}
+
+
 def test_what_every_start_loads_of_an_extension_is_light() -> None:
     """The core asks all extensions for their names: their fronts import nothing but what an extension is."""
     for name in HOUSE.extensions:
@@ -83,7 +95,7 @@ def test_what_every_start_loads_of_an_extension_is_light() -> None:
 
 def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
     """Each file with compiled functions, and each file from which such functions take a name."""
-    from stickslip.foundation.kernels.cache import NOT_COMPILED, compiled_sources
+    from stickslip.foundation.kernels.code import NOT_COMPILED, compiled_sources
 
     covered = set(compiled_sources())
     assert all(path.is_file() for path in covered)
@@ -111,9 +123,7 @@ def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
 def _is_compiler(decorator: ast.expr) -> bool:
     node = decorator.func if isinstance(decorator, ast.Call) else decorator
     word = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
-    if word == "overload":
-        return isinstance(decorator, ast.Call)  # numba's takes the function to compile; that of typing takes nothing
-    return word in ("kernel", "inlined", "njit", "intrinsic", "register_jitable")
+    return word in ("kernel", "inlined", "entry", "exact", "exact_entry")
 
 
 def _home(module: str, name: str) -> str:

@@ -4,5 +4,5 @@ import pytest
 
 
 @pytest.fixture(autouse=True)
-def _as_commands(compiled_engine: None, pictures: None) -> None:
+def _as_commands(pictures: None) -> None:
     """Begin with a compiled engine, and leave pictures blank unless a test says otherwise."""

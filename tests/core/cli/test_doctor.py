@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -14,8 +13,10 @@ import pytest
 
 from stickslip.cli import installation
 from stickslip.cli.main import main
+from stickslip.foundation.kernels.processor import PROCESSOR
 from stickslip.problem.scenarios.templates import template
 from tests.command_line import Command, Outcome
+from tests.core.foundation.kernels.fresh import COMMAND, python
 
 
 def versions(monkeypatch: pytest.MonkeyPatch, **replaced: str | None) -> None:
@@ -59,32 +60,32 @@ def test_a_sound_installation_is_well(command: Command) -> None:
 
 NOTED = """
 import sys
-from stickslip.foundation.kernels.one_module import KernelCache
-names, load = set(), KernelCache.load_overload
-def noted(self, *rest):
-    names.add(self._function.__qualname__)
-    return load(self, *rest)
-KernelCache.load_overload = noted
+from stickslip.foundation.kernels import kernels
+names, load = set(), kernels.address_of_entry
+def noted(entry):
+    names.add(entry.name)
+    return load(entry)
+kernels.address_of_entry = noted
 from stickslip.cli.main import main
 try:
     main(sys.argv[1:])
 finally:
     print(*sorted(names), file=sys.stderr)
 """
-"""Runs a command, and lists on standard error the compiled functions that it takes from the cache, or compiles."""
+"""Runs a command, and lists on standard error the entries whose machine code it loads, or makes."""
 
 
-def compiled_for(folder: Path, *arguments: str) -> set[str]:
-    """Return the names of the compiled functions that a command in a new process needs."""
+def entries_of(folder: Path, *arguments: str) -> set[str]:
+    """Return the names of the entries that a command in a new process needs."""
     done = subprocess.run([sys.executable, "-c", NOTED, *arguments], cwd=folder, capture_output=True, text=True, check=True)
     return set(done.stderr.splitlines()[-1].split())
 
 
 @pytest.mark.slow
-def test_what_a_first_run_needs_the_self_test_has_compiled(tmp_path: Path) -> None:
-    first = compiled_for(tmp_path, "run", "fig6-slab", "--figure", "first.png")
+def test_the_self_test_loads_what_a_first_run_needs(tmp_path: Path) -> None:
+    first = entries_of(tmp_path, "run", "fig6-slab", "--figure", "first.png")
     assert len(first) > 5
-    assert first - compiled_for(tmp_path, "doctor") == set()
+    assert first - entries_of(tmp_path, "doctor") == set()
 
 
 def test_an_extra_that_is_missing_is_told_and_no_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,14 +98,14 @@ def test_an_extra_that_is_missing_is_told_and_no_fault(command: Command, monkeyp
     assert "pyarrow 99.0" in command("doctor").out
 
 
-@pytest.mark.parametrize(("version", "said"), [(None, "numba is not installed"), ("0.1", "numba 0.1 does not suit")])
+@pytest.mark.parametrize(("version", "said"), [(None, "llvmlite is not installed"), ("0.1", "llvmlite 0.1 does not suit")])
 def test_a_library_that_is_missing_or_too_old_is_a_fault(
     command: Command, monkeypatch: pytest.MonkeyPatch, version: str | None, said: str
 ) -> None:
-    versions(monkeypatch, numba=version)
+    versions(monkeypatch, llvmlite=version)
     answering(monkeypatch)
     found = command("doctor")
-    assert fault(found).startswith(f"{said}: pip install 'numba")
+    assert fault(found).startswith(f"{said}: pip install 'llvmlite")
     assert ("self-test" in found.out) == (version is not None)
 
 
@@ -181,10 +182,32 @@ def test_an_engine_that_is_not_compiled_is_a_fault(command: Command, monkeypatch
     assert fault(command("doctor")).endswith("unset it")
 
 
-def test_a_compiler_that_is_switched_off_is_one_line_for_a_run() -> None:
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
-    code = "import sys; from stickslip.cli.main import main; main(sys.argv[1:])"
-    command = [sys.executable, "-c", code, "run", "fig6-slab"]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert done.stderr.startswith("stickslip: NUMBA_DISABLE_JIT is set")
+@pytest.mark.parametrize(
+    ("numba", "fault"),
+    [("0.68", ""), (None, "did not come with the package, and nothing compiles it: pip install 'stickslip[compiler]'")],
+)
+def test_machine_code_that_did_not_come_is_a_fault_only_without_the_compiler(
+    command: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, numba: str | None, fault: str
+) -> None:
+    answering(monkeypatch)
+    assert "machine code" in (found := command("doctor").out)
+    assert f"for {PROCESSOR.name}, " in found
+    assert "files that came with the package" in found
+    versions(monkeypatch, numba=numba)
+    monkeypatch.setattr("stickslip.foundation.code_key.SHIPPED", tmp_path / "nothing")
+    monkeypatch.setattr("stickslip.foundation.kernels.code.SHIPPED", tmp_path / "nothing")
+    shown = command("doctor")
+    assert f"compiled here by numba {numba or '(missing)'}: machine code for this processor" in shown.out
+    assert (shown.code, shown.err.count("\n")) == ((1, 1) if fault else (0, 0))
+    assert shown.err.endswith(f"{fault}\n" if fault else "")
+
+
+@pytest.mark.parametrize(
+    ("there", "said"), [(True, ""), (False, "NUMBA_DISABLE_JIT is set, so that nothing compiles it: unset it\n")]
+)
+def test_a_compiler_that_is_switched_off_is_one_line_for_a_run_that_needs_it(tmp_path: Path, there: bool, said: str) -> None:
+    code = COMMAND.format(arguments=["run", "fig6-slab"])
+    done = python(code, tmp_path, None if there else tmp_path / "nothing", NUMBA_DISABLE_JIT="1")
+    assert done.stdout.splitlines()[-1] == f"False {0 if there else 2}"
+    assert done.stderr.count("\n") == (not there)
+    assert done.stderr.endswith(said)

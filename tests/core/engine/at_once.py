@@ -35,8 +35,8 @@ def at_once(work, count):
 """
 
 
-ANNOUNCED = "stickslip: compiling", "stickslip: numba"
-"""How lines begin that say why one has to wait."""
+ANNOUNCED = "stickslip: compiling"
+"""How a line begins that says why one has to wait."""
 
 
 def python(code: str, *arguments: str, **environment: str) -> None:

@@ -12,10 +12,10 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.engine.formula_code.taylor_series import FormulaWriter
-from stickslip.engine.series import ball_radii, sine
+from stickslip.engine.series import ball_radii
 from stickslip.engine.state.layout import Ball
+from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
@@ -126,7 +126,7 @@ def radius_of(tree: e.Expression, disc: Disc, rules: Mapping[str, Any] | None = 
     writer, ball = FormulaWriter(tree, (), state_rates=(tree,)), Ball(np.zeros(Ball.total))
     ball.slip, ball.rate, ball.state[0] = disc.radius
     ball.at_slip, ball.at_rate, ball.at_state[0] = disc.centre
-    names = {**vars(MATHS), **FLOATS, **vars(sine), **vars(ball_radii), **(rules or {})}
+    names = {**vars(MATHS), **vars(ball_radii), **FLOATS, **(rules or {})}
     names |= {"c": np.zeros(writer.size), "p": np.zeros(1), "x_ref": np.float64(0.0)}
     names["k"] = ball.numbers
     with np.errstate(all="ignore"):

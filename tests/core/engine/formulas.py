@@ -7,18 +7,18 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, compile_formula
 from stickslip.engine.formula_code.recurrences import Recurrences
 from stickslip.engine.formula_code.taylor_series import ORDER, FormulaWriter
-from stickslip.engine.series import sine
+from stickslip.engine.series.sine import sine, versine
+from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.bounds import Enclosure
 from stickslip.friction.formula.expression import Expression
+from tests.core.engine.compiled import compiled
 
 
 def enclose(
@@ -34,8 +34,8 @@ def enclose(
     return found
 
 
-FLOATS = {name: njit(error_model="numpy", fastmath={"contract"})(function) for name, function in CALLED.items()}
-"""The functions that operations call, compiled by numba."""
+FLOATS = {name: compiled(function) for name, function in {**CALLED, "sine": sine, "versine": versine}.items()}
+"""The functions that operations and formulas call, compiled by numba."""
 
 DOUBLE = ctypes.POINTER(ctypes.c_double)
 JET = ctypes.CFUNCTYPE(None, DOUBLE, DOUBLE, DOUBLE, DOUBLE)
@@ -63,7 +63,7 @@ def pointer(array: np.ndarray) -> Any:
     return array.ctypes.data_as(DOUBLE)
 
 
-def compiled(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
+def functions_of(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
     functions = compile_formula(e.as_expression(formula(elementary, e.SLIP, e.RATE)), (), ())
     constants, none = np.zeros(functions.size), np.zeros(1)
     functions.fill(none, reference, constants)
@@ -77,7 +77,7 @@ def series(formula: Expression, x_ref: float, slip: list[float], rate: list[floa
     and rate 0. Both come from the generated text.
     """
     writer = Recurrences(formula, ())
-    names: dict[str, Any] = {**vars(MATHS), **FLOATS, **vars(sine), "x_ref": x_ref, "c": [0.0] * writer.size}
+    names: dict[str, Any] = {**vars(MATHS), **FLOATS, "x_ref": x_ref, "c": [0.0] * writer.size}
     rate = rate or [k * x for k, x in enumerate([*slip, 0.0])][1:]
     names |= {"dx": slip[0], "p": [], "fused": lambda a, b, c: a * b + c} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
     lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes] + writer.order_zero()
@@ -93,6 +93,6 @@ def series(formula: Expression, x_ref: float, slip: list[float], rate: list[floa
 def written_slopes(formula: Expression, x_ref: float, dx: float, rate: float) -> tuple[float, float]:
     """Return the derivatives of a formula by slip rate (s/m) and slip (1/m) from the generated text."""
     writer, out = FormulaWriter(formula, ()), [0.0] * 3
-    names: dict[str, Any] = {**vars(MATHS), **FLOATS, **vars(sine), "x_ref": x_ref, "c": [0.0] * writer.size}
+    names: dict[str, Any] = {**vars(MATHS), **FLOATS, "x_ref": x_ref, "c": [0.0] * writer.size}
     exec("\n".join([*writer.prepare(), *writer.value()]), names | {"dx": dx, "s": rate, "p": [], "out": out})
     return out[1], out[2]

@@ -14,26 +14,25 @@ from numpy.polynomial import polynomial as poly
 
 from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.lanes.workspace import apart
-from stickslip.foundation.kernels.memory.simd import WIDTH
-from stickslip.engine.series import ball_radii
+from stickslip.engine.series import ball_radii, polynomial
 from stickslip.engine.series.polynomial import (
     MOST_CROSSINGS,
     NONE,
-    bound_of_slope,
-    bounds_on_disc,
     crossings,
-    evaluate,
-    extremes,
-    first_descent,
     restrict,
 )
 from stickslip.engine.state.layout import TERMS, Ball
+from stickslip.foundation.kernels.memory.simd import WIDTH
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.text import to_text
 from tests.core.engine.balls import Disc, Drawn, drawn, exact_distance, farthest, radius_of
-from tests.core.engine.formulas import FORMULAS, JET, compiled
+from tests.core.engine.compiled import compiled
+from tests.core.engine.formulas import FORMULAS, JET, functions_of
 from tests.limits import all_tests, examples
+
+bounds_on_disc, bound_of_slope = compiled(polynomial.bounds_on_disc), compiled(polynomial.bound_of_slope)
+evaluate, extremes, first_descent = map(compiled, (polynomial.evaluate, polynomial.extremes, polynomial.first_descent))
 
 inside = st.floats(0.05, 0.95)
 
@@ -219,7 +218,7 @@ def test_compiled_balls_are_those_of_the_text(seed: int) -> None:
 @pytest.mark.parametrize("name", list(FORMULAS))
 def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: str) -> None:
     """`radii` uses what the series has left. Relative 1e-14: a processor may fuse products and sums otherwise in lanes."""
-    functions, constants = compiled(FORMULAS[name], 0.0)
+    functions, constants = functions_of(FORMULAS[name], 0.0)
     rng = np.random.default_rng(3)
     c, k, load, series, ball = (apart(rows, WIDTH) for rows in (len(constants), 12, TERMS, 2 * TERMS, Ball.total))
     c[:] = constants[:, None]

@@ -7,12 +7,14 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from numba import njit
 
 import stickslip as ss
 from stickslip.engine.formula_code.taylor_series import ORDER
-from stickslip.engine.series.sine import sine, versine
+from stickslip.engine.series import sine as sines
+from tests.core.engine.compiled import compiled
 from tests.core.engine.formulas import enclose, series
+
+sine, versine = compiled(sines.sine), compiled(sines.versine)
 
 ROUNDINGS = 5
 """Of numbers up to 2: what the libraries' functions and a product or two make."""
@@ -24,8 +26,8 @@ def test_sine_and_versine_agree_with_60_digits(size: float) -> None:
         with mpmath.workdps(60):
             angle = mpmath.mpf(e)
             exact, exact_versine = mpmath.sin(angle), 2 * mpmath.sin(angle / 2) ** 2
-            assert abs(mpmath.mpf(_sine(e)) - exact) <= ROUNDINGS * 2.0**-53 * 2
-            assert abs(mpmath.mpf(_versine(e)) - exact_versine) <= ROUNDINGS * 2.0**-53 * 2
+            assert abs(mpmath.mpf(sine(e)) - exact) <= ROUNDINGS * 2.0**-53 * 2
+            assert abs(mpmath.mpf(versine(e)) - exact_versine) <= ROUNDINGS * 2.0**-53 * 2
 
 
 @pytest.mark.parametrize("size", [1e-150, 1e-9, 1e-3, 0.5])
@@ -33,18 +35,8 @@ def test_small_angles_keep_their_digits(size: float) -> None:
     for e in np.random.default_rng(2).uniform(0.5 * size, size, 100).tolist():
         with mpmath.workdps(60):
             angle = mpmath.mpf(e)
-            assert _sine(e) == pytest.approx(float(mpmath.sin(angle)), rel=1e-15, abs=0.0)
-            assert _versine(e) == pytest.approx(float(2 * mpmath.sin(angle / 2) ** 2), rel=1e-15, abs=0.0)
-
-
-@njit(fastmath={"contract"})
-def _sine(e: float) -> float:
-    return sine(e)
-
-
-@njit(fastmath={"contract"})
-def _versine(e: float) -> float:
-    return versine(e)
+            assert sine(e) == pytest.approx(float(mpmath.sin(angle)), rel=1e-15, abs=0.0)
+            assert versine(e) == pytest.approx(float(2 * mpmath.sin(angle / 2) ** 2), rel=1e-15, abs=0.0)
 
 
 @pytest.mark.parametrize("text", ["0.5 + 1e16*expm1(1e-18*v)", "0.5 + 1e16*log1p(1e-18*v)", "0.5 + 1e16*sinh(1e-18*v)"])

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, NAMES
 from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
 from stickslip.engine.lanes.workspace import apart
+from stickslip.engine.series import ball_radii
 from stickslip.foundation.kernels.memory.simd import WIDTH
-from stickslip.engine.series import ball_radii, sine
+from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.friction import LAWS
 from tests.core.engine.drawn import example_law
 from tests.core.engine.formula_texts import NAMES as PARAMETERS
@@ -32,7 +32,7 @@ CLOSE = 1e-9
 
 WITH_A_STATE = {"prepare", "state_value", "balls"}
 WITHOUT = set(SIGNATURES) - {"state_value"}
-IN_PYTHON = {**vars(MATHS), **FLOATS, **vars(sine), **vars(ball_radii)}
+IN_PYTHON = {**vars(MATHS), **vars(ball_radii), **FLOATS}
 IN_PYTHON |= {"fused": lambda a, b, c: a * b + c, "power_of_two": lambda n: np.ldexp(1.0, int(n))}
 
 

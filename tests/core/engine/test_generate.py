@@ -18,14 +18,14 @@ from stickslip.engine.state.layout import TERMS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions
 from tests.core.engine.balls import EXACT
-from tests.core.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
+from tests.core.engine.formulas import FORMULAS, JET, VALUE, functions_of, pointer
 
 
 @pytest.mark.parametrize("name", FORMULAS)
 def test_difference_keeps_its_digits(name: str) -> None:
     """mu(u0 + d, s) - mu(u0, 0) against 50 digits, for steps where plain subtraction has none left."""
     formula, reference, out = FORMULAS[name], 0.21, np.zeros(3)
-    functions, constants = compiled(formula, reference)
+    functions, constants = functions_of(formula, reference)
     for step, rate in ((1e-13, 2e-13), (1e-7, 1e-8), (0.3, 0.2)):
         VALUE(functions.address("value"))(pointer(constants), step, rate, pointer(out))
         with mpmath.workdps(50):
@@ -36,7 +36,7 @@ def test_difference_keeps_its_digits(name: str) -> None:
 
 def test_the_difference_of_an_exponential_is_exact_where_it_underflows() -> None:
     """exp(-1000) is 0 and exp(1000) is infinite: their product must not be taken."""
-    functions, constants = compiled(lambda f, u, v: 0.3 + 0.5 * f.exp(-1000.0 * u), 1.0)
+    functions, constants = functions_of(lambda f, u, v: 0.3 + 0.5 * f.exp(-1000.0 * u), 1.0)
     out = np.zeros(3)
     for step in (-1.0, -0.99, -0.5, 0.5):
         VALUE(functions.address("value"))(pointer(constants), step, 0.0, pointer(out))
@@ -57,7 +57,7 @@ def layout_of_k(rate: float, mass: float = 0.7, bend: float = 0.0, speed: float 
 def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
     """Z s + S mu(x, s) = L along the whole step, x the integral of the computed s."""
     formula = FORMULAS[name]
-    functions, constants = compiled(formula, 0.21)
+    functions, constants = functions_of(formula, 0.21)
     start = 0.4
     load, jet = np.zeros(TERMS), np.zeros(2 * TERMS)
     load[0] = 1.3 * start + 0.9 * (formula(np, 0.21, start) - formula(np, 0.21, 0.0))
@@ -79,7 +79,7 @@ def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
 def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> None:
     """M ds/dt = L - K q - Z s - S mu along the whole step."""
     formula = FORMULAS[name]
-    functions, constants = compiled(formula, 0.21)
+    functions, constants = functions_of(formula, 0.21)
     load, jet = np.zeros(TERMS), np.zeros(2 * TERMS)
     load[:3] = 0.6, 0.05, -0.02
     JET(functions.address("motion_jet"))(pointer(constants), pointer(layout_of_k(0.4, bend=bend)), pointer(load), pointer(jet))

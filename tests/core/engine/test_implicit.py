@@ -11,8 +11,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.engine.series.radau_nodes import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES, interpolate, last_terms
+from stickslip.engine.series import radau_nodes
+from stickslip.engine.series.radau_nodes import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES
 from stickslip.engine.state.layout import TERMS
+from tests.core.engine.compiled import compiled
 from tests.core.engine.states_truth import Truth, block_truth
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
@@ -39,6 +41,7 @@ def test_derivatives_and_integrals_are_exact_for_polynomials() -> None:
 def test_interpolation_keeps_the_digits() -> None:
     """exp(3 x) at the points: the polynomial returns its values to 4 ulp of the largest, and the last terms bound its error."""
     values, out, rest = np.exp(3.0 * POINT), np.empty(TERMS), np.empty(TERMS)
+    interpolate, last_terms = compiled(radau_nodes.interpolate), compiled(radau_nodes.last_terms)
     interpolate(values, out, rest)
     assert np.polyval(out[::-1], POINT) == pytest.approx(values, rel=0.0, abs=4.0 * np.spacing(values[-1]))
     x = np.linspace(0.0, 1.0, 201)

@@ -9,12 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
 
 from stickslip.engine.lanes.workspace import apart
-from stickslip.foundation.kernels.memory.addresses import ahead, floats, integers
-from stickslip.foundation.kernels.memory.pointers import rows_of
-from stickslip.foundation.kernels.memory.simd import WIDTH, chosen, store_across
 from stickslip.engine.series.polynomial import (
     bound_below,
     bound_of_slope,
@@ -28,7 +24,11 @@ from stickslip.engine.series.polynomial import (
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at
 from stickslip.engine.state.layout import TERMS
-from tests.core.engine.formulas import FORMULAS, JET, compiled
+from stickslip.foundation.kernels.memory.addresses import ahead, floats, integers
+from stickslip.foundation.kernels.memory.pointers import rows_of
+from stickslip.foundation.kernels.memory.simd import WIDTH, chosen, store_across
+from tests.core.engine.compiled import compiled
+from tests.core.engine.formulas import FORMULAS, JET, functions_of
 
 Block = Any
 
@@ -65,13 +65,13 @@ def series(seed: int) -> Block:
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
-    function = njit(fastmath={"contract"}, error_model="numpy")(FUNCTIONS[name])
+    function = compiled(FUNCTIONS[name])
 
-    @njit
+    @compiled
     def side_by_side(block: int, out: int) -> None:
         rows_of(out)[0] = function(rows_of(block))
 
-    @njit
+    @compiled
     def alone(address: int) -> float:
         return function(floats(address))
 
@@ -83,12 +83,12 @@ def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
 
 
 def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
-    @njit
+    @compiled
     def side_by_side(block: int, powers: int, out: int) -> None:
         powers_of(rows_of(block)[0], rows_of(powers))
         multiply(rows_of(block), rows_of(powers), rows_of(out))
 
-    @njit
+    @compiled
     def alone(address: int, powers: int, out: int) -> None:
         powers_of(floats(address)[0], floats(powers))
         multiply(floats(address), floats(powers), ahead(floats(out), 0))
@@ -102,7 +102,7 @@ def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
 
 
 def test_comparisons_choose_lane_by_lane() -> None:
-    @njit
+    @compiled
     def side_by_side(block: int, out: int) -> int:
         a, b = rows_of(block)[0], rows_of(block)[1]
         rows_of(out)[0] = chosen((a > b) & ~(a >= 3.0), a, -b)
@@ -120,7 +120,7 @@ def test_comparisons_choose_lane_by_lane() -> None:
 
 
 def test_rows_in_lanes_are_stored_across_as_columns() -> None:
-    @njit
+    @compiled
     def store(block: int, targets: int) -> None:
         store_across(rows_of(block), integers(targets), 2)
 
@@ -137,7 +137,7 @@ def test_rows_in_lanes_are_stored_across_as_columns() -> None:
 @pytest.mark.parametrize("name", FORMULAS)
 def test_series_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     part = "motion_jet" if name in WITH_MASS else "rate_jet"
-    functions, constants = compiled(FORMULAS[name], 0.21)
+    functions, constants = functions_of(FORMULAS[name], 0.21)
     random = np.random.default_rng(8)
     c, k, load, side_by_side = aligned(len(constants)), aligned(12), series(5), aligned(2 * TERMS)
     c[:] = constants[:, None]

@@ -13,13 +13,15 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.kernels.cache import compiled_sources
 from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
-from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, extremes, first_descent
+from stickslip.engine.series import polynomial
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings
 from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.kernels.code import compiled_sources
 from stickslip.friction.piecewise import PiecewiseLaw
+from tests.core.engine.compiled import compiled
 
-COMPILERS = ("kernel", "inlined", "njit")
+COMPILERS = ("kernel", "inlined", "entry", "exact", "exact_entry")
 """Decorators of compiled functions."""
 OTHER_LOOPS = {
     ("taylor_step.py", "expand_series"): "unit is at most 1, and falls by 1e-3 each time until it is below 1e-300",
@@ -29,6 +31,7 @@ OTHER_LOOPS = {
     ("lanes.py", "choose_length"): "each pass clears a bit of a whole number",
     ("certificate.py", "least_share"): "each pass goes to the next disc of a list, in one direction",
     ("merged_creep.py", "plan_group"): "each pass takes the next piece of a round trip, in one direction",
+    ("layer_replay.py", "first_change"): "each pass halves what is between two bounds",
     ("turning_points.py", "piece_next_to_rest"): "each pass goes to the next piece of a history, in one direction",
 }
 """Loops that no syntax tells to end, by file and function, with the reason why they do."""
@@ -140,10 +143,10 @@ def test_the_code_of_formulas_has_no_loops() -> None:
 @pytest.mark.parametrize("place", [0, 1, 5, TERMS - 1])
 def test_a_polynomial_that_is_not_finite_has_no_roots(wrong: float, place: int) -> None:
     """Each of these calls would bisect [0, 1] into 1e15 parts if nothing ended it."""
-    c = np.linspace(1.0, -1.0, TERMS)
+    c, first_descent = np.linspace(1.0, -1.0, TERMS), compiled(polynomial.first_descent)
     c[place] = wrong
     assert first_descent(c.copy(), np.empty(TERMS)) in (NONE, 0.0)  # 0 where the polynomial starts at minus infinity
-    assert not np.isfinite(extremes(c)).any()
+    assert not np.isfinite(compiled(polynomial.extremes)(c)).any()
     assert crossings(c, np.empty(MOST_CROSSINGS), np.empty(TERMS)) == 0
 
 
@@ -153,7 +156,7 @@ def test_the_limit_of_a_bisection_is_not_reached_by_roots_of_high_order(root: fl
     """A root of order n is known to the nth root of rounding; clusters of roots took 400 of the intervals allowed at most."""
     c = np.zeros(TERMS)
     c[: order + 1] = -np.polynomial.polynomial.polyfromroots(np.full(order, root))
-    assert first_descent(c, np.empty(TERMS)) == pytest.approx(root, abs=3.0 * 1e-16 ** (1.0 / order))
+    assert compiled(polynomial.first_descent)(c, np.empty(TERMS)) == pytest.approx(root, abs=3.0 * 1e-16 ** (1.0 / order))
 
 
 @pytest.mark.parametrize(

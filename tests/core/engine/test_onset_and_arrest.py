@@ -11,8 +11,10 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.history.turning_points import TURNS, Spare, descend
+from stickslip.engine.history import turning_points
+from stickslip.engine.history.turning_points import TURNS, Spare
 from stickslip.run import catalogue as module
+from tests.core.engine.compiled import compiled
 from tests.problems import IMPEDANCE, NORMAL, ROUND, SLAB
 
 F = ss.friction
@@ -146,7 +148,7 @@ def test_slips_that_touch_are_events_of_their_own_at_every_rate() -> None:
 
 def test_a_rate_that_turns_is_noticed_and_rounding_is_not() -> None:
     """v = 1 + 3 x - 2 x^2 rises to x = 3/4 and falls to 2 at x = 1."""
-    memory = Spare.table(1)
+    memory, descend = Spare.table(1), compiled(turning_points.descend)
     Spare.of(memory).rate[0, :3] = 1.0, 3.0, -2.0
     assert descend(memory, (0.7, -1), 3.0, 1e-6) == 1.0
     assert descend(memory, (1.0, -1), 2.0, 1e-6) == TURNS

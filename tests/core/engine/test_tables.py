@@ -15,13 +15,15 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import stickslip as ss
+from stickslip.engine.history import turning_points
 from stickslip.engine.history.history import Epoch, History, Positions
 from stickslip.engine.history.phase_index import Phases, standing_behind
-from stickslip.engine.history.slip_events import EventTurns, SlipEvents, group_turns
-from stickslip.engine.history.turning_points import Turn, keeps_its_sign
+from stickslip.engine.history.slip_events import EventTurns, SlipEvents, group_turns_in
+from stickslip.engine.history.turning_points import Turn
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings
 from stickslip.engine.state.layout import TERMS
 from stickslip.problem.run_quantities import default_event_rate
+from tests.core.engine.compiled import compiled
 from tests.core.run.long_runs.problems import RUNS
 from tests.problems import SLAB
 
@@ -259,7 +261,7 @@ def test_each_event_has_its_fastest_point_and_its_pulses() -> None:
     turns, events = Turn.of(table), EventTurns.of(found)
     turns.kind[:] = [1, -1, 1, 0, 0, -1, 1, 0, 0, 0]
     turns.rate[:] = [3.0, 1.0, 1.0, 2.0, 2.0, 1.0, 4.0, 1.9, 5.0, 4.0]
-    assert group_turns(table, 10, found) == 3
+    assert group_turns_in(table, found) == 3
     assert events.begin[:3].tolist() == [0, 2, 6]
     assert events.past[:3].tolist() == [2, 6, 10]
     assert events.top[:3].tolist() == [0, 3, 8]
@@ -267,7 +269,7 @@ def test_each_event_has_its_fastest_point_and_its_pulses() -> None:
 
 
 def test_bounds_never_hide_a_change_of_sign() -> None:
-    rng = np.random.default_rng(3)
+    rng, keeps_its_sign = np.random.default_rng(3), compiled(turning_points.keeps_its_sign)
     places, spare, kept = np.empty(MOST_CROSSINGS), np.empty(TERMS), 0
     for _ in range(3000):
         c = rng.normal(size=TERMS) * 0.5 ** np.arange(TERMS) * rng.uniform(0.1, 3.0)

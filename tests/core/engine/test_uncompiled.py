@@ -1,83 +1,16 @@
-"""How the engine is compiled: the lean compiler, and the engine as plain Python."""
+"""The engine as plain Python, with every memory access checked, does what compiled code does."""
 
 from __future__ import annotations
 
-import gc
 import json
 import os
-import re
 import subprocess
 import sys
-from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit, types
-from numba.core.compiler import run_frontend
-from numba.core.errors import TypingError
 
-from stickslip.foundation.kernels.kernels import kernel
-from stickslip.foundation.kernels.numba_privates import LLVM_LOCK
-from stickslip.foundation.kernels.one_module import LeanCompiler
-from stickslip.foundation.kernels.shortcuts import _variables_in
-from stickslip.engine.history.turning_points import search_history
 from tests.core.engine.uncompiled_runs import RUNS, results
-
-
-def steps(x: float, n: int) -> float:
-    """Every kind of operation that formulas and kernels have: sums, products, powers, comparisons, whole numbers."""
-    total = 1.5 * x - 2.0 / (3.0 + x)
-    for k in range(n):
-        total += x**k if k % 2 == 0 and total > 0.5 else -total * k
-    return total
-
-
-def assembly(**options: Any) -> str:
-    compiled = njit((types.float64, types.int64), **options)(steps)
-    (text,) = compiled.inspect_asm().values()
-    text = re.sub(r"(\.size\s.*), \d+$", r"\1", text, flags=re.MULTILINE)  # texts that hold such a name grow with its digits
-    return re.sub(r"v\d+|B\d+|-w\d+|@[\w.]+|_ZN\w+", "", text)  # names that count what was compiled before
-
-
-def test_machine_code_is_that_of_numba() -> None:
-    lean, numbas = assembly(pipeline_class=LeanCompiler), assembly()
-    assert len(numbas) > 1000
-    assert lean == numbas
-
-
-def test_search_for_operators_and_collection_of_garbage_are_as_before_also_after_an_error() -> None:
-    def wrong(x: float) -> Any:
-        return x + "a"
-
-    with pytest.raises(TypingError):
-        njit((types.float64,), pipeline_class=LeanCompiler)(wrong)
-    assert gc.isenabled()
-    assert types.Function.get_call_type.__module__.startswith("numba.")
-    assert LLVM_LOCK._cblist  # calls of LLVM are told again
-
-
-def test_shortcuts_find_what_numba_finds() -> None:
-    """Variables of instructions, which shortcuts list in their own way."""
-    compiled: Any = search_history
-    lines = [line for block in run_frontend(compiled.__wrapped__).blocks.values() for line in block.body]
-    parts = [part for line in lines for part in vars(line).values()]
-    assert len(parts) > 50
-    assert [_variables_in(lines[0], part) for part in parts] == [lines[0]._rec_list_vars(part) for part in parts]
-
-
-def test_a_kernel_is_compiled_once_for_all_whole_numbers_that_are_written_in_calls() -> None:
-    @kernel
-    def times(x: float, n: int) -> float:
-        return x * n
-
-    @kernel
-    def calls(x: float) -> float:
-        return times(x, 2) + times(x, 3)  # type: ignore[no-any-return]
-
-    compiled: Any = times
-    assert calls(1.5) == 7.5
-    calls.part.compile((types.float64,))  # type: ignore[attr-defined] # which a call leaves out where the cache has its machine code
-    assert list(compiled.part.overloads) == [(types.float64, types.int64)]
 
 
 @pytest.fixture(scope="module")

@@ -162,7 +162,7 @@ def test_the_key_of_a_checkpoint_is_of_what_is_executed_in_every_folder_that_dec
 
 
 def test_a_checkpoint_has_the_key_of_all_these_folders_and_of_those_that_an_extension_adds() -> None:
-    from stickslip.foundation.kernels.cache import SOURCES
+    from stickslip.foundation.kernels.code import SOURCES
 
     assert engine_key() == key_of_folders(DECIDE, SOURCES)
     assert engine_key("foundation") == key_of_folders((*DECIDE, "foundation"), SOURCES) != engine_key()

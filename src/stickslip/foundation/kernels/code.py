@@ -204,6 +204,8 @@ def address_of_entry(entry: Any) -> int:
 
 def made_now(entry: Any) -> bytes:
     """Return the machine code of an entry, after a line that says why it has to be made."""
+    if os.environ.get("NUMBA_DISABLE_JIT", "") not in ("", "0"):
+        raise InputError(f"{why_not_shipped()}, and NUMBA_DISABLE_JIT is set, so that nothing compiles it: unset it")
     try:
         compiler = import_module("stickslip.foundation.kernels.compiler.objects")  # loads numba, which nothing else does
     except ImportError as error:

@@ -17,7 +17,7 @@ NUMBERS = {float: c_double, int: c_int64, bool: c_int64}
 
 
 @dataclass(frozen=True)
-class Numbers:
+class ArrayOf:
     """An array: the type of its numbers, and its number of dimensions."""
 
     of: np.dtype[Any]
@@ -32,7 +32,7 @@ class Fields:
     kinds: tuple[Kind, ...]
 
 
-Kind = type | Numbers | Fields
+Kind = type | ArrayOf | Fields
 """A kind of argument: float, int or bool, an array, or a named tuple of such."""
 
 
@@ -60,12 +60,12 @@ def _kind_of(hint: Any) -> Kind:
         return hint
     if get_origin(hint) is Annotated:
         array, dimensions = get_args(hint)
-        return Numbers(np.dtype(get_args(get_args(array)[1])[0]), dimensions)
+        return ArrayOf(np.dtype(get_args(get_args(array)[1])[0]), dimensions)
     return Fields(hint, tuple(map(_kind_of, get_type_hints(hint, include_extras=True).values())))
 
 
 def _in_c(kind: Kind) -> list[Any]:
-    if isinstance(kind, Numbers):
+    if isinstance(kind, ArrayOf):
         return [c_int64] * (1 + kind.dimensions)
     if isinstance(kind, Fields):
         return [one for each in kind.kinds for one in _in_c(each)]
@@ -78,17 +78,19 @@ class Ready:
     __slots__ = ("array", "kind", "numbers")
 
     def __init__(self, array: NDArray[Any]) -> None:
-        self.array, self.kind = array, Numbers(array.dtype, array.ndim)
+        self.array, self.kind = array, ArrayOf(array.dtype, array.ndim)
         self.numbers = flattened((self.kind,), (array,))
 
 
 def flattened(kinds: tuple[Kind, ...], given: tuple[Any, ...]) -> list[Any]:
     """Return arguments as C takes them. Raises TypeError for an array that machine code would misread."""
     flat: list[Any] = []
+    one: Any
     for kind, one in zip(kinds, given, strict=True):
         if type(one) is Ready and one.kind == kind:
             flat += one.numbers
-        elif isinstance(kind, Numbers):
+        elif isinstance(kind, ArrayOf):
+            one = one.array if type(one) is Ready else one  # of another kind, which is refused
             if one.dtype != kind.of or one.ndim != kind.dimensions or not one.flags.c_contiguous:
                 raise TypeError(f"machine code takes {kind}, not {one.dtype} of shape {one.shape} and strides {one.strides}")
             flat += (addressof(NOTHING.from_buffer(one)) if one.flags.writeable else one.ctypes.data, *one.shape)

@@ -15,7 +15,7 @@ from stickslip.foundation.kernels.compiler.addresses import array_at
 from stickslip.foundation.kernels.compiler.parts import code_of
 from stickslip.foundation.kernels.kernels import Entry
 from stickslip.foundation.kernels.processor import Processor
-from stickslip.foundation.kernels.signature import Fields, Kind, Numbers, Signature, signature_of
+from stickslip.foundation.kernels.signature import ArrayOf, Fields, Kind, Signature, signature_of
 
 SCALARS: dict[Any, Any] = {float: types.float64, int: types.int64, bool: types.int64, None: types.void}
 """What numba makes of numbers as C takes them."""
@@ -62,7 +62,7 @@ def _written(kind: Kind, names: dict[str, Any], places: Iterator[str], arguments
         names[made] = kind.made
         return f"{made}({inside})"
     first = next(places)
-    if not isinstance(kind, Numbers):
+    if not isinstance(kind, ArrayOf):
         arguments.append((first, SCALARS[kind]))
         return f"{first} != 0" if kind is bool else first
     arguments.append((first, types.CPointer(OF_ARRAYS[kind.of])))

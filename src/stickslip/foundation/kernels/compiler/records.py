@@ -13,7 +13,7 @@ from numba.extending import infer_getattr, lower_builtin, lower_getattr_generic,
 from stickslip.foundation.kernels.compiler.addresses import FLOATS, INTEGERS, WHOLE, rule, typed_as
 from stickslip.foundation.kernels.compiler.lanes import LANES
 from stickslip.foundation.kernels.memory import pointers, records
-from stickslip.foundation.kernels.memory.pointers import SeenAs, View
+from stickslip.foundation.kernels.memory.pointers import SeenAs, SeenIn
 from stickslip.foundation.kernels.memory.records import MemoryRecord, Slot
 from stickslip.foundation.kernels.memory.simd import WIDTH
 
@@ -24,9 +24,9 @@ class LaneRow(types.Type):  # type: ignore[misc] # numba is untyped
 
 LANE_ROW, LANE_ROWS = LaneRow("LaneRow"), types.CPointer(LANES)
 OF_VIEWS = {
-    View.PLAIN: (types.float64, FLOATS, 1),
-    View.ALL_LANES: (LANES, LANE_ROWS, WIDTH),
-    View.ONE_LANE: (types.float64, LANE_ROW, WIDTH),
+    SeenIn.PLAIN: (types.float64, FLOATS, 1),
+    SeenIn.ALL_LANES: (LANES, LANE_ROWS, WIDTH),
+    SeenIn.ONE_LANE: (types.float64, LANE_ROW, WIDTH),
 }
 """The types of floats and of rows of floats in each view, and the distance of a record's places in memory."""
 OF_ADDRESSES = {records.FLOATS: FLOATS, records.INTEGERS: INTEGERS, pointers.LANES: LANE_ROWS}
@@ -35,7 +35,7 @@ OF_ADDRESSES = {records.FLOATS: FLOATS, records.INTEGERS: INTEGERS, pointers.LAN
 class RecordPointer(types.Type):  # type: ignore[misc]
     """The type of a record in compiled code: a pointer to its first place, and how the record is seen."""
 
-    def __init__(self, record: type[MemoryRecord], view: View = View.PLAIN) -> None:
+    def __init__(self, record: type[MemoryRecord], view: SeenIn = SeenIn.PLAIN) -> None:
         self.record, self.view = record, view
         self.number, self.row, self.stride = OF_VIEWS[view]
         super().__init__(name=f"{view.name} {record.__module__}.{record.__name__}")
@@ -111,7 +111,7 @@ typed_as(operator.setitem, _assigned_typed, 3)
 @lower_builtin(operator.getitem, RecordPointer, types.Integer)
 def _nth(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
     """Write the calculation of the address of a record in a row of records, or of a lane of a record."""
-    apart = called.args[0].record.total if called.args[0].view is View.PLAIN else 1
+    apart = called.args[0].record.total if called.args[0].view is SeenIn.PLAIN else 1
     return builder.gep(arguments[0], [builder.mul(arguments[1], ir.Constant(WHOLE, apart))])
 
 

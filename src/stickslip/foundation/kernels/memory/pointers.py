@@ -16,7 +16,7 @@ from stickslip.foundation.kernels.memory.records import FLOATS, INTEGERS, Addres
 from stickslip.foundation.kernels.uncompiled import Pointer
 
 
-class View(Enum):
+class SeenIn(Enum):
     """A way to see a record."""
 
     PLAIN = auto()
@@ -34,7 +34,7 @@ class SeenAs:
     known: ClassVar[list[SeenAs]] = []
     """All such functions, for which `kernels.compiler` has rules."""
 
-    def __init__(self, kind: AddressOf | type[MemoryRecord], view: View = View.PLAIN) -> None:
+    def __init__(self, kind: AddressOf | type[MemoryRecord], view: SeenIn = SeenIn.PLAIN) -> None:
         self.kind, self.view = kind, view
         self.known.append(self)
 
@@ -60,9 +60,9 @@ def record_at(record: type[MemoryRecord]) -> Any:
 
 def all_lanes(record: type[MemoryRecord]) -> Any:
     """Return a function for compiled code that sees the memory at an address as a record in all lanes."""
-    return SeenAs(record, View.ALL_LANES)
+    return SeenAs(record, SeenIn.ALL_LANES)
 
 
 def one_lane(record: type[MemoryRecord]) -> Any:
     """Return a function for compiled code that sees the memory at an address as a record in lane 0."""
-    return SeenAs(record, View.ONE_LANE)
+    return SeenAs(record, SeenIn.ONE_LANE)
