@@ -107,7 +107,7 @@ def _version(one: Requirement) -> str | None:
 
 def engine() -> Iterator[Finding]:
     """Yield where the engine's machine code comes from, and the cache of what is compiled here."""
-    from stickslip.engine import UNCOMPILED
+    from stickslip.foundation.kernels.uncompiled import UNCOMPILED
     from stickslip.foundation.sealed_files import cache_root
 
     if UNCOMPILED:

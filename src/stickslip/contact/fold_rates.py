@@ -7,8 +7,7 @@ from typing import NamedTuple
 from stickslip.contact.slopes import DAMPING, NORMAL
 from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.friction.formula.at_points import AtPoints, change_at
-from stickslip.friction.formula.operations.changes import SLOPE
+from stickslip.friction.formula import SLOPE, AtPoints, change_at
 
 MOST_CUTS = 100
 """Largest number of times that an interval is cut into parts; it is at rounding long before."""

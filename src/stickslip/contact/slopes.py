@@ -16,11 +16,17 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1
 from stickslip.foundation.kernels.kernels import exact, exact_entry
-from stickslip.friction.formula import Enclosure, Expression
-from stickslip.friction.formula.at_points import AtPoints
-from stickslip.friction.formula.differences import points_of, tape_of_changes
-from stickslip.friction.formula.on_cells import OnCells, enclose
-from stickslip.friction.formula.operations.enclosures import add, multiply
+from stickslip.friction.formula import (
+    AtPoints,
+    Enclosure,
+    Expression,
+    OnCells,
+    add,
+    enclose,
+    multiply,
+    points_of,
+    tape_of_changes,
+)
 from stickslip.problem import Resistance
 
 Integers = NDArray[np.int64]

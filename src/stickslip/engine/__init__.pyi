@@ -70,15 +70,6 @@ from stickslip.engine.state.layout import (
     LadderCell,  # Hold one cell of a body of layers (`waves.ladder`); loads are minus the reference strength.
     Store,  # Hold a history.
 )
-from stickslip.foundation.kernels.code import (
-    announce_by,  # Say that something is compiled by the given function instead of on standard error.
-)
-from stickslip.foundation.kernels.memory.simd import (
-    WIDTH,  # Number of lanes.
-)
-from stickslip.foundation.kernels.uncompiled import (
-    UNCOMPILED,  # True if kernels run as plain Python.
-)
 
 __all__ = [
     "ARRAYS",
@@ -90,8 +81,6 @@ __all__ = [
     "SPARE",
     "START",
     "TERMS",
-    "UNCOMPILED",
-    "WIDTH",
     "Checkpoint",
     "Epoch",
     "Floats",
@@ -106,7 +95,6 @@ __all__ = [
     "SlipEvents",
     "Store",
     "Turn",
-    "announce_by",
     "check_checkpoint",
     "check_history",
     "creep_note",

@@ -44,7 +44,7 @@ def progress_line(what: str) -> Iterator[Callable[..., None]]:
     if notebook is None and not sys.stderr.isatty():
         yield lambda *news: None
         return
-    from stickslip.engine import announce_by
+    from stickslip.foundation.kernels.code import announce_by
     from stickslip.foundation.sealed_files import tell
 
     with _in_notebook(notebook) if notebook else _on_terminal(what) as show:

@@ -2,6 +2,7 @@
 
 from stickslip.friction.formula.at_points import (
     AtPoints,  # What compiled code needs to follow the formulas of members from point to point.
+    change_at,  # Work out the change of the formula of a member from rest to a point; return the row of `of.room` with the result.
 )
 from stickslip.friction.formula.bounds import (
     Enclosure,  # Bounds of a formula's Taylor coefficients by the slip rate, by interval arithmetic that includes rounding.
@@ -35,14 +36,21 @@ from stickslip.friction.formula.expression import (
 from stickslip.friction.formula.functions import (
     evaluate,  # Return the formula at slip u (m), slip rate v (m/s) and states, with the parameters' values by name.
 )
+from stickslip.friction.formula.on_cells import (
+    OnCells,  # What compiled code needs to bound the formulas of members.
+    enclose,  # Bound the formula of a member on a cell of slip rates (m/s); return the row of `of.room` with its coefficients.
+)
 from stickslip.friction.formula.operations import (
     LARGEST_EXPONENT,  # Largest exponent, dimensionless, of an exp whose overflow is harmless; larger ones are replaced by it.
     OPERATIONS,  # All operations by their names in the nodes of formulas.
     operation_of,  # Return the operation of a node that has arguments.
 )
+from stickslip.friction.formula.operations.changes import (
+    SLOPE,
+)
 from stickslip.friction.formula.operations.enclosures import (
-    add,  # Return a + b.
-    multiply,  # Return a b.
+    add,  # Return [a, b] + [c, d].
+    multiply,  # Return [a, b] times [c, d].
 )
 from stickslip.friction.formula.operations.operation import (
     TINIEST,  # Smallest bound of a magnitude from below.
@@ -63,6 +71,7 @@ __all__ = [
     "RATE",
     "RESERVED",
     "SLIP",
+    "SLOPE",
     "STATES",
     "TINIEST",
     "VARIABLES",
@@ -70,13 +79,16 @@ __all__ = [
     "Disc",
     "Enclosure",
     "Expression",
+    "OnCells",
     "Parameter",
     "Scaled",
     "add",
     "bends_one_way",
+    "change_at",
     "changes",
     "depends_on",
     "difference",
+    "enclose",
     "evaluate",
     "harmless_overflows",
     "largest",

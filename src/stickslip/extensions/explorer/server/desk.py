@@ -216,8 +216,8 @@ class Warming:
 
     def _warm(self) -> None:
         try:
-            from stickslip.engine import announce_by
             from stickslip.extensions.explorer.model.strip import has_strips, strip_of
+            from stickslip.foundation.kernels.code import announce_by
             from stickslip.foundation.sealed_files import tell
             from stickslip.problem.scenarios import load_scenario
             from stickslip.run.simulate import simulate

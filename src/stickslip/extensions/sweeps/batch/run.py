@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from stickslip.engine import WIDTH, Floats, Integers, lend_part
+from stickslip.engine import Floats, Integers, lend_part
 from stickslip.engine.lanes import (
     COLUMNS,
     LARGEST_CAPACITY,
@@ -33,6 +33,7 @@ from stickslip.engine.lanes import (
 )
 from stickslip.extensions.sweeps.batch.long_member import run_alone
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.kernels.memory.simd import WIDTH
 from stickslip.problem import BAD_PARAMETERS, INTERRUPTED, Stop
 from stickslip.problem.scenarios import Scenario
 
