@@ -3,8 +3,8 @@
 Times are processor times: downloads come on top.
 
 python -m hatchling build -d dist
-python -m benchmarks.extras dist/stickslip-0.1.0-py3-none-any.whl                # all
-python -m benchmarks.extras dist/stickslip-0.1.0-py3-none-any.whl video cluster  # some
+python -m benchmarks.extras dist/stickslip-0.1.0-py3-none-linux_x86_64.whl                # all
+python -m benchmarks.extras dist/stickslip-0.1.0-py3-none-linux_x86_64.whl video cluster  # some
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,8 @@ from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine.input.branch_table import table_of_branches
 from stickslip.engine.state.layout import BranchRow
 from stickslip.friction import LAWS, FromExpression
+from stickslip.friction.formula.expression import nodes_of
+from stickslip.problem import Resistance
 from stickslip.problem.scenarios.scenario import read_scenario
 from stickslip.problem.scenarios.templates import template
 from tests.core.friction.drawn import laws
@@ -260,3 +263,16 @@ def test_a_critical_value_is_enclosed(law, name):
     ((low, high),) = found.enclosures
     assert low < closed < high
     assert high - low <= 1e-10 * closed
+
+
+def test_a_law_that_comes_from_another_process_has_the_same_proof():
+    """Its formula is equal to that of the law that was sent, node by node, but none of its nodes is the same object."""
+    law = ss.friction.PowerStribeck(0.9714, 0.0, rate=1e-3, exponent=1)
+    assert law.trees()  # they are sent with it
+    sent = pickle.loads(pickle.dumps(law))
+    nodes_of.cache_clear()  # as in the other process
+    certificate.cache_clear()
+    found = certificate(Resistance(sent, Z, S, 0.0))
+    certificate.cache_clear()
+    assert found == certificate(Resistance(replace(law), Z, S, 0.0))
+    assert found.regime == "irregular"

@@ -5,7 +5,7 @@ import pytest
 
 from stickslip.friction import LAWS
 from stickslip.friction.formula import functions
-from stickslip.friction.formula.differences import difference
+from stickslip.friction.formula.differences import difference, value_and_slopes
 from stickslip.friction.formula.expression import RATE, SLIP, Parameter, as_expression
 
 
@@ -42,3 +42,10 @@ def test_arcsinh_is_exact_where_squares_overflow():
 def test_an_unknown_parameter_is_an_error():
     with pytest.raises(KeyError, match="slope"):
         difference(as_expression(1.0) + Parameter("slope") * RATE, {}, 0.0, 0.0, 1.0)
+
+
+def test_a_product_and_a_sum_are_rounded_one_by_one():
+    """A processor that fuses them gives another last digit in a third of all places; bounds and folds count on numpy's."""
+    slip, rate = np.random.default_rng(5).uniform(0.1, 3.0, (2, 1000))
+    _, slopes = value_and_slopes((SLIP * RATE) * (RATE * RATE), {}, slip, rate)
+    assert (slopes[1] == slip * (rate * rate) + (slip * rate) * (rate + rate)).all()

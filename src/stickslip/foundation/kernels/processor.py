@@ -15,6 +15,8 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
+from stickslip.foundation.errors import InputError
+
 llvm.initialize_native_target()
 llvm.initialize_native_asmprinter()
 
@@ -58,14 +60,14 @@ ALIASES = {"AMD64": "x86_64", "arm64": "aarch64"}
 
 @cache
 def this_processor() -> Processor:
-    """Return the level of this processor; STICKSLIP_PROCESSOR names another one as LLVM does, or is "native" for its own code."""
+    """Return the level of this processor; STICKSLIP_PROCESSOR=native asks for code of its own."""
     wanted, has = os.environ.get("STICKSLIP_PROCESSOR", ""), llvm.get_host_cpu_features()
     architecture = ALIASES.get(platform.machine(), platform.machine())
     level, needs = LEVELS.get(architecture, ("", {""}))
+    if wanted not in ("", "native"):
+        raise InputError(f"STICKSLIP_PROCESSOR must be empty or native, got {wanted!r}")
     if not wanted and all(has.get(feature, False) for feature in needs):
-        wanted = level
-    if wanted and wanted != "native":
-        return _named(f"{architecture}-{wanted}", wanted, "")
+        return _named(level if "x86" in level else architecture, level, "")
     features = has.flatten()
     return _named(f"{architecture}-own-{hashlib.sha256(features.encode()).hexdigest()[:8]}", llvm.get_host_cpu_name(), features)
 

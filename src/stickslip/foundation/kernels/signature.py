@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from ctypes import c_double, c_int64
+from ctypes import addressof, c_char, c_double, c_int64
 from dataclasses import dataclass
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
+NOTHING = c_char * 0
+"""What is read of an array to learn its address, in a quarter of the time that numpy's own `ctypes.data` takes."""
 NUMBERS = {float: c_double, int: c_int64, bool: c_int64}
 """What C makes of Python's numbers."""
 
@@ -83,14 +85,15 @@ class Ready:
 def flattened(kinds: tuple[Kind, ...], given: tuple[Any, ...]) -> list[Any]:
     """Return arguments as C takes them. Raises TypeError for an array that machine code would misread."""
     flat: list[Any] = []
+    one: Any
     for kind, one in zip(kinds, given, strict=True):
         if type(one) is Ready and one.kind == kind:
             flat += one.numbers
         elif isinstance(kind, ArrayOf):
-            one = one.array if type(one) is Ready else one
+            one = one.array if type(one) is Ready else one  # of another kind, which is refused
             if one.dtype != kind.of or one.ndim != kind.dimensions or not one.flags.c_contiguous:
                 raise TypeError(f"machine code takes {kind}, not {one.dtype} of shape {one.shape} and strides {one.strides}")
-            flat += [one.ctypes.data, *one.shape]
+            flat += (addressof(NOTHING.from_buffer(one)) if one.flags.writeable else one.ctypes.data, *one.shape)
         elif isinstance(kind, Fields):
             flat += flattened(kind.kinds, one)
         else:

@@ -1,4 +1,4 @@
-"""Bound a formula over intervals of slip and slip rate, and over discs of complex numbers, by numpy alone.
+"""Bound a formula over intervals of slip and slip rate, and over discs of complex numbers.
 
 Bounds need not be sharp. Those of `Enclosure` and `on_discs` include rounding; those of `bounds` are guaranteed but for it.
 """
