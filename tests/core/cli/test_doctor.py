@@ -60,12 +60,12 @@ def test_a_sound_installation_is_well(command: Command) -> None:
 
 NOTED = """
 import sys
-from stickslip.foundation.kernels import kernels
-names, load = set(), kernels.address_of_entry
+from stickslip.foundation.kernels import code
+names, load = set(), code.address_of_entry
 def noted(entry):
     names.add(entry.name)
     return load(entry)
-kernels.address_of_entry = noted
+code.address_of_entry = noted
 from stickslip.cli.main import main
 try:
     main(sys.argv[1:])
@@ -194,6 +194,7 @@ def test_machine_code_that_did_not_come_is_a_fault_only_without_the_compiler(
     assert f"for {PROCESSOR.name}, " in found
     assert "files that came with the package" in found
     versions(monkeypatch, numba=numba)
+    monkeypatch.setattr(metadata, "requires", lambda name: ["numba>=0.62; extra == 'compiler'"])
     monkeypatch.setattr("stickslip.foundation.code_key.SHIPPED", tmp_path / "nothing")
     monkeypatch.setattr("stickslip.foundation.kernels.code.SHIPPED", tmp_path / "nothing")
     shown = command("doctor")

@@ -10,7 +10,6 @@ from ctypes import CFUNCTYPE
 from functools import cached_property
 from typing import Any, ClassVar, TypeVar
 
-from stickslip.foundation.kernels.code import address_of_entry
 from stickslip.foundation.kernels.lock import LOCK
 from stickslip.foundation.kernels.signature import Ready, flattened, signature_of
 from stickslip.foundation.kernels.uncompiled import UNCOMPILED, as_python
@@ -53,6 +52,8 @@ class Entry(Kernel):
     @cached_property
     def address(self) -> int:
         """The address of the machine code."""
+        from stickslip.foundation.kernels.code import address_of_entry  # loads llvmlite: 0.1 s, which a page of help need not wait
+
         with LOCK:
             return address_of_entry(self)
 

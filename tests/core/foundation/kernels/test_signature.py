@@ -95,6 +95,14 @@ def test_arguments_become_numbers_and_addresses_in_their_order() -> None:
     assert len(signature_of(declared).in_c[1]) == len(flat)
 
 
+def test_arrays_that_are_empty_or_cannot_be_written_have_addresses_too() -> None:
+    kinds, (_, *rest) = signature_of(declared).kinds, SOUND
+    fixed = np.zeros(3)
+    fixed.flags.writeable = False
+    for one in (np.zeros(0), fixed):
+        assert flattened(kinds, (one, *rest))[:2] == [one.ctypes.data, len(one)]
+
+
 @pytest.mark.parametrize(
     ("place", "wrong", "said"),
     [
