@@ -27,7 +27,7 @@ class MachineCode(BuildHookInterface[Any]):
         """Make what is missing, and say that the wheel is for this system."""
         if self.target_name != "wheel" or os.environ.get("STICKSLIP_MACHINE_CODE") == "later":
             return
-        paths = os.pathsep.join([str(SOURCE), *filter(None, sys.path)])
+        paths = os.pathsep.join(filter(None, [str(SOURCE), os.environ.get("PYTHONPATH")]))
         command = [sys.executable, "-m", "stickslip.engine.build"]
         done = subprocess.run(command, env=os.environ | {"PYTHONPATH": paths}, check=False)
         if done.returncode != 0:
