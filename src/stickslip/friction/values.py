@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
-from stickslip.foundation.arrays import shared
+from stickslip.foundation.arrays import anywhere, at_least, everywhere, shared
 from stickslip.foundation.quantities import NumberSeries, Quantity, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract, one_argument
 from stickslip.friction.formula.bounds import bounds
@@ -50,6 +50,10 @@ class LawValues(LawContract):
 
     def piece_values(self, i: int) -> tuple[float, ...]:
         """Return the values of `parameters` in piece i: the values of the law, unless its pieces have different values."""
+        return self._own_values
+
+    @cached_property
+    def _own_values(self) -> tuple[float, ...]:
         values = (getattr(self, name) for name in self.parameters())
         return tuple(value if isinstance(value, float) or np.ndim(value) else float(value) for value in values)
 
@@ -91,8 +95,11 @@ class LawValues(LawContract):
 
         At a knot it is the piece above the knot.
         """
+        has_knots = isinstance(self.knots, np.ndarray) or bool(self.knots)
+        if not has_knots and isinstance(u, float) and isinstance(v, float):
+            return np.zeros((), np.intp)
         slip, rate = np.asarray(u, float), np.asarray(v, float)
-        if not (isinstance(self.knots, np.ndarray) or self.knots):
+        if not has_knots:
             return np.zeros(slip.shape if slip.shape == rate.shape else np.broadcast_shapes(slip.shape, rate.shape), np.intp)
         slip, rate = np.broadcast_arrays(slip, rate)
         return np.asarray(np.searchsorted(np.asarray(self.knots), slip if self.knot_variable == "slip" else rate, side="right"))
@@ -112,6 +119,8 @@ class LawValues(LawContract):
         `u` is the slip (m) as the law counts it, `v` the magnitude of the slip rate (m/s), where 0 means the limit v = 0+, and `w`
         the state in the form that the formulas use (`inner_state`); for several states it is an array with one more axis in front.
         """
+        if len(self.pieces) == 1 and isinstance(u, float) and isinstance(v, float) and isinstance(w, float):
+            return self._at_one_point(np.float64(u), np.float64(v), [np.float64(w)] * len(self.states))
         slip, rate, *states = self._broadcast(u, v, w)
         if len(self.pieces) == 1 and not slip.ndim:
             return self._at_one_point(slip[()], rate[()], [state[()] for state in states])
@@ -181,13 +190,13 @@ class LawValues(LawContract):
 
     @override
     def range(self) -> tuple[float, float]:
-        low, high = (np.maximum(end, 0.0) for end in self._bounds)
-        return (low, high) if low.ndim or high.ndim else (float(low), float(high))
+        low, high = (at_least(0.0, end) for end in self._bounds)
+        return (low, high) if isinstance(low, np.ndarray) or isinstance(high, np.ndarray) else (float(low), float(high))
 
     @property
     @override
     def can_be_negative(self) -> bool:
-        return not (self.states_range or self.reverses) and not bool(np.all(self._bounds[0] >= 0.0))
+        return not (self.states_range or self.reverses) and not everywhere(self._bounds[0] >= 0.0)
 
     @cached_property
     def _bounds(self) -> Interval:
@@ -198,7 +207,7 @@ class LawValues(LawContract):
         for i, (tree, ends) in enumerate(zip(self.trees(), pairwise((first, *self.knots, last)), strict=True)):
             numbers, place = self.numbers(i), edges | {self.knot_variable: ends}
             found.append(bounds(tree, numbers, place["slip"], place["rate"]))
-            if np.any(self.static_excess):
+            if anywhere(self.static_excess):
                 rest = bounds(tree, numbers, place["slip"], (0.0, 0.0))
                 found.append((found[-1][0], rest[1] + self.static_excess))
         lows, highs = zip(*found, strict=True)
@@ -212,11 +221,11 @@ class LawValues(LawContract):
         0+ and 1 m/s, at slip 0.
         """
         low, high = self.range()
-        if np.all(np.isfinite(high)):
+        if everywhere(np.isfinite(high)):
             return high - low
         return float(np.ptp(self.coefficient(0.0, np.linspace(0.0, 1.0, 101))))
 
-    @property
+    @cached_property
     def rate_scales(self) -> tuple[float, ...]:
         """The characteristic slip rates (m/s): the parameters in m/s, and the inverses of those in s/m."""
         scales: list[float] = []

@@ -81,8 +81,7 @@ class Resistance:
 
         The excess keeps its digits down to s = 0, because nearly equal values of friction are never subtracted.
         """
-        rate = np.asarray(rate, float)
-        piece = self.law.piece_at(self.law_slip, rate)
+        piece, rate = self.law.piece_at(self.law_slip, rate), np.asarray(rate, float)
         excess, slope = self._by_formula(piece, rate)
         if self.rate_knots and self.plateaus:
             level = self._levels[piece]
@@ -188,7 +187,7 @@ class Resistance:
         """
         own = self.normal * self.law.variation / self.damping if self.damping else math.inf
         found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
-        return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
+        return tuple(scale for scale in found if 0.0 < scale < math.inf) or (1.0,)
 
     @cached_property
     def largest_friction(self) -> float:

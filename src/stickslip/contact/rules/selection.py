@@ -104,7 +104,7 @@ def _table(rule: str, stable: Branches) -> SelectionTable:
 
 def perfect_delay(g: Resistance, stable: Branches, /) -> SelectionTable:
     """Keep the branch as long as it exists, then take the nearest one in the direction of the change of load."""
-    return _table("perfect-delay", stable)
+    return SelectionTable(0.0, tuple(one.excess_from for one in stable), tuple(one.excess_to for one in stable))
 
 
 def minimal(g: Resistance, stable: Branches, /) -> SelectionTable:
@@ -141,10 +141,10 @@ def rule_of(problem: Problem) -> SelectionRule:
     """Return the selection rule of a problem. Raises InputError for a name that is not registered in this process."""
     if not isinstance(problem.selection, str):
         return problem.selection
-    known = RULES | registered
-    if problem.selection not in known:
+    rule = registered.get(problem.selection, RULES.get(problem.selection))
+    if rule is None:
         raise InputError(f"selection rule '{problem.selection}' is unknown here: stickslip.selection.register it first")
-    return known[problem.selection]
+    return rule
 
 
 def selection_table(

@@ -31,6 +31,7 @@ from stickslip.engine.input.limits import set_length, set_lumping
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
+from stickslip.foundation.arrays import at_least
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.problem import EVENT_SHARE, LoadingHistory, Problem, SelectionRule, automatic_length
@@ -50,7 +51,7 @@ def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tupl
 def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
     """Set the numbers that depend on the tolerance, in `Setup.params` or in one with a column for each member."""
     set_length(params, shortest)
-    params.tolerance, params.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
+    params.tolerance, params.relative_jump = rtol * SAFETY, at_least(1e-10, 10.0 * rtol)
     params.first_disc = first_disc(rtol * SAFETY)
 
 
@@ -131,7 +132,7 @@ def parameters_of(problem: Problem) -> Params:
     params.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     params.can_be_negative = 1.0 if law.can_be_negative else 0.0
     lowest, _ = law.range()
-    params.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
+    params.largest_drop = at_least(0.0, problem.strength - problem.normal * lowest)
     params.damping, params.impedance, params.reflection = body.damping, body.impedance, body.reflection
     params.inertia, params.shortest = body.inertia, automatic_length(body)
     if body.has_waves:
@@ -157,13 +158,17 @@ def parameters_of(problem: Problem) -> Params:
     if problem.normal_varies:
         params.pressing_tone, params.pressing_frequency, params.pressing_phase = pressing_of(problem).tone
         params.coupling = problem.friction.normal_coupling
-    numbers = [getattr(params, name) for name in Params.places]
-    return Params(together([one for number in numbers for one in (number if isinstance(number, list) else [number])]))
+    found = vars(params)
+    numbers: list[Any] = []
+    for name in Params.places:
+        number = found[name]
+        numbers += number if type(number) is list else (number,)
+    return Params(together(numbers))
 
 
 def together(numbers: Sequence[Any]) -> at.Floats:
     """Return one table of numbers; it has a column for each member if any of them is an array."""
-    if any(isinstance(number, np.ndarray) and number.ndim for number in numbers):
+    if np.ndarray in set(map(type, numbers)) and any(map(np.ndim, numbers)):
         return np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*numbers)])
     return np.array(numbers, float)
 
@@ -312,7 +317,7 @@ def _pieces(phase: list[Any], load: list[Any], slope: list[Any], jump: list[Any]
     """Return a table of `FirstLoad`, or one for each member of a batch, from the edges of the pieces and from their numbers."""
     numbers = together([*phase, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
     fields = numbers.reshape(FirstLoad.total, len(phase), *numbers.shape[1:])
-    return np.ascontiguousarray(np.moveaxis(fields, (1, 0), (-2, -1)))
+    return np.ascontiguousarray(fields.transpose(*range(2, fields.ndim), 1, 0))
 
 
 def law_tables(problem: Problem) -> tuple[at.Integers, at.Floats]:
@@ -346,8 +351,8 @@ def references_of(problem: Problem, home: int, static: Any, friction: Callable[[
 
 def set_references(table: at.Integers, numbers: at.Floats) -> None:
     """Write the numbers of `references_of` into a table of `LawPiece`, or into one for each member of a batch."""
-    pieces = LawPiece.of(table)
-    pieces.slip_shift, pieces.offset, pieces.knot = np.moveaxis(numbers.reshape(3, -1, *numbers.shape[1:]), 1, -1)
+    pieces, columns = LawPiece.of(table), numbers.reshape(3, -1, *numbers.shape[1:])
+    pieces.slip_shift, pieces.offset, pieces.knot = columns.transpose(0, *range(2, columns.ndim), 1)
 
 
 def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.Integers:

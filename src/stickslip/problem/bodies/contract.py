@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
 
+from stickslip.foundation.arrays import anywhere, everywhere
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import KINDS, Name, si_unit
@@ -261,14 +262,14 @@ class WithWaves(WithNormalLoad):
         It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load. A driver with a mass or an integral gain
         sends back a wave that depends on how long the one that it meets lasts: r holds where neither is felt.
         """
-        if np.all(np.isinf(self.driver_impedance) | np.isinf(self.driver_inertia)):
+        if everywhere(np.isinf(self.driver_impedance) | np.isinf(self.driver_inertia)):
             return RIGID
         return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
 
     @cached_property
     def is_driven_rigidly(self: BodyWithWaves) -> bool:
         """True if the driver reflects the whole wave with its sign reversed, r = -1."""
-        return bool(np.all(self.reflection == RIGID))
+        return everywhere(self.reflection == RIGID)
 
     @property
     def front_reflection(self: BodyWithWaves) -> float:
@@ -278,8 +279,8 @@ class WithWaves(WithNormalLoad):
     @cached_property
     def has_machine(self: BodyWithWaves) -> bool:
         """True if the driver has a motion of its own: a mass or an integral gain."""
-        own = np.greater(self.driver_inertia, 0.0) | np.greater(self.driver_integral_gain, 0.0)
-        return bool(np.any(own)) and not self.is_driven_rigidly
+        own = anywhere(self.driver_inertia > 0.0) or anywhere(self.driver_integral_gain > 0.0)
+        return own and not self.is_driven_rigidly
 
     @property
     def stiffness(self: BodyWithWaves) -> float:
@@ -290,16 +291,16 @@ class WithWaves(WithNormalLoad):
 def check_driver(body: BodyOnCharacteristics) -> None:
     """Raise InputError if the mass and the gains of a driver do not go together."""
     owner = type(body).__name__
-    rigid, gain = np.isinf(body.driver_impedance), np.greater(body.driver_integral_gain, 0.0)
+    rigid, gain = np.isinf(body.driver_impedance), body.driver_integral_gain > 0.0
     unmoved = np.isinf(body.driver_inertia)
-    heavy = np.greater(body.driver_inertia, 0.0) & ~unmoved
+    heavy = (body.driver_inertia > 0.0) & ~unmoved
     why = "a rigid driver holds its rate whatever its mass and gains"
     for name, given in (("driver_inertia", heavy), ("driver_integral_gain", gain)):
-        if np.any(given & rigid):
+        if anywhere(given & rigid):
             raise InputError(f"{owner}: {name} needs a finite driver_impedance, the proportional gain: {why}")
-    if np.any(gain & unmoved):
+    if anywhere(gain & unmoved):
         raise InputError(f"{owner}: driver_integral_gain needs a finite driver_inertia: {why}")
-    if np.any(gain & np.equal(body.driver_impedance, 0.0)):
+    if anywhere(gain & (body.driver_impedance == 0.0)):
         why = "nothing damps the driver, and its swings grow where friction falls with the slip rate"
         raise InputError(
             f"{owner}: driver_integral_gain needs a driver_impedance, the proportional gain, above 0: without it {why}"
