@@ -32,6 +32,9 @@ OTHER_LOOPS = {
     ("certificate.py", "least_share"): "each pass goes to the next disc of a list, in one direction",
     ("merged_creep.py", "plan_group"): "each pass takes the next piece of a round trip, in one direction",
     ("layer_replay.py", "first_change"): "each pass halves what is between two bounds",
+    ("turn_search.py", "edges_of"): "each pass goes to the next edge, at a higher slip rate, up to the end of the piece",
+    ("turn_search.py", "first_cells"): "each pass goes to the next edge, at a higher slip rate, up to the end of the piece",
+    ("turn_search.py", "search_contact"): "each pass takes from what is left to examine; then nothing is cut any more",
     ("turning_points.py", "piece_next_to_rest"): "each pass goes to the next piece of a history, in one direction",
 }
 """Loops that no syntax tells to end, by file and function, with the reason why they do."""
