@@ -93,7 +93,8 @@ def flattened(kinds: tuple[Kind, ...], given: tuple[Any, ...]) -> list[Any]:
             one = one.array if type(one) is Ready else one  # of another kind, which is refused
             if one.dtype != kind.of or one.ndim != kind.dimensions or not one.flags.c_contiguous:
                 raise TypeError(f"machine code takes {kind}, not {one.dtype} of shape {one.shape} and strides {one.strides}")
-            flat += (addressof(NOTHING.from_buffer(one)) if one.flags.writeable else one.ctypes.data, *one.shape)
+            own = one.flags.owndata and one.flags.writeable  # as it is of no view that numpy has broadcast
+            flat += (addressof(NOTHING.from_buffer(one)) if own else one.ctypes.data, *one.shape)
         elif isinstance(kind, Fields):
             flat += flattened(kind.kinds, one)
         else:
