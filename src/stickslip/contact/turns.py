@@ -59,7 +59,7 @@ def find_turns(of: Pieces, budget: int = MOST_EVALUATIONS, most: int = MOST_EVAL
 
     The search for a contact ends early once it is known to turn more than `most` times.
     """
-    first_piece = np.searchsorted(of.contact, np.arange(of.contact[-1] + 2))
+    first_piece = of.contact.searchsorted(np.arange(of.contact[-1] + 2))
     table, ends, left = _searched(of, first_piece, budget, most)
     cells, known = _cells_in(table)
     if (known == UNDECIDED).any():

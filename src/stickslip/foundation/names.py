@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -153,6 +153,7 @@ DECADES = 1e6
 """A logarithmic axis that spans more than this factor has the SI unit: a prefix would not make its powers of ten more readable."""
 
 
+@lru_cache(maxsize=1024)
 def si_unit(what: str, *load_units: str) -> str:
     """Return the SI unit of a quantity, or of what a column names in place of a unit, for bodies whose loads have these units.
 

@@ -98,10 +98,9 @@ class LawValues(LawContract):
         has_knots = isinstance(self.knots, np.ndarray) or bool(self.knots)
         if not has_knots and isinstance(u, float) and isinstance(v, float):
             return np.zeros((), np.intp)
-        slip, rate = np.asarray(u, float), np.asarray(v, float)
         if not has_knots:
-            return np.zeros(slip.shape if slip.shape == rate.shape else np.broadcast_shapes(slip.shape, rate.shape), np.intp)
-        slip, rate = np.broadcast_arrays(slip, rate)
+            return np.zeros(np.broadcast(u, v).shape, np.intp)
+        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
         return np.asarray(np.searchsorted(np.asarray(self.knots), slip if self.knot_variable == "slip" else rate, side="right"))
 
     def piece_coefficient(self, i: int, u: Any, v: Any, w: Any = 0.0) -> Any:

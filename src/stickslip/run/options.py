@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -43,6 +42,17 @@ MAX_PIECES = 2_000_000
 
 LARGEST_HISTORY = 1_000_000_000
 """Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines."""
+
+_CHECKS: dict[str, Callable[[str, str, Any], Any]] = {
+    "duration": DURATION.check,
+    "rtol": lambda who, _, value: check_rtol(value, where=who),
+    "creep_rtol": CREEP_RTOL.check,
+    "shortest_event": SHORTEST_EVENT.check,
+    "checkpoint_every": CHECKPOINT_INTERVAL.check,
+    "max_events": lambda who, name, value: check_whole(f"{who}: {name}", value),
+    "max_pieces": lambda who, name, value: check_whole(f"{who}: {name}", value, most=LARGEST_HISTORY),
+}
+"""How the numbers of a run are checked, given who asks and their names."""
 
 
 @dataclass(frozen=True)
@@ -108,18 +118,13 @@ class RunOptions:
         """Return the options with numbers in SI, each in its range whatever is run. Raises InputError, which begins with `who`."""
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
-        checks: dict[str, Callable[[Any], Any]] = {
-            "duration": partial(DURATION.check, who, "duration"),
-            "rtol": partial(check_rtol, where=who),
-            "creep_rtol": partial(CREEP_RTOL.check, who, "creep_rtol"),
-            "shortest_event": partial(SHORTEST_EVENT.check, who, "shortest_event"),
-            "checkpoint_every": partial(CHECKPOINT_INTERVAL.check, who, "checkpoint_every"),
-            "max_events": partial(check_whole, f"{who}: max_events"),
-            "max_pieces": partial(check_whole, f"{who}: max_pieces", most=LARGEST_HISTORY),
-        }
-        given = {name: getattr(self, name) for name in checks}
-        checked = {name: checks[name](value) for name, value in given.items() if value is not None or name == "duration"}
-        converted = {name: value for name, value in checked.items() if value is not given[name]}
+        converted = {}
+        for name, check in _CHECKS.items():
+            given = getattr(self, name)
+            if given is not None or name == "duration":
+                checked = check(who, name, given)
+                if checked is not given:
+                    converted[name] = checked
         return replace(self, **converted) if converted else self
 
     @property

@@ -32,9 +32,6 @@ class CreepLeaps:
     taken: list[tuple[float, ...]] = field(default_factory=list)
     """The rows of `History.creep`, one for each leap."""
 
-    def __post_init__(self) -> None:
-        self.over = leaps_over(self.problem)
-
     @cached_property
     def stepper(self) -> LeapStepper:
         """What leaps when the time has come; most runs end before that."""
@@ -44,7 +41,7 @@ class CreepLeaps:
 
     def begin(self, count: Counts) -> None:
         """Have the engine pause after the first round trip, or when slip has lasted."""
-        if self.patient or self.over != "creep":
+        if self.patient or leaps_over(self.problem) != "creep":
             count.creep_in, count.pause_for = PATIENCE if self.patient else 1, 1
             return
         count.pause_at = count.pause_for = 1

@@ -158,12 +158,16 @@ def parameters_of(problem: Problem) -> Params:
     if problem.normal_varies:
         params.pressing_tone, params.pressing_frequency, params.pressing_phase = pressing_of(problem).tone
         params.coupling = problem.friction.normal_coupling
-    found = vars(params)
+    return Params(together(_in_order(vars(params))))
+
+
+def _in_order(params: dict[str, Any]) -> list[Any]:
+    """Return the numbers of `Setup.params` in the order of their places; some have several, as a list."""
     numbers: list[Any] = []
     for name in Params.places:
-        number = found[name]
+        number = params[name]
         numbers += number if type(number) is list else (number,)
-    return Params(together(numbers))
+    return numbers
 
 
 def together(numbers: Sequence[Any]) -> at.Floats:

@@ -81,7 +81,8 @@ class Enclosure:
         """Raise InputError for a formula with a state."""
         tape = tape_of_bounds(trees, tuple(numbers))
         given = (*numbers.values(), slip)
-        members = max(map(np.size, (formula, *(end for one in given for end in (one if isinstance(one, tuple) else (one,))))))
+        sides = [end for one in given for end in (one if isinstance(one, tuple) else (one,))]
+        members = max(getattr(one, "size", 1) for one in (formula, *sides))  # a number has one, and no size
         ends = np.empty((2, members, len(given)))
         for place, one in enumerate(given):
             ends[0, :, place], ends[1, :, place] = one if isinstance(one, tuple) else (one, one)
