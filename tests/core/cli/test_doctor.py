@@ -177,7 +177,7 @@ def test_a_run_that_cannot_be_made_is_a_fault(command: Command, monkeypatch: pyt
 
 
 def test_an_engine_that_is_not_compiled_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.engine.UNCOMPILED", True)
+    monkeypatch.setattr("stickslip.foundation.kernels.uncompiled.UNCOMPILED", True)
     answering(monkeypatch)
     assert fault(command("doctor")).endswith("unset it")
 

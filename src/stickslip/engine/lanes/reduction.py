@@ -15,9 +15,10 @@ from stickslip.engine.history.history import OFFSET_ROUNDING
 from stickslip.engine.history.slip_events import LAST_THIRD, EventTurns, rest_of, rises_over, time_slipping
 from stickslip.engine.history.turning_points import Known, Turn, starts_from_rest
 from stickslip.engine.series.polynomial import evaluate, integral
-from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
+from stickslip.engine.state.layout import HistoryPiece
 from stickslip.engine.state.workspace import Run, pieces_in
-from stickslip.foundation.kernels.kernels import kernel
+from stickslip.foundation.arrays import Floats1, Integers2
+from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.pointers import numbers_of, record_at
 from stickslip.foundation.kernels.memory.records import MemoryRecord
 from stickslip.problem import Stop
@@ -295,8 +296,8 @@ def fold_whole(history: HistoryPiece, length: int, round_trip_time: float, end: 
     out.sticking = rest_of(time_slipping(history, length, round_trip_time, begin, end), end - begin)
 
 
-@kernel
-def fold_end(table: Integers, round_trip_time: float, duration: float, code: int, numbers: Floats) -> None:
+@entry
+def fold_end(table: Integers2, round_trip_time: float, duration: float, code: int, numbers: Floats1) -> None:
     """Do what `fold_whole` does for a history of which only the last pieces are known, but keep what all pieces determine.
 
     The run was to last `duration` s and ended with the given code.
