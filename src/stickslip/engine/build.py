@@ -23,7 +23,7 @@ from stickslip.engine.history.status import engine_key
 from stickslip.engine.input.prepare import law_tables
 from stickslip.engine.lanes.setups import alike
 from stickslip.engine.lanes.vectorised_problem import why_not
-from stickslip.foundation.code_key import PACKAGE, SHIPPED
+from stickslip.foundation.code_key import PACKAGE, SHIPPED, keys_that_came
 from stickslip.foundation.kernels.code import NAME, announce_by, compiled_sources
 from stickslip.foundation.kernels.kernels import Entry
 from stickslip.foundation.sealed_files import read_sealed, write_sealed
@@ -32,6 +32,8 @@ from stickslip.problem.scenarios.library import in_1d
 
 LARGE = ("runs.run_group", "loop.run_until", "implicit_step.implicit_steps", "ladder.ladder", "layer_replay.replay")
 """Entries that take longest: processes begin with them."""
+FORMULAS, KEYS = "formulas", "keys"
+"""What is made beside entries."""
 
 
 def main() -> None:
@@ -39,18 +41,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m stickslip.engine.build", description="Make the machine code of the engine.")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1, help="how many processes work side by side")
     processes, begun = parser.parse_args().processes, time.perf_counter()
-    if (SHIPPED / NAME).is_dir():
+    is_there = (SHIPPED / NAME).is_dir()
+    if is_there and engine_key() in keys_that_came().values():
         say(f"the machine code in {SHIPPED} is up to date")
         return
-    say(f"making the machine code of the engine ({NAME}) in {processes} processes: about a minute")
+    if not is_there:
+        say(f"making the machine code of the engine ({NAME}) in {processes} processes: about a minute")
+        shutil.rmtree(SHIPPED, ignore_errors=True)
     with tempfile.TemporaryDirectory() as made:
         os.environ["STICKSLIP_CACHE_DIR"] = made  # where the processes put machine code and keys
-        shutil.rmtree(SHIPPED, ignore_errors=True)
+        (SHIPPED / "keys").unlink(missing_ok=True)
+        names = [] if is_there else [*LARGE, FORMULAS, *sorted(set(entries()) - set(LARGE))]
         with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
-            names = [*LARGE, "", *sorted(set(entries()) - set(LARGE))]
-            for done in as_completed([pool.submit(make, name) for name in names]):
+            for done in as_completed([pool.submit(make, name) for name in [*names, KEYS]]):
                 done.result()
-        ship(Path(made), SHIPPED, NAME)
+        ship(Path(made), SHIPPED, "" if is_there else NAME)
     files = [path.stat().st_size for path in (SHIPPED / NAME).iterdir()]
     say(f"{len(files)} files of machine code, {sum(files) / 1e6:.1f} MB, in {time.perf_counter() - begun:.0f} s")
 
@@ -70,14 +75,16 @@ def entries() -> list[str]:
 
 
 def make(name: str) -> None:
-    """Make the machine code of an entry, or of formulas and the keys if the name is empty; it stays in the cache."""
+    """Make the machine code of an entry, or of formulas, or keys; they stay in the cache."""
+    if name == KEYS:
+        engine_key()
+        return
     announce_by(lambda text: None)
     entries()
-    if name:
+    if name == FORMULAS:
+        make_formulas()
+    else:
         _ = Entry.known[name].address
-        return
-    engine_key()
-    make_formulas()
 
 
 def make_formulas() -> None:
@@ -90,13 +97,14 @@ def make_formulas() -> None:
 
 
 def ship(made: Path, target: Path, name: str) -> None:
-    """Move machine code and keys from the cache where they were made into the package."""
-    target.mkdir()
+    """Move keys, and machine code if it has a name, from the cache where they were made into the package."""
+    target.mkdir(exist_ok=True)
     keys = {path.name: (read_sealed(path) or b"").decode() for path in (made / "keys").iterdir()}
     write_sealed(target / "keys", "\n".join(f"{digest} {key}" for digest, key in sorted(keys.items())).encode())
-    shutil.copytree(made / f"compiled-{name}", target / "new")
-    (target / "new").chmod(0o755)
-    (target / "new").rename(target / name)  # whoever looks meanwhile sees all or nothing
+    if name:
+        shutil.copytree(made / f"compiled-{name}", target / "new")
+        (target / "new").chmod(0o755)
+        (target / "new").rename(target / name)  # whoever looks meanwhile sees all or nothing
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ import math
 from abc import ABC
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -145,7 +144,7 @@ class LawContract(Declared, ABC):
     def check_start(self, slip: float) -> None:
         """Check that a run can begin at a slip (m). Raise InputError if friction is no number >= 0 there, or has no slope."""
 
-    @cached_property
+    @property
     def states(self) -> tuple[StateVariable, ...]:
         """The state variables: none, one or two."""
         return states_in(self.state)

@@ -50,10 +50,6 @@ class LawValues(LawContract):
 
     def piece_values(self, i: int) -> tuple[float, ...]:
         """Return the values of `parameters` in piece i: the values of the law, unless its pieces have different values."""
-        return self._own_values
-
-    @cached_property
-    def _own_values(self) -> tuple[float, ...]:
         values = (getattr(self, name) for name in self.parameters())
         return tuple(value if isinstance(value, float) or np.ndim(value) else float(value) for value in values)
 
@@ -224,7 +220,7 @@ class LawValues(LawContract):
             return high - low
         return float(np.ptp(self.coefficient(0.0, np.linspace(0.0, 1.0, 101))))
 
-    @cached_property
+    @property
     def rate_scales(self) -> tuple[float, ...]:
         """The characteristic slip rates (m/s): the parameters in m/s, and the inverses of those in s/m."""
         scales: list[float] = []

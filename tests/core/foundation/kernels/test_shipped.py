@@ -90,7 +90,6 @@ def test_the_keys_that_came_are_found_by_the_files_and_by_no_version_of_python(m
         ["run", "fig6-slab", "--figure", "a.png"],
         ["run", "rate-and-state-block"],
         ["check", "fig6-slab"],
-        ["sweep", "fig6-slab", "--vary", "friction.alpha=0.5,1,2", "--out", "a.zarr"],
     ],
     ids=" ".join,
 )
