@@ -43,7 +43,9 @@ def engine_key(*beside: str) -> str:
     `beside` are folders of an extension whose code decides its results, too. Comments, docstrings and the layout of lines leave the
     key as it is (`code_key`).
     """
-    return key_of_folders((*DECIDE, *beside), SOURCES)
+    if beside:  # few files, and the key of all others came with the package
+        return key_of_folders(beside, engine_key())
+    return key_of_folders(DECIDE, SOURCES)
 
 
 def rounding_note(steps: int, share: float) -> str:
