@@ -1,7 +1,7 @@
 """The processor that machine code is made for: the highest level that this one reaches, so that one file serves many of them.
 
-A level is a set of instructions that processors of many makers have. Code for a level has the same bits on all of them, and costs
-nothing measurable against code for the one at hand (`benchmarks/README.md`). A processor below every level gets code of its own.
+A level is a set of instructions that processors of many makers have. All of them run the same code, whose speed could not be told
+from that of code for the one at hand (`benchmarks/README.md`). A processor below every level gets code of its own.
 """
 
 from __future__ import annotations

@@ -72,6 +72,14 @@ def test_the_machine_code_of_every_entry_comes_with_the_package() -> None:
     assert {f"{name}.o" for name in names} == {name for name in files if not name.startswith("formula-")}
 
 
+def test_no_two_entries_have_one_name() -> None:
+    """One would be called by the machine code of the other."""
+    build.entries()
+    there = {id(one): one for module in list(sys.modules.values()) for one in vars(module).values() if isinstance(one, Entry)}
+    names = [one.name for one in there.values() if one.__module__.startswith("stickslip.")]
+    assert len(names) == len(set(names)) > 30
+
+
 def test_the_keys_that_came_are_found_by_the_files_and_by_no_version_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
     """Another Python makes other bytecode of the same files, and would make another key."""
 

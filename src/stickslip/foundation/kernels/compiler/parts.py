@@ -2,8 +2,8 @@
 
 By default numba makes machine code of every function, and optimises each one together with all functions that it calls, again at
 every level of calls. Here a function becomes typed code and nothing more; only the whole that an entry needs is linked, optimised
-and turned into machine code. That takes a third of the time, and gives the same bits. It builds on classes of numba that are not
-public: where one of them is missing, each function is compiled as numba does by default (`WHY_PLAIN`).
+and turned into machine code. It builds on classes of numba that are not public: where one of them is missing, each function is
+compiled as numba does by default (`WHY_PLAIN`), which takes longer.
 """
 
 from __future__ import annotations
