@@ -20,7 +20,7 @@ from stickslip.contact.layer_response import Complex, Quotient, at_driver, cross
 from stickslip.contact.wave_modes import Polynomial
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layers import Layers
+from stickslip.problem.bodies.layered.layers import Layers
 
 ROUNDING = 3e-15
 """Rounding (1) of the function, relative to its terms: where it is smaller its phase is not known."""

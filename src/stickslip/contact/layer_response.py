@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layers import Layers
+from stickslip.problem.bodies.layered.layers import Layers
 
 Complex = NDArray[np.complex128]
 SAMPLES = 32

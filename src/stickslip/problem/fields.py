@@ -302,6 +302,11 @@ class ProblemFields(CheckedArguments):
         return self.driver_reflection is not None and len(self.driver_steps) > 1
 
     @property
+    def driver_kind(self) -> str:
+        """The kind of driver that holds throughout the run, by which `stickslip.problem.drivers` answers."""
+        return "changing" if self.driver_changes else self.body.driver_kind
+
+    @property
     def is_driven_rigidly(self) -> bool:
         """True if the driver is rigid throughout the run."""
         return self.body.is_driven_rigidly and not self.driver_changes

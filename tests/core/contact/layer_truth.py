@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.contact.disturbance import Response
 from stickslip.contact.wave_modes import Growth
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layers import Layers
+from stickslip.problem.bodies.layered.layers import Layers
 
 DIGITS = 40
 

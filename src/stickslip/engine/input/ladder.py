@@ -18,7 +18,7 @@ from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
 from stickslip.foundation.constants import RIGID
 from stickslip.problem import LoadingHistory, Problem
 from stickslip.problem.bodies import OfLayers
-from stickslip.problem.bodies.layers import Layers
+from stickslip.problem.bodies.layered.layers import Layers
 
 NO_LADDER = LadderCell.table(0)
 """Table `Setup.ladder` of a body without layers."""

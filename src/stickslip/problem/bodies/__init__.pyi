@@ -1,10 +1,12 @@
 # The bodies, and what their kinds share.
 from stickslip.problem.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
-from stickslip.problem.bodies.layered import LayeredSlab, OfLayers, TwoSlabs
+from stickslip.problem.bodies.layered.of_layers import OfLayers
+from stickslip.problem.bodies.layered.slabs import LayeredSlab, TwoSlabs
+from stickslip.problem.bodies.layered.string import SectionedString
 from stickslip.problem.bodies.register import BODIES
-from stickslip.problem.bodies.sections import SectionedString
-from stickslip.problem.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
-from stickslip.problem.bodies.turning import RotatingBlock, TorsionalString
+from stickslip.problem.bodies.rigid.blocks import RotatingBlock, SpringBlock, as_block
+from stickslip.problem.bodies.uniform.slab import ElasticSlab, as_slab
+from stickslip.problem.bodies.uniform.string import TorsionalString
 
 __all__ = [
     "BODIES",

@@ -1,19 +1,16 @@
-"""Define what is asked of every body, and the common parts of bodies that carry waves and of rigid bodies on a spring."""
+"""Define what is asked of every body, and the checks that bodies share."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import Field
-from functools import cached_property
 from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
 
-from stickslip.foundation.arrays import anywhere, everywhere
-from stickslip.foundation.constants import RIGID
+from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import KINDS, Name, si_unit
-from stickslip.foundation.quantities import Quantity, check_fields
+from stickslip.foundation.quantities import check_fields
 
 
 class Body(Protocol):
@@ -74,6 +71,12 @@ class BodyOnCharacteristics(Body, Protocol):
     Units are those of `Body`.
     """
 
+    structure: ClassVar[str]
+    """The kind of body, by which the parts of the program answer what they are asked: "rigid", "uniform" or "layered"."""
+    turn: ClassVar[str]
+    """What sentences call the time after which slip acts on the contact again: "round trip" or "period"."""
+    what_is_heavy: ClassVar[str]
+    """What sentences call what has the mass that slips: "contact mass" or "block"."""
     has_waves: ClassVar[bool]
     """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
     is_uniform: ClassVar[bool]
@@ -84,6 +87,14 @@ class BodyOnCharacteristics(Body, Protocol):
     @property
     def driver_impedance(self) -> float:
         """The impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
+        ...
+
+    @property
+    def driver_kind(self) -> str:
+        """The kind of driver (`stickslip.problem.drivers`): "spring" of a rigid body, "rigid", "lossy" or "machine" of one with waves.
+
+        Of several drivers it is "rigid" only if all are.
+        """
         ...
 
     @property
@@ -117,6 +128,41 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def longest_way(self) -> float:
+        """The time (s) of a wave to the driver and back, through all layers; of a block its period."""
+        ...
+
+    def grows_in_a_trip(self, rate: Any) -> Any:
+        """Return the growth of the load (Pa) of a contact at rest in one `round_trip_time` under a rigid driver at a rate (m/s)."""
+        ...
+
+    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
+        """Return the velocities (m/s, towards forward slip) of the contact and of the driver on each side of it.
+
+        The contact slips at `rate`, and the driver moves by `shear` faster than that.
+        """
+        ...
+
+    def held_at_start(self, rate: float, shear: float) -> list[float]:
+        """Return the stress (Pa) that drag then takes between the contact and the driver of each side."""
+        ...
+
+    @property
+    def first_share(self) -> float:
+        """The share (1) of the load, and of the far stress, that the first side bears."""
+        ...
+
+    @property
+    def drivers(self) -> int:
+        """The number of drivers."""
+        ...
+
+    @property
+    def has_ground(self) -> bool:
+        """True if there is ground under the contact, which may move: not if two sides slip on each other."""
+        ...
+
+    @property
     def inflow_delay(self) -> float:
         """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
         ...
@@ -132,8 +178,6 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
 
-WEIGHT_ON_BIT = Quantity("N", "weight on the bit: a force, compression positive", above=0)
-"""How the normal load of a body that turns on its bit may be given, and vary."""
 MACHINE = "a driver with a mass or an integral gain"
 """Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
 
@@ -214,80 +258,6 @@ class WithNormalLoad:
         return found
 
 
-class WithWaves(WithNormalLoad):
-    """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
-
-    has_waves: ClassVar[bool] = True
-    is_uniform: ClassVar[bool] = True
-
-    @property
-    def damping(self: BodyWithWaves) -> float:
-        """The radiation damping, load per slip rate that leaves with the waves (Pa s/m): the impedance."""
-        return self.impedance
-
-    @property
-    def two_way_time(self: BodyWithWaves) -> float:
-        """The two-way travel time R = 2 h / c (s)."""
-        return 2.0 * self.distance / self.wave_speed
-
-    @property
-    def round_trip_time(self: BodyWithWaves) -> float:
-        """The two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
-        return self.two_way_time
-
-    @property
-    def inflow_delay(self: BodyWithWaves) -> float:
-        """The travel time h / c (s) from the driver to the contact."""
-        return self.distance / self.wave_speed
-
-    @property
-    def last_impedance(self: BodyWithWaves) -> float:
-        """The impedance at the driver (Pa s/m), that of the contact in a uniform body."""
-        return self.impedance
-
-    @property
-    def fastest_rate(self: BodyWithWaves) -> float:
-        """The slip rate (m/s) at which the body would slide as fast as its waves run."""
-        return self.wave_speed
-
-    @property
-    def has_inertia(self: BodyWithWaves) -> bool:
-        """True if a mass slips with the contact, so that its slip rate cannot jump."""
-        return self.inertia > 0.0
-
-    @cached_property
-    def reflection(self: BodyWithWaves) -> float:
-        """The reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
-
-        It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load. A driver with a mass or an integral gain
-        sends back a wave that depends on how long the one that it meets lasts: r holds where neither is felt.
-        """
-        if everywhere(np.isinf(self.driver_impedance) | np.isinf(self.driver_inertia)):
-            return RIGID
-        return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
-
-    @cached_property
-    def is_driven_rigidly(self: BodyWithWaves) -> bool:
-        """True if the driver reflects the whole wave with its sign reversed, r = -1."""
-        return everywhere(self.reflection == RIGID)
-
-    @property
-    def front_reflection(self: BodyWithWaves) -> float:
-        """The share of a sharp wave front that the driver sends back: a mass has no time to give way."""
-        return RIGID if np.any(np.greater(self.driver_inertia, 0.0)) else self.reflection
-
-    @cached_property
-    def has_machine(self: BodyWithWaves) -> bool:
-        """True if the driver has a motion of its own: a mass or an integral gain."""
-        own = anywhere(self.driver_inertia > 0.0) or anywhere(self.driver_integral_gain > 0.0)
-        return own and not self.is_driven_rigidly
-
-    @property
-    def stiffness(self: BodyWithWaves) -> float:
-        """The modulus over the distance, G / h (Pa/m): the decrease of the load per metre of slow slip under a rigid driver."""
-        return self.modulus / self.distance
-
-
 def check_driver(body: BodyOnCharacteristics) -> None:
     """Raise InputError if the mass and the gains of a driver do not go together."""
     owner = type(body).__name__
@@ -318,43 +288,3 @@ def check_equivalent(body: BodyOnCharacteristics, driver: str = "driver_impedanc
             f"{body.noun} in the slow limit, so there is no spring; got "
             f"{driver} = {getattr(body, driver):g} {si_unit('impedance', body.load_unit)}"
         )
-
-
-class OnSpring(WithNormalLoad):
-    """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
-
-    noun: ClassVar[str] = "block"
-    has_waves: ClassVar[bool] = False
-    is_uniform: ClassVar[bool] = True
-    has_inertia: ClassVar[bool] = True
-    driver_impedance: ClassVar[float] = math.inf
-    """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
-    is_driven_rigidly: ClassVar[bool] = True
-    has_machine: ClassVar[bool] = False
-    driver_inertia: ClassVar[float] = 0.0
-    driver_integral_gain: ClassVar[float] = 0.0
-    reflection: ClassVar[float] = 0.0
-    inflow_delay: ClassVar[float] = 0.0
-    fastest_rate: ClassVar[float] = math.inf
-
-    @property
-    def last_impedance(self: BodyOnCharacteristics) -> float:
-        """The `impedance`."""
-        return self.impedance
-
-    @property
-    def round_trip_time(self: BodyOnCharacteristics) -> float:
-        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back."""
-        found: float = 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness)
-        return found
-
-    @property
-    def period(self: BodyOnCharacteristics) -> float:
-        """The period of free undamped oscillation (s)."""
-        return self.round_trip_time
-
-    @property
-    def impedance(self: BodyOnCharacteristics) -> float:
-        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
-        found: float = np.sqrt(self.stiffness * self.inertia)
-        return found

@@ -8,13 +8,13 @@ from stickslip.problem.bodies.contract import BodyOnCharacteristics
 BODIES: ClassesByKind[BodyOnCharacteristics] = ClassesByKind(
     "stickslip.problem.bodies",
     {
-        "spring-block": "sliding.SpringBlock",
-        "elastic-slab": "sliding.ElasticSlab",
-        "layered-slab": "layered.LayeredSlab",
-        "two-slabs": "layered.TwoSlabs",
-        "rotating-block": "turning.RotatingBlock",
-        "torsional-string": "turning.TorsionalString",
-        "sectioned-string": "sections.SectionedString",
+        "spring-block": "rigid.blocks.SpringBlock",
+        "elastic-slab": "uniform.slab.ElasticSlab",
+        "layered-slab": "layered.slabs.LayeredSlab",
+        "two-slabs": "layered.slabs.TwoSlabs",
+        "rotating-block": "rigid.blocks.RotatingBlock",
+        "torsional-string": "uniform.string.TorsionalString",
+        "sectioned-string": "layered.string.SectionedString",
     },
 )
 """The class of every body by its name in scenario files."""

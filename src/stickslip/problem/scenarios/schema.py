@@ -23,7 +23,7 @@ from stickslip.foundation.synonyms import same
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.problem.bodies import BODIES
-from stickslip.problem.bodies.contract import WEIGHT_ON_BIT
+from stickslip.problem.bodies.on_bit import WEIGHT_ON_BIT
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory

@@ -8,7 +8,7 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.names import TURNS, si_unit
 from stickslip.foundation.quantities import Choice, NumberSeries, fields_of
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
-from stickslip.problem.bodies.layers import Layers
+from stickslip.problem.bodies.layered.layers import Layers
 from stickslip.run.check.facts import Fact
 
 MANY_PIECES = 100_000

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.problem.bodies.turning import polar_moment_of
+from stickslip.problem.bodies.uniform.string import polar_moment_of
 
 RPM = math.pi / 30.0
 PIPE: dict[str, Any] = {"density": 7850.0, "shear_modulus": 79.3e9, "outer_diameter": 0.127, "inner_diameter": 0.10861}

@@ -10,19 +10,17 @@ from typing import Any, ClassVar
 from stickslip.foundation.conversion import Number, Numbers, OptionalNumber, OptionalNumbers
 from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import WEIGHT_ON_BIT, check_body, check_driver
-from stickslip.problem.bodies.layered import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
+from stickslip.problem.bodies.contract import check_body, check_driver
+from stickslip.problem.bodies.layered.of_layers import DRAG_STEP, USUAL_STEP, OfOneSide, check_stacks
+from stickslip.problem.bodies.on_bit import BIT_RADIUS, NORMAL_TORQUE, WEIGHT_ON_BIT, OnBit
+from stickslip.problem.bodies.rigid.blocks import RotatingBlock
 from stickslip.problem.bodies.soft_torque import with_soft_torque
-from stickslip.problem.bodies.turning import (
-    BIT_RADIUS,
+from stickslip.problem.bodies.uniform.string import (
     DRIVE,
     DRIVE_INERTIA,
     DRIVE_INTEGRAL_GAIN,
     INNER,
-    NORMAL_TORQUE,
     OUTER,
-    OnBit,
-    RotatingBlock,
     check_pipe,
     polar_moment_of,
 )

@@ -13,7 +13,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import NumberSeries, Quantity
-from stickslip.problem.bodies.cells import CellCut, cut_into_cells
+from stickslip.problem.bodies.layered.cells import CellCut, cut_into_cells
 
 LARGEST_ERROR = 0.1
 """Largest relative error (1) of a layer's travel time that may be allowed."""

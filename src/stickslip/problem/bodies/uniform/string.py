@@ -1,4 +1,4 @@
-"""Define the bodies that turn on the contact: a disc on a torsion spring, and a string in torsion. Slip is an angle, in rad."""
+"""Define a string in torsion, such as a drill string. Slip is an angle, in rad."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import WEIGHT_ON_BIT, OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.contract import check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.on_bit import BIT_RADIUS, NORMAL_TORQUE, WEIGHT_ON_BIT, OnBit
+from stickslip.problem.bodies.rigid.blocks import RotatingBlock
 from stickslip.problem.bodies.soft_torque import with_soft_torque
+from stickslip.problem.bodies.uniform.with_waves import WithWaves
 
 OUTER = "outer diameter of the section"
 INNER = "inner diameter of the section"
-BIT_RADIUS = Quantity("m", "effective radius of the bit: 2/3 of its own if the weight is spread evenly", above=0)
-NORMAL_TORQUE = Quantity("N m", "torque of the bit if mu is 1, in place of weight and radius", above=0)
 DRIVE = Quantity(
     "N m s", "impedance Zd of the drive: inf for a stiff drive, 0 for a constant torque", at_least=0, infinite=True, word="rigid"
 )
@@ -27,58 +28,6 @@ DRIVE_INERTIA = Quantity("kg m^2", "moment of inertia of the drive: inf for a st
 DRIVE_INTEGRAL_GAIN = Quantity(
     "N m/rad", "integral gain of the drive: torque for each radian that it lags behind its pull rate", at_least=0
 )
-LOADED_BY = "give either normal_torque, or weight_on_bit and bit_radius"
-"""How a string is pressed onto its contact."""
-
-
-@dataclass(frozen=True)
-class RotatingBlock(Declared, OnSpring):
-    """A rigid body turned through a torsion spring: I dv/dt + damping v + tau = K (D0 + V t - u), with an angle u (rad).
-
-    Loads and tractions are torques, in N m. The contact resists with the torque `normal_torque` mu: for a brake or a clutch that is
-    its clamping force times its effective radius.
-    """
-
-    kind: ClassVar[str] = "rotating-block"
-    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
-    load_unit: ClassVar[str] = "N m"
-    mass_field: ClassVar[str] = "inertia"
-
-    inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
-    stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)
-    normal_torque: Number = quantity("N m", "torque of friction if mu is 1: clamping force times effective radius", above=0)
-    damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
-
-    def __post_init__(self) -> None:
-        check_body(self)
-
-
-class OnBit:
-    """How a string is pressed onto its contact, by a weight or by a torque: a base for strings, with the names of their fields."""
-
-    weight_on_bit: OptionalNumber
-    bit_radius: OptionalNumber
-    normal_torque: OptionalNumber
-
-    @property
-    def normal_field(self) -> str:
-        """The field that a heavier load changes: the weight on the bit, or the torque where that is given."""
-        return "normal_torque" if self.normal_torque is not None else "weight_on_bit"
-
-    @property
-    def normal_load(self) -> float:
-        """The torque of the bit if mu is 1 (N m)."""
-        if self.normal_torque is not None:
-            return self.normal_torque
-        assert self.weight_on_bit is not None
-        assert self.bit_radius is not None
-        return self.weight_on_bit * self.bit_radius
-
-    def check_bit(self) -> None:
-        """Raise InputError unless the bit has either a weight and a radius, or a torque."""
-        weight = (self.weight_on_bit is None, self.bit_radius is None)
-        if weight[0] != weight[1] or weight[0] == (self.normal_torque is None):
-            raise InputError(f"{type(self).__name__}: {LOADED_BY}")
 
 
 def check_pipe(owner: str, outer: float, inner: float, entry: str = "") -> None:

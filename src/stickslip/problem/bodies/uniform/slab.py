@@ -1,4 +1,4 @@
-"""Define the bodies that slide on the contact: a rigid block on a spring, and an elastic slab."""
+"""Define an elastic slab."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import BodyOnCharacteristics, OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.contract import BodyOnCharacteristics, check_body, check_driver, check_equivalent
+from stickslip.problem.bodies.rigid.blocks import SpringBlock
+from stickslip.problem.bodies.uniform.with_waves import WithWaves
 
 DRIVER_INERTIA = Quantity(
     "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid"
@@ -21,29 +23,6 @@ DRIVER_INTEGRAL_GAIN = Quantity(
     "Pa/m", "integral gain of the driver: stress for each metre that it lags behind its pull rate", at_least=0
 )
 """Integral gain of such a driver."""
-
-
-@dataclass(frozen=True)
-class SpringBlock(Declared, OnSpring):
-    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
-
-    kind: ClassVar[str] = "spring-block"
-    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
-    load_unit: ClassVar[str] = "N"
-    mass_field: ClassVar[str] = "mass"
-
-    mass: Number = quantity("kg", "mass m", above=0)
-    stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
-    normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
-    damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
-
-    def __post_init__(self) -> None:
-        check_body(self)
-
-    @property
-    def inertia(self) -> float:
-        """The mass (kg)."""
-        return self.mass
 
 
 @dataclass(frozen=True)
@@ -167,11 +146,4 @@ def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab")
     """Return a body that must be a slab. Raises InputError with the text `refusal` for any other body."""
     if not isinstance(body, ElasticSlab):
         raise InputError(refusal)
-    return body
-
-
-def as_block(body: BodyOnCharacteristics) -> SpringBlock:
-    """Return a body that must be a block; raise InputError for any other body."""
-    if not isinstance(body, SpringBlock):
-        raise InputError("needs a spring-block")
     return body

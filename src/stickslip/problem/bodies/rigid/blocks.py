@@ -1,0 +1,65 @@
+"""Define the rigid bodies on a spring: a block that slides, and a disc that turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from stickslip.foundation.conversion import Number
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import quantity
+from stickslip.foundation.show import Declared
+from stickslip.problem.bodies.contract import BodyOnCharacteristics, check_body
+from stickslip.problem.bodies.rigid.on_spring import OnSpring
+
+
+@dataclass(frozen=True)
+class SpringBlock(Declared, OnSpring):
+    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
+
+    kind: ClassVar[str] = "spring-block"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
+    load_unit: ClassVar[str] = "N"
+    mass_field: ClassVar[str] = "mass"
+
+    mass: Number = quantity("kg", "mass m", above=0)
+    stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
+    normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
+    damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_body(self)
+
+    @property
+    def inertia(self) -> float:
+        """The mass (kg)."""
+        return self.mass
+
+
+@dataclass(frozen=True)
+class RotatingBlock(Declared, OnSpring):
+    """A rigid body turned through a torsion spring: I dv/dt + damping v + tau = K (D0 + V t - u), with an angle u (rad).
+
+    Loads and tractions are torques, in N m. The contact resists with the torque `normal_torque` mu: for a brake or a clutch that is
+    its clamping force times its effective radius.
+    """
+
+    kind: ClassVar[str] = "rotating-block"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
+    load_unit: ClassVar[str] = "N m"
+    mass_field: ClassVar[str] = "inertia"
+
+    inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
+    stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)
+    normal_torque: Number = quantity("N m", "torque of friction if mu is 1: clamping force times effective radius", above=0)
+    damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_body(self)
+
+
+def as_block(body: BodyOnCharacteristics) -> SpringBlock:
+    """Return a body that must be a block; raise InputError for any other body."""
+    if not isinstance(body, SpringBlock):
+        raise InputError("needs a spring-block")
+    return body

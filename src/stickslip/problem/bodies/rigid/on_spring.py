@@ -1,0 +1,74 @@
+"""Rigid bodies on a spring: what follows from their numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+
+from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithNormalLoad
+
+
+class OnSpring(WithNormalLoad):
+    """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
+
+    structure: ClassVar[str] = "rigid"
+    noun: ClassVar[str] = "block"
+    turn: ClassVar[str] = "period"
+    what_is_heavy: ClassVar[str] = "block"
+    drivers: int = 1
+    first_share: float = 1.0
+    has_ground: bool = True
+    driver_kind: str = "spring"
+    has_waves: ClassVar[bool] = False
+    is_uniform: ClassVar[bool] = True
+    has_inertia: ClassVar[bool] = True
+    driver_impedance: ClassVar[float] = math.inf
+    """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
+    is_driven_rigidly: ClassVar[bool] = True
+    has_machine: ClassVar[bool] = False
+    driver_inertia: ClassVar[float] = 0.0
+    driver_integral_gain: ClassVar[float] = 0.0
+    reflection: ClassVar[float] = 0.0
+    inflow_delay: ClassVar[float] = 0.0
+    fastest_rate: ClassVar[float] = math.inf
+
+    @property
+    def last_impedance(self: BodyOnCharacteristics) -> float:
+        """The `impedance`."""
+        return self.impedance
+
+    @property
+    def round_trip_time(self: BodyOnCharacteristics) -> float:
+        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back."""
+        found: float = 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness)
+        return found
+
+    @property
+    def longest_way(self: BodyOnCharacteristics) -> float:
+        """The period (s)."""
+        return self.round_trip_time
+
+    def grows_in_a_trip(self: BodyOnCharacteristics, rate: Any) -> Any:
+        """Return the growth of the load (N) in one period while the spring is pulled at a rate (m/s) and the block rests."""
+        return self.stiffness * rate * self.round_trip_time
+
+    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
+        """Return the velocities (m/s) of the block, which slips at `rate`, and of the driver, which is by `shear` faster."""
+        return [(rate, rate + shear)]
+
+    def held_at_start(self, rate: float, shear: float) -> list[float]:
+        """Return the stress that drag takes between contact and driver: none."""
+        return [0.0]
+
+    @property
+    def period(self: BodyOnCharacteristics) -> float:
+        """The period of free undamped oscillation (s)."""
+        return self.round_trip_time
+
+    @property
+    def impedance(self: BodyOnCharacteristics) -> float:
+        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
+        found: float = np.sqrt(self.stiffness * self.inertia)
+        return found

@@ -1,0 +1,1 @@
+"""Uniform bodies with waves: what slips comes back once, from the driver."""

@@ -1,0 +1,116 @@
+"""Bodies that carry waves: what follows from their numbers."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from stickslip.foundation.arrays import anywhere, everywhere
+from stickslip.foundation.constants import RIGID
+from stickslip.problem.bodies.contract import BodyWithWaves, WithNormalLoad
+
+
+class WithWaves(WithNormalLoad):
+    """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
+
+    structure: ClassVar[str] = "uniform"
+    turn: ClassVar[str] = "round trip"
+    what_is_heavy: ClassVar[str] = "contact mass"
+    drivers: int = 1
+    first_share: float = 1.0
+    has_ground: bool = True
+    has_waves: ClassVar[bool] = True
+    is_uniform: ClassVar[bool] = True
+
+    @property
+    def damping(self: BodyWithWaves) -> float:
+        """The radiation damping, load per slip rate that leaves with the waves (Pa s/m): the impedance."""
+        return self.impedance
+
+    @property
+    def two_way_time(self: BodyWithWaves) -> float:
+        """The two-way travel time R = 2 h / c (s)."""
+        return 2.0 * self.distance / self.wave_speed
+
+    @property
+    def round_trip_time(self: BodyWithWaves) -> float:
+        """The two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
+        return self.two_way_time
+
+    @property
+    def longest_way(self: BodyWithWaves) -> float:
+        """The two-way travel time (s), through all of the body."""
+        return self.two_way_time
+
+    @property
+    def driver_kind(self: BodyWithWaves) -> str:
+        """The kind of driver: "rigid", "machine", or "lossy" if it is neither."""
+        if self.is_driven_rigidly:
+            return "rigid"
+        return "machine" if self.has_machine else "lossy"
+
+    def grows_in_a_trip(self: BodyWithWaves, rate: Any) -> Any:
+        """Return the growth of the load (Pa) at rest in one round trip, under a rigid driver at a rate (m/s): 2 Z V."""
+        return 2.0 * self.impedance * rate
+
+    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
+        """Return the velocities (m/s) of the contact, which slips at `rate`, and of the driver, which is by `shear` faster."""
+        return [(rate, rate + shear)]
+
+    def held_at_start(self, rate: float, shear: float) -> list[float]:
+        """Return the stress (Pa) that drag takes between contact and driver: none."""
+        return [0.0]
+
+    @property
+    def inflow_delay(self: BodyWithWaves) -> float:
+        """The travel time h / c (s) from the driver to the contact."""
+        return self.distance / self.wave_speed
+
+    @property
+    def last_impedance(self: BodyWithWaves) -> float:
+        """The impedance at the driver (Pa s/m), that of the contact in a uniform body."""
+        return self.impedance
+
+    @property
+    def fastest_rate(self: BodyWithWaves) -> float:
+        """The slip rate (m/s) at which the body would slide as fast as its waves run."""
+        return self.wave_speed
+
+    @property
+    def has_inertia(self: BodyWithWaves) -> bool:
+        """True if a mass slips with the contact, so that its slip rate cannot jump."""
+        return self.inertia > 0.0
+
+    @cached_property
+    def reflection(self: BodyWithWaves) -> float:
+        """The reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
+
+        It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load. A driver with a mass or an integral gain
+        sends back a wave that depends on how long the one that it meets lasts: r holds where neither is felt.
+        """
+        if everywhere(np.isinf(self.driver_impedance) | np.isinf(self.driver_inertia)):
+            return RIGID
+        return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
+
+    @cached_property
+    def is_driven_rigidly(self: BodyWithWaves) -> bool:
+        """True if the driver reflects the whole wave with its sign reversed, r = -1."""
+        return everywhere(self.reflection == RIGID)
+
+    @property
+    def front_reflection(self: BodyWithWaves) -> float:
+        """The share of a sharp wave front that the driver sends back: a mass has no time to give way."""
+        return RIGID if np.any(np.greater(self.driver_inertia, 0.0)) else self.reflection
+
+    @cached_property
+    def has_machine(self: BodyWithWaves) -> bool:
+        """True if the driver has a motion of its own: a mass or an integral gain."""
+        own = anywhere(self.driver_inertia > 0.0) or anywhere(self.driver_integral_gain > 0.0)
+        return own and not self.is_driven_rigidly
+
+    @property
+    def stiffness(self: BodyWithWaves) -> float:
+        """The modulus over the distance, G / h (Pa/m): the decrease of the load per metre of slow slip under a rigid driver."""
+        return self.modulus / self.distance
