@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, cast
 
 from stickslip.foundation.conversion import Number, OptionalNumbers
 from stickslip.foundation.errors import InputError
@@ -123,7 +123,7 @@ class OfLayers(WithWaves, ABC):
         """True unless two sides slip on each other: each is then the ground of the other."""
         return self.sides_together.has_ground
 
-    def as_uniform(self, refusal: str) -> Self:
+    def check_uniform(self, refusal: str) -> None:
         """Refuse: it has layers."""
         raise InputError(f"needs a uniform body with waves: a {type(self).__name__} has layers")
 
