@@ -91,7 +91,7 @@ class BodyOnCharacteristics(Body, Protocol):
 
     @property
     def driver_kind(self) -> str:
-        """The kind of driver (`stickslip.problem.drivers`): "spring" of a rigid body, "rigid", "lossy" or "machine" of one with waves.
+        """The kind of driver (`stickslip.problem.drivers`): "spring" of a rigid body, otherwise "rigid", "lossy" or "machine".
 
         Of several drivers it is "rigid" only if all are.
         """
@@ -130,6 +130,11 @@ class BodyOnCharacteristics(Body, Protocol):
     @property
     def longest_way(self) -> float:
         """The time (s) of a wave to the driver and back, through all layers; of a block its period."""
+        ...
+
+    @property
+    def time_to_driver(self) -> float:
+        """The time (s) of a wave from the contact to the (first) driver; 0 of a block."""
         ...
 
     def grows_in_a_trip(self, rate: Any) -> Any:
