@@ -1,6 +1,6 @@
 # What others take from problem. Each name is imported when it is first used; all else is the room's own.
 
-from stickslip.problem import loading
+from stickslip.problem import features, loading
 from stickslip.problem import selection_rule as selection
 from stickslip.problem.equivalent_block import (
     block_for,  # Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
@@ -183,6 +183,7 @@ __all__ = [
     "check_shortest_event",
     "creep_tolerance",
     "default_event_rate",
+    "features",
     "in_given_units",
     "leaps_but_for_pull",
     "leaps_over",
