@@ -29,4 +29,4 @@ class PlanarDriver(ABC):
         """Return the impedance (Pa s/m) with which it takes up energy where it moves otherwise than pulled."""
 
 
-PLANAR_DRIVERS: ByKind[PlanarDriver] = ByKind("stickslip.extensions.planar.drivers", PlanarDriver)
+PLANAR_DRIVERS: ByKind[PlanarDriver] = ByKind("stickslip.extensions.planar.drivers")

@@ -27,4 +27,4 @@ class DrawnKind:
         return as_waves(body).modulus
 
 
-DRAWN_KINDS: ByKind[DrawnKind] = ByKind("stickslip.figures.runs.kinds", DrawnKind)
+DRAWN_KINDS: ByKind[DrawnKind] = ByKind("stickslip.figures.runs.kinds")

@@ -70,5 +70,5 @@ class CheckOfDriver:
         return []
 
 
-CHECK_KINDS: ByKind[CheckOfKind] = ByKind("stickslip.run.check.kinds", CheckOfKind)
-CHECK_DRIVERS: ByKind[CheckOfDriver] = ByKind("stickslip.run.check.drivers", CheckOfDriver)
+CHECK_KINDS: ByKind[CheckOfKind] = ByKind("stickslip.run.check.kinds")
+CHECK_DRIVERS: ByKind[CheckOfDriver] = ByKind("stickslip.run.check.drivers")

@@ -6,10 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from stickslip.engine.input import far_at_first
 from stickslip.foundation.names import KINDS
 from stickslip.foundation.show import brief
-from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem import LoadingHistory, Problem, far_at_first
 from stickslip.run.check.asked import CheckOfDriver
 
 SAME = 1e-12

@@ -9,7 +9,7 @@ from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.engine import Epoch, Floats, History, Integers
-from stickslip.engine.input import settled_rate
+from stickslip.problem import settled_rate
 
 BEYOND = 1.0 + 1e-9
 """Factor (1) that keeps a phase at the end of a round trip below that of the start of the next one."""

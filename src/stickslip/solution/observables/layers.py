@@ -16,8 +16,9 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.engine import Floats, History, Integers, LadderCell, Positions
-from stickslip.engine.input import inflow_of, ladder_of, ramp_per_rate, settled_rate, sides_of
+from stickslip.engine.input import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
+from stickslip.problem import inflow_of, settled_rate
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_machine import LayerMachine
 from stickslip.solution.observables.layer_records import (
@@ -213,7 +214,7 @@ class LayerWaves:
         """Return the growth of the load (Pa) in a round trip of a settled rest, under the loading of round trips."""
         if self.machine is None:
             return np.full(len(trip), self.history.ramp)
-        return np.asarray(ramp_per_rate(self.problem) * settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float)))
+        return np.asarray(self.body.grows_in_a_trip(1.0) * settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float)))
 
     def _ground(self, trip: Integers, phase: Floats) -> Floats:
         """Return the velocity of moving ground (m/s) at these places in time, and its way in the round trip (m); else nothing."""

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.engine.input import machine_at_first
 from stickslip.foundation.arrays import Floats
+from stickslip.problem import driver_of
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at
 from stickslip.solution.observables.layers import LayerWaves
@@ -94,6 +94,7 @@ def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: 
     body, time = problem.body, trip * history.round_trip_time + phase
     rate, faster = machine.motion(trip, phase)[0], machine.acceleration(trip, phase)
     force = body.driver_impedance * value_at(problem.pull_rate, time, time) + far_excess_at(problem, time, time)
-    push = machine_at_first(problem)[1] + body.driver_integral_gain * (pulled(problem, time) - machine.moved(trip, phase))
+    first = driver_of(problem).at_first(problem)[1]
+    push = first + body.driver_integral_gain * (pulled(problem, time) - machine.moved(trip, phase))
     met = 2.0 * body.last_impedance * rate - last
     return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.engine.input import wave_before
 from stickslip.foundation.arrays import Floats
+from stickslip.problem import wave_before
 from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution.observables.given_load import beside, breaks_at_contact, of_ground, pulled, sent_at, share_at
 from stickslip.solution.observables.given_on_discs import near_break

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import START, Epoch, History, Positions
-from stickslip.engine.input import Inflow, inflow_of, wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
+from stickslip.problem import Inflow, inflow_of, wave_before
 from stickslip.problem.bodies import BodyWithWaves
 from stickslip.solution.observables.quadrature import NODES, WEIGHTS, over, places_in
 

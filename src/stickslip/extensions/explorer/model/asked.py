@@ -44,4 +44,4 @@ class ShownKind(ABC):
         """Return the energies at times (s) by name; None where they are not known."""
 
 
-SHOWN_KINDS: ByKind[ShownKind] = ByKind("stickslip.extensions.explorer.model.kinds", ShownKind)
+SHOWN_KINDS: ByKind[ShownKind] = ByKind("stickslip.extensions.explorer.model.kinds")

@@ -49,4 +49,4 @@ class FittedKind(ABC):
         yield from ()
 
 
-FITTED_KINDS: ByKind[FittedKind] = ByKind("stickslip.extensions.inference.fit.kinds", FittedKind)
+FITTED_KINDS: ByKind[FittedKind] = ByKind("stickslip.extensions.inference.fit.kinds")

@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from stickslip.engine.input import machine_at_first
 from stickslip.foundation.show import brief
-from stickslip.problem import Problem
+from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies.soft_torque import sent_back, tuned_period
 from stickslip.run.check.facts import Fact
 from stickslip.run.check.far_side import GivesWay
@@ -31,7 +30,7 @@ class _CheckOfMachine(GivesWay):
         body = problem.body
         why = "the pull rate" if body.driver_inertia > 0.0 else "at which the forces on it balance"
         gain = ", and its integral gain has nothing to make up for yet" * (body.driver_integral_gain > 0.0)
-        yield f"the driver begins at {brief(machine_at_first(problem)[0], problem.unit_of('slip_rate'))}, {why}{gain}"
+        yield f"the driver begins at {brief(driver_of(problem).at_first(problem)[0], problem.unit_of('slip_rate'))}, {why}{gain}"
         yield from super().at_start(problem)
 
 
