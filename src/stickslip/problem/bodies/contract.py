@@ -151,6 +151,11 @@ class BodyOnCharacteristics(Body, Protocol):
         """The time (s) of a wave to the driver and back, through all layers; of a block its period."""
         ...
 
+    @property
+    def time_to_driver(self) -> float:
+        """The time (s) of a wave from the contact to the (first) driver; 0 of a block."""
+        ...
+
     def grows_in_a_trip(self, rate: Any) -> Any:
         """Return the growth of the load (Pa) of a contact at rest in one `round_trip_time` under a rigid driver at a rate (m/s)."""
         ...

@@ -109,6 +109,11 @@ class OfLayers(WithWaves, ABC):
         """The time (s) of a wave to the driver and back, through all layers."""
         return self.two_way_time
 
+    @property
+    def time_to_driver(self) -> float:
+        """The time (s) of a wave through all layers to the (first) driver."""
+        return sum(self.stacks[0].counts) * self.stacks[0].time
+
     def grows_in_a_trip(self, rate: Any) -> Any:
         """Return the growth of the load (Pa) at rest in one `round_trip_time`, under rigid drivers at a rate (m/s)."""
         return self.stiffness * rate * self.round_trip_time

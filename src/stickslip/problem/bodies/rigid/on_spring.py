@@ -40,6 +40,7 @@ class OnSpring(WithNormalLoad):
     driver_integral_gain: ClassVar[float] = 0.0
     reflection: ClassVar[float] = 0.0
     inflow_delay: ClassVar[float] = 0.0
+    time_to_driver: ClassVar[float] = 0.0
     fastest_rate: ClassVar[float] = math.inf
 
     @property

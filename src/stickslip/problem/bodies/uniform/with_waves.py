@@ -46,6 +46,11 @@ class WithWaves(WithNormalLoad):
         return self.two_way_time
 
     @property
+    def time_to_driver(self: BodyWithWaves) -> float:
+        """The travel time h / c (s)."""
+        return self.distance / self.wave_speed
+
+    @property
     def driver_kind(self: BodyWithWaves) -> str:
         """The kind of driver: "rigid", "machine", or "lossy" if it is neither."""
         if self.is_driven_rigidly:
