@@ -205,8 +205,11 @@ class Readings(NamesAttributes):
 
     @property
     def at_drive(self) -> tuple[Curve, ...]:
-        """The names of the quantities that the drive of a string measures; none for other bodies."""
-        return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and self.problem.body.has_waves else ()
+        """The names of the quantities that the drive of a string measures, far from the contact; none for other bodies."""
+        from stickslip.solution.observables.asked import observables_of
+
+        is_far = observables_of(self.problem).ways(self.problem)[0] > 0.0
+        return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and is_far else ()
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
         """Return times (s, ascending) and values of one quantity, one of `curves`, for drawing.
@@ -228,12 +231,10 @@ class Readings(NamesAttributes):
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points))
         if set(names) <= set(AT_DRIVE):
-            from stickslip.solution.observables.at_driver import fronts_at_driver
+            from stickslip.solution.observables.at_driver import fronts_drawn
 
-            fronts = fronts_at_driver(self.history)
+            fronts = fronts_drawn(self.history)
             breaks = fronts[(fronts >= start) & (fronts <= end)]
-            if not self.problem.body.is_uniform:  # each time takes a replay of all waves
-                return (time := np.linspace(start, end, points)), [getattr(self, name)(time) for name in names]
         many = len(breaks) > points
         inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < LONG_HISTORY else 3).ravel() if len(breaks) else breaks
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, inside]))
