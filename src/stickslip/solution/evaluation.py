@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.engine import History, Positions, Side
-    from stickslip.solution.observables.at_driver import AtDriver
-    from stickslip.solution.observables.field import Field
+    from stickslip.solution.observables.asked import AtDriver, Field
 
 Curve = Literal[
     "slip",

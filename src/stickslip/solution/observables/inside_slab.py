@@ -90,10 +90,8 @@ class _InsideOfSlab:
 
     def _sent_back(self, low: Floats, high: Floats) -> Floats:
         """Return the integral of what the driver sends back of the waves that leave the contact between times, Pa s."""
-        waves, steps = self.waves, self.waves.history.problem.driver_steps
-        if not waves.changes:
-            return np.asarray(waves.share * self._left(low, high))
-        meets = [self.interval.first + start - waves.half for start, _ in steps[1:]]
+        steps = self.waves.driver.steps
+        meets = [self.interval.first + start - self.waves.half for start, _ in steps[1:]]
         edges = [-math.inf, *meets, math.inf]
         within = [(np.clip(low, begin, end), np.clip(high, begin, end)) for begin, end in pairwise(edges)]
         return np.asarray(sum(share * self._left(*one) for (_, share), one in zip(steps, within, strict=True)))

@@ -132,9 +132,8 @@ def _of_waves(history: History, at: Positions) -> dict[str, Floats]:
     layers = energy.inside(now)
     stored, moving = layers.stored.sum(axis=1), layers.kinetic.sum(axis=1)
     work, radiated, dragged = energy.passed(now)
-    if (machine := energy.waves.machine) is not None:  # its gains and the far stress move the layers and itself
-        heavy = np.array([machine.kinetic(one) for one in now])
-        work, contact = work + heavy, contact + heavy
+    heavy = np.array([energy.waves.driver.kinetic(one) for one in now])  # what drives a machine moves the layers and itself
+    work, contact = work + heavy, contact + heavy
     return {
         "work": work + shaken(history, at),
         "stored": stored + contact,

@@ -11,16 +11,17 @@ from stickslip.foundation.arrays import Floats
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_waves
 from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Field, FollowedFronts, LoadCompared, ObservablesOfKind
+from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.energy.balance import epochs, heat
 from stickslip.solution.observables.energy.both_waves import kinetic
 from stickslip.solution.observables.energy.ground import shaken, shaking, speed
 from stickslip.solution.observables.field import rounding, slab_of
-from stickslip.solution.observables.given_load import of_ground, sent_at, share_at
+from stickslip.solution.observables.given_load import of_ground
 from stickslip.solution.observables.inside_slab import field_of_slab
 from stickslip.solution.observables.proof import Places
 from stickslip.solution.observables.proof_of_load import compared_in_steps, times_in
 from stickslip.solution.observables.quadrature import between
-from stickslip.solution.observables.waves import FromMachine, Radiation, Waves
+from stickslip.solution.observables.waves import Radiation, Waves
 
 MOST_TRIPS = 1000
 """Over more round trips than this, the ways of one and the same front cannot be told apart."""
@@ -35,8 +36,7 @@ class ObservablesOfUniform(ObservablesOfKind):
         waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
         contact = 0.5 * body.inertia * speed(history, at) ** 2
         each = np.array([(waves.stored(epoch), waves.trapped(epoch), kinetic(waves, epoch)) for epoch in now]).reshape(-1, 3)
-        if body.has_machine:
-            each[:, 2] += [history.machine.kinetic(waves.begun(epoch)) for epoch in now]
+        each[:, 2] += [waves.driver.kinetic(waves.begun(epoch)) for epoch in now]
         stored, trapped, moving = each[:, 0] + contact, each[:, 1], each[:, 2] + contact
         return {
             "work": np.array([waves.work(epoch) for epoch in now]) + shaken(history, at),
@@ -131,12 +131,8 @@ def _of_waves(history: History, piece: Places, xi: Floats) -> Floats:
     slope = body.impedance * problem.initial_shear / (0.5 * history.round_trip_time)
     leaving[first] = slope * (history.round_trip_time - phase[first]) - wave_before(problem)
     leaving[~first] = _left(history, piece[~first], trip[~first], phase[~first], inside[~first])
-    delay = 0.5 * history.round_trip_time
-    if body.has_machine:
-        load = FromMachine(history).at(time) - leaving
-    else:
-        load = share_at(problem, inside - delay) * leaving + sent_at(problem, time - delay, inside - delay)
-    load = np.where(first & (inside < delay), problem.excess + slope * phase, load)
+    load = driver_behind(problem).a_slab(history, body).load_at(leaving, time, inside)
+    load = np.where(first & (inside < 0.5 * history.round_trip_time), problem.excess + slope * phase, load)
     velocity, acceleration = of_ground(problem, time, inside)
     return np.asarray(load - body.impedance * velocity - body.inertia * acceleration)
 
