@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.engine import History, Positions, Side
-    from stickslip.solution.observables.asked import AtDriver, Field
+    from stickslip.solution.observables.asked import AtDriver, Field, ObservablesOfKind
 
 Curve = Literal[
     "slip",
@@ -80,6 +80,13 @@ class Readings(NamesAttributes):
         """The first and the last time (s) that figures show by default."""
         return self.history.span
 
+    @property
+    def _observables(self) -> ObservablesOfKind:
+        """What the kind of body makes of the run."""
+        from stickslip.solution.observables.asked import observables_of
+
+        return observables_of(self.problem)
+
     def _at(self, t: ArrayLike | None, side: Side) -> tuple[Positions, tuple[int, ...]]:
         time = self._times(t)
         return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
@@ -132,10 +139,8 @@ class Readings(NamesAttributes):
         return self.drive_traction(t, side)
 
     def _at_driver(self, t: ArrayLike | None, side: Side) -> tuple[AtDriver, tuple[int, ...]]:
-        from stickslip.solution.observables.at_driver import at_driver
-
         time = self._times(t)
-        return at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
+        return self._observables.at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
 
     def normal_load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the normal load S on the contact at times t, also where it varies, in the unit of loads (Pa, N or N m)."""
@@ -205,9 +210,7 @@ class Readings(NamesAttributes):
     @property
     def at_drive(self) -> tuple[Curve, ...]:
         """The names of the quantities that the drive of a string measures, far from the contact; none for other bodies."""
-        from stickslip.solution.observables.asked import observables_of
-
-        is_far = observables_of(self.problem).ways(self.problem)[0] > 0.0
+        is_far = self._observables.ways(self.problem)[0] > 0.0
         return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and is_far else ()
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
@@ -230,9 +233,9 @@ class Readings(NamesAttributes):
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points))
         if set(names) <= set(AT_DRIVE):
-            from stickslip.solution.observables.at_driver import fronts_drawn
+            from stickslip.solution.observables.at_driver import fronts_at_driver
 
-            fronts = fronts_drawn(self.history)
+            fronts = self._observables.fronts_drawn(fronts_at_driver(self.history))
             breaks = fronts[(fronts >= start) & (fronts <= end)]
         many = len(breaks) > points
         inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < LONG_HISTORY else 3).ravel() if len(breaks) else breaks

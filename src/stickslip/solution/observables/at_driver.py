@@ -9,17 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine import History, Side
+from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.observables.asked import AtDriver, observables_of
-
-
-def at_driver(history: History, time: Floats, side: Side) -> AtDriver:
-    """Return rate and load at the (first) driver at times (s since the epoch); at a jump on the given side.
-
-    Raises InputError for times outside the run, and for a side that is none.
-    """
-    return observables_of(history.problem).at_driver(history, time, side)
+from stickslip.solution.observables.asked import observables_of
 
 
 def fronts_at_driver(history: History) -> Floats:
@@ -30,8 +22,3 @@ def fronts_at_driver(history: History) -> Floats:
     begin, end = history.span
     fronts = history.breaks + observables_of(history.problem).ways(history.problem)[0]
     return np.concatenate([[begin], fronts[(fronts > begin) & (fronts < end)], [end]])
-
-
-def fronts_drawn(history: History) -> Floats:
-    """Return those of these times on both sides of which a curve is drawn."""
-    return observables_of(history.problem).fronts_drawn(fronts_at_driver(history))

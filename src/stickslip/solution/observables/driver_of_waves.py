@@ -6,8 +6,8 @@ machine has a motion of its own, which knows more.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from typing import Protocol
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,41 +18,34 @@ from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyWithWaves, OfLayers
 from stickslip.solution.observables.given_load import sent_at, share_at
 
+SumOfPower = Callable[[Epoch | None, Epoch], float]
+"""The sum of a power of waves at the driver between two moments, or since the start (J/m^2)."""
 
-class Adds(Protocol):
-    """What a driver adds to the echo, as it arrives at the contact: an `Inflow`, or what the motion of a machine sends."""
 
-    def at(self, time: Floats, seen: Floats | None = None) -> Floats:
-        """Return it (Pa) at times (s since the start of the run), in the segments that hold at the times `seen`."""
-        ...
+class FromMachine:
+    """What a driver that is a machine adds to the echo, 2 Z Vd, as it arrives at the contact (Pa): in the form of an `Inflow`."""
+
+    def __init__(self, history: History) -> None:
+        problem = history.problem
+        self.motion, self.doubled, self.delay = history.machine, 2.0 * problem.body.impedance, 0.5 * problem.round_trip_time
+        self.breaks = inflow_of(problem).breaks
+
+    def at(self, time: Floats, _: Floats | None = None) -> Floats:
+        """Return it at times (s since the start of the run)."""
+        return np.asarray(self.doubled * self.motion.at(time - self.delay))
 
     def total(self, low: Floats, high: Floats) -> Floats:
         """Return its integral between times (s)."""
-        ...
-
-    def breaks(self) -> list[tuple[int, float]]:
-        """Return the round trips and offsets (s) where segments of the loading begin."""
-        ...
-
-    def edges(self, low: float, high: float) -> Floats:
-        """Return the times (s) between two others from which on it is another smooth function, or has turned by about 1 rad."""
-        ...
+        return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
 
     def many_edges(self, low: float, high: float) -> float:
         """Return the number of times that `edges` returns, at most."""
-        ...
+        return float(len(self.motion.start))
 
-
-class SumsPower(Protocol):
-    """What sums a power of waves at the driver: `Waves` that of the driver, `Radiation` that which goes beyond it."""
-
-    def begun(self, now: Epoch) -> float:
-        """Return the time since the start of the run (s)."""
-        ...
-
-    def passed(self, first: Epoch | None, last: Epoch) -> float:
-        """Return the sum between two moments, or since the start (J/m^2)."""
-        ...
+    def edges(self, low: float, high: float) -> Floats:
+        """Return the times (s) between two others when parts of its motion arrive."""
+        start = self.motion.start + self.delay
+        return np.asarray(start[(start > low) & (start < high)])
 
 
 class DriverOfWaves:
@@ -60,7 +53,8 @@ class DriverOfWaves:
 
     by_storing = False
     """True if its work over round trips at rest is found from what the slab stores."""
-    adds: Adds
+    adds: Inflow | FromMachine
+    """What it adds to the echo."""
 
     def __init__(self, history: History, body: BodyWithWaves) -> None:
         self.problem, self.body = history.problem, body
@@ -92,13 +86,13 @@ class DriverOfWaves:
         """Return its kinetic energy (J/m^2)."""
         return 0.0
 
-    def work(self, waves: SumsPower, first: Epoch | None, last: Epoch) -> float:
-        """Return its work between two moments, or since the start (J/m^2), net of what is radiated."""
-        return waves.passed(first, last)
+    def work(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
+        """Return its work between two moments, or since the start (J/m^2), net of what is radiated: the sum of its power."""
+        return passed(first, last)
 
-    def radiated(self, radiation: SumsPower, first: Epoch | None, last: Epoch) -> float:
-        """Return what is radiated through it between two moments, or since the start (J/m^2)."""
-        return radiation.passed(first, last)
+    def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
+        """Return what is radiated through it between two moments, or since the start (J/m^2): the sum of that power."""
+        return passed(first, last)
 
     def load_at(self, leaving: Floats, time: Floats, inside: Floats) -> Floats:
         """Return the load minus the reference strength (Pa) of waves that left one round trip before times, found again.
@@ -148,19 +142,15 @@ class DriverOfLayers:
         return np.zeros(len(last))
 
 
-class DriverBehind(ABC):
-    """A kind of driver behind each kind of body with waves."""
+class DriverBehind(NamedTuple):
+    """What a kind of driver is behind each kind of body with waves."""
 
-    @abstractmethod
-    def a_slab(self, history: History, body: BodyWithWaves) -> DriverOfWaves:
-        """Return the driver behind a uniform body."""
-
-    @abstractmethod
-    def layers(self, history: History, body: OfLayers) -> DriverOfLayers:
-        """Return the first driver behind a body of layers."""
+    a_slab: type[DriverOfWaves]
+    layers: type[DriverOfLayers]
+    """The first driver behind layers."""
 
 
-DRIVERS: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DriverBehind)  # type: ignore[type-abstract] # as above
+DRIVERS: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DriverBehind)
 
 
 def driver_behind(problem: Problem) -> DriverBehind:

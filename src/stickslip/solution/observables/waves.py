@@ -141,11 +141,11 @@ class Waves:
 
     def work(self, now: Epoch) -> float:
         """Return the work of the driver since the start of the run; of a machine, the work of its gains and of the far stress."""
-        return self.driver.work(self, None, now)
+        return self.driver.work(self.passed, None, now)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
-        return self.driver.work(self, first, last)
+        return self.driver.work(self.passed, first, last)
 
     def passed(self, first: Epoch | None, last: Epoch) -> float:
         """Return the sum of the power between two moments, or since the start."""
@@ -359,11 +359,11 @@ class Radiation(Waves):
 
     def work(self, now: Epoch) -> float:
         """Return the energy radiated since the start of the run; it is zero for a rigid driver."""
-        return self.driver.radiated(self, None, now)
+        return self.driver.radiated(self.passed, None, now)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the energy radiated between two moments; it is zero for a rigid driver."""
-        return self.driver.radiated(self, first, last)
+        return self.driver.radiated(self.passed, first, last)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Return zero: all echoes at rest move the driver in the same way."""

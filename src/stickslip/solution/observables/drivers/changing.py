@@ -6,10 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.engine import Floats, History, Integers
+from stickslip.engine import Floats, Integers
 from stickslip.engine.input import inflow_of
 from stickslip.foundation.constants import RIGID
-from stickslip.problem.bodies import BodyWithWaves, OfLayers
 from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves
 
 
@@ -62,16 +61,4 @@ class ChangingDriverOfLayers(DriverOfLayers):
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 
 
-class ChangingBehind(DriverBehind):
-    """Drivers that change."""
-
-    def a_slab(self, history: History, body: BodyWithWaves) -> ChangingDriver:
-        """Return one behind a uniform body."""
-        return ChangingDriver(history, body)
-
-    def layers(self, history: History, body: OfLayers) -> ChangingDriverOfLayers:
-        """Return one behind layers."""
-        return ChangingDriverOfLayers(history, body)
-
-
-ANSWERS = ChangingBehind()
+ANSWERS = DriverBehind(ChangingDriver, ChangingDriverOfLayers)

@@ -13,40 +13,14 @@ from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.engine import Epoch, Floats, History, Integers
-from stickslip.engine.input import inflow_of, machine_at_first, ramp_per_rate, settled_rate
+from stickslip.engine.input import machine_at_first, ramp_per_rate, settled_rate
 from stickslip.foundation.constants import RIGID
 from stickslip.problem.bodies import BodyWithWaves, OfLayers
-from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, SumsPower
+from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, FromMachine, SumOfPower
 from stickslip.solution.observables.given_load import far_excess_at, pulled, value_at
 
 BEYOND = 1.0 + 1e-9
 """Factor (1) that keeps a phase at the end of a round trip below that of the start of the next one."""
-
-
-class FromMachine:
-    """What a driver that is a machine adds to the echo, 2 Z Vd, as it arrives at the contact (Pa): in the form of an `Inflow`."""
-
-    def __init__(self, history: History) -> None:
-        problem = history.problem
-        self.motion, self.doubled, self.delay = history.machine, 2.0 * problem.body.impedance, 0.5 * problem.round_trip_time
-        self.breaks = inflow_of(problem).breaks
-
-    def at(self, time: Floats, _: Floats | None = None) -> Floats:
-        """Return it at times (s since the start of the run)."""
-        return np.asarray(self.doubled * self.motion.at(time - self.delay))
-
-    def total(self, low: Floats, high: Floats) -> Floats:
-        """Return its integral between times (s)."""
-        return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
-
-    def many_edges(self, low: float, high: float) -> float:
-        """Return the number of times that `edges` returns, at most."""
-        return float(len(self.motion.start))
-
-    def edges(self, low: float, high: float) -> Floats:
-        """Return the times (s) between two others when parts of its motion arrive."""
-        start = self.motion.start + self.delay
-        return np.asarray(start[(start > low) & (start < high)])
 
 
 class MachineDriver(DriverOfWaves):
@@ -60,13 +34,17 @@ class MachineDriver(DriverOfWaves):
         """Return that of its mass."""
         return self.history.machine.kinetic(time)
 
-    def work(self, waves: SumsPower, first: Epoch | None, last: Epoch) -> float:
+    def work(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
         """Return the work of its gains and of the far stress."""
-        return self.history.machine.work(0.0 if first is None else waves.begun(first), waves.begun(last))
+        return self.history.machine.work(self._begun(first), self._begun(last))
 
-    def radiated(self, radiation: SumsPower, first: Epoch | None, last: Epoch) -> float:
+    def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
         """Return what its proportional gain takes up."""
-        return self.history.machine.dissipated(0.0 if first is None else radiation.begun(first), radiation.begun(last))
+        return self.history.machine.dissipated(self._begun(first), self._begun(last))
+
+    def _begun(self, now: Epoch | None) -> float:
+        """Return the time since the start of the run (s)."""
+        return 0.0 if now is None else now.trip * self.body.two_way_time + now.offset
 
     def load_at(self, leaving: Floats, time: Floats, inside: Floats) -> Floats:
         """Return the load from the motion of the machine."""
@@ -178,16 +156,4 @@ class LayerMachine(DriverOfLayers):
         return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)
 
 
-class MachineBehind(DriverBehind):
-    """Drivers that are machines."""
-
-    def a_slab(self, history: History, body: BodyWithWaves) -> MachineDriver:
-        """Return one behind a uniform body."""
-        return MachineDriver(history, body)
-
-    def layers(self, history: History, body: OfLayers) -> LayerMachine:
-        """Return one behind layers."""
-        return LayerMachine(history, body)
-
-
-ANSWERS = MachineBehind()
+ANSWERS = DriverBehind(MachineDriver, LayerMachine)

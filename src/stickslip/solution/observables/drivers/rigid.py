@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from stickslip.engine import Epoch, Floats, History
-from stickslip.problem.bodies import BodyWithWaves, OfLayers
-from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, SumsPower
+from stickslip.engine import Epoch, Floats
+from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, SumOfPower
 
 
 class RigidDriver(DriverOfWaves):
@@ -20,7 +19,7 @@ class RigidDriver(DriverOfWaves):
         """Return its pull rate."""
         return float(self.problem.pull_rate_at(time))
 
-    def radiated(self, radiation: SumsPower, first: Epoch | None, last: Epoch) -> float:
+    def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
         """Return 0."""
         return 0.0
 
@@ -33,16 +32,4 @@ class RigidDriverOfLayers(DriverOfLayers):
         return float(self.problem.pull_rate_at(time))
 
 
-class RigidBehind(DriverBehind):
-    """Drivers that hold their rate."""
-
-    def a_slab(self, history: History, body: BodyWithWaves) -> RigidDriver:
-        """Return one behind a uniform body."""
-        return RigidDriver(history, body)
-
-    def layers(self, history: History, body: OfLayers) -> RigidDriverOfLayers:
-        """Return one behind layers."""
-        return RigidDriverOfLayers(history, body)
-
-
-ANSWERS = RigidBehind()
+ANSWERS = DriverBehind(RigidDriver, RigidDriverOfLayers)

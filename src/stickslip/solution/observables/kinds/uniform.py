@@ -13,11 +13,10 @@ from stickslip.problem.bodies import as_waves
 from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Field, FollowedFronts, LoadCompared, ObservablesOfKind
 from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.energy.balance import epochs, heat
-from stickslip.solution.observables.energy.both_waves import kinetic
 from stickslip.solution.observables.energy.ground import shaken, shaking, speed
 from stickslip.solution.observables.field import rounding, slab_of
 from stickslip.solution.observables.given_load import of_ground
-from stickslip.solution.observables.inside_slab import field_of_slab
+from stickslip.solution.observables.inside_slab import field_of_slab, kinetic
 from stickslip.solution.observables.proof import Places
 from stickslip.solution.observables.proof_of_load import compared_in_steps, times_in
 from stickslip.solution.observables.quadrature import between
