@@ -31,9 +31,8 @@ CLASSES = ("OfLayers", "OfOneSide", "WithWaves", "OnSpring", "Machine", "LossyDr
 def asked_in(test: ast.expr) -> str | None:
     """Return what a condition asks a body or a driver; None if it asks nothing of the sort."""
     for node in ast.walk(test):
-        if isinstance(node, ast.Attribute) and node.attr in FLAGS:
-            if node.attr not in OWNERS or re.search(OWNERS[node.attr], ast.unparse(node.value)):
-                return node.attr
+        if isinstance(node, ast.Attribute) and node.attr in FLAGS and re.search(OWNERS.get(node.attr, ""), ast.unparse(node.value)):
+            return node.attr
         if isinstance(node, ast.Compare):
             for one in (node.left, *node.comparators):
                 if isinstance(one, ast.Attribute) and one.attr in NAMES:

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.engine import History, Positions, Side
-    from stickslip.solution.observables.at_driver import AtDriver
-    from stickslip.solution.observables.field import Field
+    from stickslip.solution.observables.asked import AtDriver, Field, ObservablesOfKind
 
 Curve = Literal[
     "slip",
@@ -81,6 +80,13 @@ class Readings(NamesAttributes):
         """The first and the last time (s) that figures show by default."""
         return self.history.span
 
+    @property
+    def _observables(self) -> ObservablesOfKind:
+        """What the kind of body makes of the run."""
+        from stickslip.solution.observables.asked import observables_of
+
+        return observables_of(self.problem)
+
     def _at(self, t: ArrayLike | None, side: Side) -> tuple[Positions, tuple[int, ...]]:
         time = self._times(t)
         return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
@@ -133,10 +139,8 @@ class Readings(NamesAttributes):
         return self.drive_traction(t, side)
 
     def _at_driver(self, t: ArrayLike | None, side: Side) -> tuple[AtDriver, tuple[int, ...]]:
-        from stickslip.solution.observables.at_driver import at_driver
-
         time = self._times(t)
-        return at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
+        return self._observables.at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
 
     def normal_load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the normal load S on the contact at times t, also where it varies, in the unit of loads (Pa, N or N m)."""
@@ -205,8 +209,9 @@ class Readings(NamesAttributes):
 
     @property
     def at_drive(self) -> tuple[Curve, ...]:
-        """The names of the quantities that the drive of a string measures; none for other bodies."""
-        return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and self.problem.body.has_waves else ()
+        """The names of the quantities that the drive of a string measures, far from the contact; none for other bodies."""
+        is_far = self._observables.ways(self.problem)[0] > 0.0
+        return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and is_far else ()
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
         """Return times (s, ascending) and values of one quantity, one of `curves`, for drawing.
@@ -230,10 +235,8 @@ class Readings(NamesAttributes):
         if set(names) <= set(AT_DRIVE):
             from stickslip.solution.observables.at_driver import fronts_at_driver
 
-            fronts = fronts_at_driver(self.history)
+            fronts = self._observables.fronts_drawn(fronts_at_driver(self.history))
             breaks = fronts[(fronts >= start) & (fronts <= end)]
-            if not self.problem.body.is_uniform:  # each time takes a replay of all waves
-                return (time := np.linspace(start, end, points)), [getattr(self, name)(time) for name in names]
         many = len(breaks) > points
         inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < LONG_HISTORY else 3).ravel() if len(breaks) else breaks
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, inside]))

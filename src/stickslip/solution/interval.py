@@ -7,9 +7,8 @@ import numpy as np
 from stickslip.engine import shocks_table
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem.bodies import OfLayers
 from stickslip.solution.evaluation import Readings
-from stickslip.solution.observables.field import slab_of
+from stickslip.solution.observables.asked import observables_of
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 
@@ -17,32 +16,28 @@ FAINT = 0.1
 """A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""
 MOST_FRONTS = 60
 """If more fronts than this leave the contact none is returned: they could not be told apart."""
-MOST_TRIPS = 1000
-"""Over more round trips than this no front is returned: the ways of one and the same front could not be told apart."""
 
 
 def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
     """Return for each front between two times (s) the times when it is at the contact, at the driver, and so on in turn.
 
-    It is empty for layers, where fronts split, and for more than `MOST_TRIPS` round trips. Raises InputError for a block.
+    It is empty for layers, where fronts split, and over so many round trips that their ways could not be told apart. Raises
+    InputError for a block.
     """
-    if isinstance(readings.problem.body, OfLayers):
+    fronts = observables_of(readings.problem).fronts(readings.problem)
+    if end - start > fronts.trips * fronts.two_way_time:
         return []
-    body = slab_of(readings.problem)
-    if end - start > MOST_TRIPS * body.two_way_time:
-        return []
-    most = max((share for _, share in readings.problem.driver_steps[1:]), key=abs, default=0.0)
-    share = max(most, body.front_reflection, key=abs)
-    return [bounces_of(time, end, body.two_way_time, share) for time in origins_of(readings, start, end)]
+    origins = origins_of(readings, start, end, fronts.two_way_time)
+    return [bounces_of(time, end, fronts.two_way_time, fronts.share) for time in origins]
 
 
-def origins_of(readings: Readings, start: float, end: float) -> Floats:
+def origins_of(readings: Readings, start: float, end: float, round_trip: float) -> Floats:
     """Return the times (s) of shocks, starts and ends of slip at the contact, from one round trip before `start` on.
 
     A time that is a whole number of round trips after an earlier one is left out: it is taken for an echo, on the same
     characteristic. The result is empty if more than `MOST_FRONTS` remain, which could not be told apart.
     """
-    history, round_trip = readings.history, slab_of(readings.problem).two_way_time
+    history = readings.history
     run = readings.solution if isinstance(readings, Window) else readings
     assert isinstance(run, Solution)
     events = run.events
@@ -82,8 +77,7 @@ def choose_interval(readings: Readings, start: float | None, end: float | None) 
     slab, through all its layers; periods of a block) the last event whose slip is at least 99 % of the largest, in local time.
     Raises InputError if the interval is empty.
     """
-    body = readings.problem.body
-    round_trip = body.two_way_time if isinstance(body, OfLayers) else readings.history.round_trip_time
+    round_trip = readings.problem.body.longest_way
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
         slips = readings.events.slip.to_numpy(float)
         if len(slips):

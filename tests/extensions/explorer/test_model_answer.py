@@ -21,8 +21,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.scenario import Scenario
+from stickslip.solution.observables.asked import Field
 from stickslip.solution.observables.energy.balance import energies
-from stickslip.solution.observables.field import Field
 from tests.problems import of_each_kind, scaled_rate
 
 NAMES = [

@@ -16,12 +16,10 @@ import numpy as np
 
 from stickslip.engine import History, Positions, SlipEvents
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.bodies import OfLayers, as_waves
-from stickslip.solution.observables.energy.balance import energies_of_layers, epochs, event_energies, kinetic
-from stickslip.solution.observables.energy.ground import speed
+from stickslip.solution.observables.asked import observables_of
+from stickslip.solution.observables.energy.balance import event_energies
 from stickslip.solution.observables.energy.pulses import Pulses
 from stickslip.solution.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
-from stickslip.solution.observables.waves import Radiation, Waves
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,40 +75,9 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
 
 def _energies(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     parts = event_energies(history, begin, end)
-    body = history.problem.body
-    of = _of_layers if isinstance(body, OfLayers) else _of_slab if body.has_waves else _of_block
-    extra = of(history, begin, end)
+    extra = observables_of(history.problem).energetics(history, begin, end)
     made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
     return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
-
-
-def _of_slab(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
-    body = as_waves(history.problem.body)
-    waves, radiation = Waves(history, body), Radiation(history, body)
-    first, last = epochs(history, begin), epochs(history, end)
-    before, after = (np.array([kinetic(waves, epoch) for epoch in moments]) for moments in (first, last))
-    contact = 0.5 * body.inertia * (speed(history, end) ** 2 - speed(history, begin) ** 2)
-    return {
-        "kinetic": after - before + contact,
-        "radiated": np.array([radiation.work_between(*span) for span in zip(first, last, strict=True)]),
-        "trapped_before": np.array([waves.trapped(epoch) for epoch in first]),
-    }
-
-
-def _of_layers(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
-    body = history.problem.body
-    assert isinstance(body, OfLayers)
-    if not len(begin.piece):
-        return {name: np.zeros(0) for name in ("kinetic", "radiated", "trapped_before")}
-    before, after = (energies_of_layers(history, body, at) for at in (begin, end))
-    grown = {name: after[name] - before[name] for name in ("kinetic", "radiated")}
-    return grown | {"trapped_before": before["trapped"]}
-
-
-def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
-    nothing = np.zeros(len(begin.piece))
-    moving = 0.5 * history.problem.body.inertia * (history.rate(end) ** 2 - history.rate(begin) ** 2)
-    return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
 def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> tuple[Floats, Floats]:

@@ -1,23 +1,14 @@
-"""Exact displacement, velocity and shear stress anywhere inside the slab, from the waves that its contact sent and received.
+"""Displacement, velocity and shear stress anywhere inside a body, and the wave that left its contact in an interval of time.
 
-Two waves travel in the slab (d'Alembert): with x = 0 at the contact and x = h at the driver,
-
-    Z v(x, t) + sigma(x, t) = beta(t + x/c)      towards the contact
-    Z v(x, t) - sigma(x, t) = w(t - x/c)         away from it, w = 2 Z v(0, t) - beta(t)
-    u(x, t) = u(0, t) + [integral of beta over (t, t + x/c) - integral of w over (t - x/c, t)] / (2 Z)
-
-There is no grid. The load beta that is still on its way is an earlier w, reflected by the driver, plus what the driver adds. So
-the present field follows from the past alone, and does not change when a run is made longer.
+How the waves of a slab make its field is in `inside_slab`, and those of layers in `inside_layers`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
-from typing import NamedTuple, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -27,30 +18,16 @@ from stickslip.engine import TERMS, History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
-from stickslip.problem.bodies import BodyWithWaves, OfLayers, as_waves
-from stickslip.solution.observables.inside_layers import field_of_layers
+from stickslip.problem.bodies import BodyWithWaves, as_waves
+from stickslip.solution.observables.asked import Extent, Field, observables_of
 from stickslip.solution.observables.waves import Waves
 
-ROUNDS = 8
-"""Round trips that are evaluated together."""
 POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
 """Sampling points for the wave of a piece. Their number makes the interpolation exact for the polynomials of the history times the
 linear derivative of time with respect to xi.
 """
 TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)), float)
 """Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
-
-
-class Field(NamedTuple):
-    """Displacement, velocity and stress in a slab at given places and times: arrays of the same shape."""
-
-    displacement: Floats
-    """Displacement u, m: absolute, as the slip is where the ground does not move; in a window, relative to the contact at the start
-    of the event. It includes that of moving ground, as velocity does."""
-    velocity: Floats
-    """Velocity v, m/s."""
-    stress: Floats
-    """Shear stress sigma, Pa: positive if it pulls the contact forwards."""
 
 
 def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
@@ -61,30 +38,8 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     outside the slab, for times outside the run, and if the waves in the slab left the contact in a leap over creep.
     """
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
-    if isinstance(layers := history.problem.body, OfLayers):
-        at_contact = np.broadcast_to(slip(t), time.shape)
-        if (ground := history.problem.ground) is not None:
-            begun = history.epoch.trip * layers.round_trip_time + history.epoch.offset
-            at_contact = at_contact + ground.displacement_at(begun + time) - ground.displacement_at(begun)
-        check_side(side)
-        inside = field_of_layers(history, layers, at_contact.ravel(), x=place.ravel(), t=time.ravel(), side=side)
-        return Field(*(np.reshape(values, place.shape) for values in inside))
-    body = slab_of(history.problem)
-    if not np.all((place >= 0.0) & (place <= body.distance)):
-        raise InputError(f"field: x must lie between 0 (the contact) and {body.distance:g} m (the driver)")
-    check_side(side)
-    at_contact = np.broadcast_to(slip(t), time.shape)  # raises InputError for times outside the run
-    waves, away, moment = Waves(history, body), place.ravel() / body.wave_speed, time.ravel()
-    rise, velocity, stress = np.empty((3, moment.size))
-    batch = np.floor(moment / (ROUNDS * waves.round))
-    for number in np.unique(batch):
-        chosen = batch == number
-        rise[chosen], velocity[chosen], stress[chosen] = _InsideOfSlab(waves, moment[chosen]).field(away[chosen], side)
-    displacement = at_contact.ravel() + rise
-    if (ground := history.problem.ground) is not None:
-        begun = waves.begun(history.epoch)
-        displacement += ground.displacement_at(begun + moment) - ground.displacement_at(begun)
-    return Field(*(np.reshape(values, place.shape) for values in (displacement, velocity, stress)))
+    answers = observables_of(history.problem)
+    return answers.field(history, lambda: np.broadcast_to(slip(t), time.shape), place, time, side)
 
 
 def check_side(side: str) -> None:
@@ -101,80 +56,9 @@ def slab_of(problem: Problem) -> BodyWithWaves:
     return as_waves(problem.body, NO_INSIDE)
 
 
-class Extent(NamedTuple):
-    """The places (m) inside a body with waves, from that of one driver to that of the other; the contact is at 0."""
-
-    lowest: float
-    """0 if there is one side."""
-    highest: float
-    boundaries: tuple[float, ...]
-    """Where layers meet."""
-    two_way_time: float
-    """The longest two-way travel time to a driver (s)."""
-
-
 def extent_of(problem: Problem) -> Extent:
     """Return the places inside the body of a problem. Raises InputError for a rigid body."""
-    body = problem.body
-    if not isinstance(body, OfLayers):
-        slab = slab_of(problem)
-        return Extent(0.0, slab.distance, (), slab.two_way_time)
-    depths = [np.cumsum(one.thickness).tolist() for one in body.stacks]
-    lowest = -depths[1][-1] if len(depths) > 1 else 0.0
-    below = tuple(-one for one in depths[1][:-1]) if len(depths) > 1 else ()
-    return Extent(lowest, depths[0][-1], (*below, *depths[0][:-1]), body.two_way_time)
-
-
-class _InsideOfSlab:
-    """The slab at several times (s since the epoch), evaluated from one interval of its past."""
-
-    def __init__(self, waves: Waves, time: Floats) -> None:
-        self.waves, self.time = waves, time
-        beside = 2.0 * float(rounding(time, waves.round).max())  # so that both limits at its ends are inside the interval
-        self.interval = WaveInterval(waves, float(time.min()) - waves.round - beside, float(time.max()) + beside)
-
-    def field(self, away: Floats, side: Side) -> tuple[Floats, Floats, Floats]:
-        """Return displacement relative to the contact, velocity and stress at travel times `away` (s) from the contact."""
-        impedance, reference = self.waves.body.impedance, self.waves.reference
-        load, leaving = self._coming(away, side), self.interval.leaving(self.time - away, side)
-        rise = 2.0 * reference * away + self._load_coming(away) - self._left(self.time - away, self.time)
-        return rise / (2.0 * impedance), (load + leaving) / (2.0 * impedance), reference + 0.5 * (load - leaving)
-
-    def _coming(self, away: Floats, side: Side) -> Floats:
-        """Return the load minus the reference (Pa) that reaches the contact after the time `away` (s).
-
-        It comes from the initial state, or was sent back by the driver.
-        """
-        waves, half = self.waves, self.waves.half
-        since = self.time - self.interval.first + away
-        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)  # by which a time is moved to the side that is seen
-        left = self.time - (waves.round - away)  # when the wave left the contact
-        sent_back = waves.arriving(self.interval.leaving(left, side), left - self.interval.first, slack)
-        return np.where(since < half + slack, waves.first_load(since), sent_back)
-
-    def _load_coming(self, away: Floats) -> Floats:
-        """Return the integral of that load over the time until then, Pa s."""
-        waves, first = self.waves, self.interval.first
-        since = np.minimum(self.time - first, waves.half)
-        until = np.minimum(self.time - first + away, waves.half)
-        of_start = (until - since) * (waves.excess + 0.5 * waves.slope * (since + until))
-        low, high = (np.maximum(time, first + waves.half) - waves.round for time in (self.time, self.time + away))
-        inflow = waves.inflow.total(low + waves.round - first, high + waves.round - first)
-        return np.asarray(of_start + self._sent_back(low, high) + inflow)
-
-    def _sent_back(self, low: Floats, high: Floats) -> Floats:
-        """Return the integral of what the driver sends back of the waves that leave the contact between times, Pa s."""
-        waves, steps = self.waves, self.waves.history.problem.driver_steps
-        if not waves.changes:
-            return np.asarray(waves.share * self._left(low, high))
-        meets = [self.interval.first + start - waves.half for start, _ in steps[1:]]
-        edges = [-math.inf, *meets, math.inf]
-        within = [(np.clip(low, begin, end), np.clip(high, begin, end)) for begin, end in pairwise(edges)]
-        return np.asarray(sum(share * self._left(*one) for (_, share), one in zip(steps, within, strict=True)))
-
-    def _left(self, low: Floats, high: Floats) -> Floats:
-        """Return the integral between two times of the wave that leaves the contact plus the reference, Pa s."""
-        return self.interval.total(high) - self.interval.total(low)
+    return observables_of(problem).extent(problem)
 
 
 NOT_KNOWN = "the field is not known here: the waves in the slab left the contact in a leap over creep"

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import LoadingHistory, Problem, far_at_first
-from stickslip.problem.bodies import OfLayers
+from stickslip.solution.observables.asked import observables_of
 
 BESIDE = 1e-10
 """Loads are compared this far (1) before and after a break of the loading, too, as a share of the round trip or of the time."""
@@ -76,16 +76,11 @@ def of_ground(problem: Problem, time: Floats, inside: Floats) -> tuple[Floats, F
 
 def breaks_at_contact(problem: Problem) -> Floats:
     """Return the times (s) when breaks of loading and ground, and changes of the driver, are felt at the contact."""
-    body = problem.body
     given = [one for one in (problem.pull_rate, problem.far_stress) if isinstance(one, LoadingHistory)]
     starts = [one.start for history in given for one in history.segments] + [start for start, _ in problem.driver_steps]
-    if isinstance(body, OfLayers):
-        delays = {sum(stack.counts) * stack.time for stack in body.stacks}
-    else:
-        delays = {0.5 * body.round_trip_time if body.has_waves else 0.0}
-    found = [np.array(starts) + delay for delay in delays]
+    found = [np.array(starts) + way for way in observables_of(problem).ways(problem)]
     if problem.ground is not None:
-        found += [problem.ground.start + late for late in (0.0, body.round_trip_time)]
+        found += [problem.ground.start + late for late in (0.0, problem.body.round_trip_time)]
     times = np.unique(np.concatenate(found))
     return times[times > 0.0]
 

@@ -18,9 +18,9 @@ import numpy as np
 from stickslip.engine import Floats, History, Integers, LadderCell, Positions
 from stickslip.engine.input import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
-from stickslip.problem import inflow_of, settled_rate
+from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
-from stickslip.solution.observables.layer_machine import LayerMachine
+from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.layer_records import (
     PULL,
     SHARE,
@@ -47,6 +47,8 @@ class LayerWaves:
     def __init__(self, history: History, body: OfLayers) -> None:
         self.history, self.body, self.problem = history, body, history.problem
         self.time, self.round = body.cells.time, body.round_trip_time
+        self.driver = driver_behind(self.problem).layers(history, body)
+        """The first driver; one on the other side is passive, and does not change."""
         sides, cells, store = list(sides_of(self.problem, body)), LadderCell.of(ladder_of(self.problem)), history.store
         counts = [sum(side.layers.counts) for side in sides]
         self.starts = np.cumsum([0, *counts])
@@ -72,7 +74,7 @@ class LayerWaves:
             growth=np.array(cells.growth, float),
             starts=self.starts.astype(np.int64),
             strength=strength,
-            gain=float(body.stacks[0].driver_impedance) if body.has_machine else 0.0,
+            gain=self.driver.gain,
             joined=int(body.is_joined),
             delay=float(body.inflow_delay),
             time=self.time,
@@ -84,10 +86,6 @@ class LayerWaves:
         self._before = np.array(cells.inflow_before[self.last], float)
         self._pulled = np.array(cells.pulled[self.last], float)
         self._is_pulled = np.array([1.0] + [float(body.is_joined)] * (len(sides) - 1))
-        self.machine = LayerMachine(history) if body.has_machine else None
-        """The motion of a driver that is a machine; None if it is none."""
-        self.shares = inflow_of(self.problem) if self.problem.driver_changes else None
-        """The inflow through a driver that changes, which knows the share that is sent back; None if it stays."""
         trips = np.unique(self.contact.trip)
         self._steps = np.union1d(trips, trips + 1)
 
@@ -109,19 +107,9 @@ class LayerWaves:
         return self.clipped(np.where(late, trip, trip - 1), np.where(late, phase - self.time, phase + self.time))
 
     @cached_property
-    def turned(self) -> tuple[Integers, Floats, Floats]:
-        """The changes of the driver in order: round trips and phases (s) of its new waves, and the share before less that after."""
-        if self.shares is None:
-            return np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
-        trips, phases = np.array(self.shares.breaks()).T
-        by = -np.diff(self.shares.reflection, prepend=self.shares.reflection[0])
-        changes = by != 0.0
-        return trips[changes].astype(np.int64), phases[changes], by[changes]
-
-    @cached_property
     def _met_at_changes(self) -> Floats:
         """The integral of the wave that the first driver met, from the start of the round trip to each change (Pa s)."""
-        trip, phase, _ = self.turned
+        trip, phase, _ = self.driver.turned
         return self.rows(trip - 1, phase)[:, TOTAL, self.last[0]]
 
     def sent(self, trip: Integers, phase: Floats) -> Floats:
@@ -136,7 +124,7 @@ class LayerWaves:
             phase - known,
         )  # and not time - low, which is rounded to the digits of the time
         found = np.empty((len(self._before), 4, *time.shape))
-        doubled = 2.0 * self.body.last_impedance
+        shares = [self.driver.share_at(time), *self.ladder.reflection[self.last[1:]]]
         for side, last in enumerate(self.last):
             if (weight := self._pulled[side]) != 0.0:
                 inflow = inflow_of(self.problem)
@@ -145,13 +133,11 @@ class LayerWaves:
             else:
                 first, slope = self._inflow[:, side]
                 value, whole = first + slope * time, (first + 0.5 * slope * (low + time)) * lasting
-            if self.machine is not None:
-                rate, way = self.machine.motion(trip, phase)
-                value, whole = doubled * rate, doubled * way
+            if side == 0:
+                value, whole = self.driver.sent(trip, phase, (value, whole))
             wave, growth = self.ladder.wave[last], self.ladder.growth[last]
             kept = RIGID - self.ladder.reflection[last]  # it reflects all, and the recursion lets it reflect its share
-            changes = self.shares if side == 0 else None
-            found[side, SHARE] = self.ladder.reflection[last] if changes is None else changes.reflection_at(time)
+            found[side, SHARE] = shares[side]
             of_start = kept * (wave + growth * phase) + self._before[side]
             found[side, VALUE] = np.where(early & (phase < before), of_start, value)
             found[side, TOTAL] = whole + known * (kept * (wave + 0.5 * growth * known) + self._before[side])
@@ -208,13 +194,7 @@ class LayerWaves:
 
     def _with_changes(self, phase: Floats, levels: int) -> Floats:
         """Return phases (s) with those of changes of the driver behind them, if integrals are followed."""
-        return np.append(phase, self.turned[1]) if levels > TOTAL else phase
-
-    def _ramp(self, trip: Integers) -> Floats:
-        """Return the growth of the load (Pa) in a round trip of a settled rest, under the loading of round trips."""
-        if self.machine is None:
-            return np.full(len(trip), self.history.ramp)
-        return np.asarray(self.body.grows_in_a_trip(1.0) * settled_rate(self.problem, np.asarray((trip + 0.5) * self.round, float)))
+        return np.append(phase, self.driver.turned[1]) if levels > TOTAL else phase
 
     def _ground(self, trip: Integers, phase: Floats) -> Floats:
         """Return the velocity of moving ground (m/s) at these places in time, and its way in the round trip (m); else nothing."""
@@ -229,16 +209,16 @@ class LayerWaves:
         phase = place.phase
         turned = np.zeros((0, 3))
         if len(phase) > len(asked):
-            changes, _, by = self.turned
+            changes, _, by = self.driver.turned
             turned = np.column_stack([changes, np.arange(len(asked), len(phase)), by])
         last = int(queries.asked[-1])
         trips, block = self._steps[self._steps <= max(last, 0)], max(MOST // (6 * len(phase)), 1)
         for low in range(0, len(trips), block):
             part = trips[low : low + block]
             when = np.broadcast_arrays(part[:, None], phase)
-            steps = FollowedTrips(phase, part, self.sent(*when), self._ground(*when), self._ramp(part - 1), turned)
+            steps = FollowedTrips(phase, part, self.sent(*when), self._ground(*when), self.driver.ramp(part - 1), turned)
             replay(self.contact, self.ladder, steps, place, queries)
-        after = self._ramp(trips[-1:] if len(trips) else np.array([-1]))
+        after = self.driver.ramp(trips[-1:] if len(trips) else np.array([-1]))
         place.ramp[0] = after[0]
         nothing = FollowedTrips(phase, trips[:0], np.empty((0, 0, 0, 0)), np.empty((2, 0, 0)), after, turned)
         answer(self.ladder, nothing, place, queries, last + 1)
@@ -253,12 +233,12 @@ class LayerWaves:
             found[..., near + 1] = (1.0 + beyond) * away + beyond * back
             if (last - self.starts[side]) % 2 == 0:
                 found[..., last] = sent[side, SHARE][:, None] * rows[..., last] + sent[side, : rows.shape[1]].T
-                if side == 0 and rows.shape[1] > TOTAL and len(self.turned[0]):
+                if side == 0 and rows.shape[1] > TOTAL and len(self.driver.turned[0]):
                     found[:, TOTAL, last] += self._met_before_changes(trip + 1, phase)
         return found
 
     def _met_before_changes(self, trip: Integers, phase: Floats) -> Floats:
         """Return what changes of the driver in these round trips, up to these phases (s), take off what it sends back (Pa s)."""
-        changes, at, by = self.turned
+        changes, at, by = self.driver.turned
         passed = (changes == trip[:, None]) & (at <= phase[:, None])
         return np.asarray(passed @ (by * self._met_at_changes))

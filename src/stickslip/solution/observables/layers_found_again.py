@@ -1,4 +1,4 @@
-"""The load of a contact under layers, found again from the replayed waves of its slip, and the equation of a machine."""
+"""The load of a contact under layers, found again from the replayed waves of its slip."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import driver_of
 from stickslip.problem.bodies import OfLayers
-from stickslip.solution.observables.given_load import beside, breaks_at_contact, far_excess_at, of_ground, pulled, value_at
+from stickslip.solution.observables.given_load import beside, breaks_at_contact, of_ground
 from stickslip.solution.observables.layers import LayerWaves
 
 REPLAYED = 2e7
@@ -42,8 +41,7 @@ def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
     time, at = trip * history.round_trip_time + phase, Positions.inside(piece, xi)
     found = _load(history, body, (waves.starts, rows), at, (time, time))
     differs = np.abs(found - history.excess(at))
-    if waves.machine is not None:
-        differs = np.maximum(differs, np.abs(_missed_by_machine(history, waves, rows[:, waves.last[0]], (trip, phase))))
+    differs = np.maximum(differs, np.abs(waves.driver.missed(rows[:, waves.last[0]], trip, phase)))
     return float(differs.max(initial=0.0)), len(np.unique(piece))
 
 
@@ -82,19 +80,3 @@ def _load(
         near, far = impedances
         load = 2.0 * damping * rate - (far * rows[:, starts[0]] + near * rows[:, starts[1]]) / (near + far)
     return np.asarray(load - damping * velocity - body.inertia * acceleration)
-
-
-def _missed_by_machine(history: History, waves: LayerWaves, last: Floats, when: tuple[NDArray[np.int64], Floats]) -> Floats:
-    """Return by how much (Pa) a machine behind layers misses its equation of motion, `last` being the wave that it sends.
-
-    M dVd/dt = kp (V0 - Vd) + q + s - Z Vd + w, with q the force of the integral gain, and w = 2 Z Vd - `last` what it meets.
-    """
-    problem, machine, (trip, phase) = history.problem, waves.machine, when
-    assert machine is not None
-    body, time = problem.body, trip * history.round_trip_time + phase
-    rate, faster = machine.motion(trip, phase)[0], machine.acceleration(trip, phase)
-    force = body.driver_impedance * value_at(problem.pull_rate, time, time) + far_excess_at(problem, time, time)
-    first = driver_of(problem).at_first(problem)[1]
-    push = first + body.driver_integral_gain * (pulled(problem, time) - machine.moved(trip, phase))
-    met = 2.0 * body.last_impedance * rate - last
-    return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)

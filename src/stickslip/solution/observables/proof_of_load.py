@@ -9,19 +9,16 @@ places inside the steps: a measurement, not a bound.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import wave_before
-from stickslip.problem.bodies import OfLayers, as_waves
-from stickslip.solution.observables.given_load import beside, breaks_at_contact, of_ground, pulled, sent_at, share_at
+from stickslip.solution.observables.asked import LoadCompared, observables_of
+from stickslip.solution.observables.given_load import beside, breaks_at_contact
 from stickslip.solution.observables.given_on_discs import near_break
 from stickslip.solution.observables.proof import Places, chosen_steps
-from stickslip.solution.observables.waves import FromMachine
 
 Expected = Callable[[History, Places, Floats], Floats]
 """Loads minus the reference strength at places in pieces of a history, as they are found again."""
@@ -35,24 +32,14 @@ SHORT = 1e-11
 """Steps shorter than this share (1) of the round trip, or of the time since the start, are not compared: times are rounded."""
 
 
-class LoadCompared(NamedTuple):
-    """How the loads of a history compare with those that are found again."""
-
-    missed: float = 0.0
-    """Largest difference (Pa, N or N m)."""
-    compared: int = 0
-    """Number of steps, and of rests, whose loads were compared."""
-
-
 def load_compared(history: History) -> LoadCompared:
     """Return how far the loads of a history are from those that follow from its slip and its problem."""
-    body = history.problem.body
-    if isinstance(body, OfLayers):
-        from stickslip.solution.observables.layers_found_again import loads_of_layers  # here, because few bodies are of layers
+    return observables_of(history.problem).load_compared(history)
 
-        return LoadCompared(*loads_of_layers(history, body))
+
+def compared_in_steps(history: History, expected: Expected) -> LoadCompared:
+    """Return how far the loads of a history are from those expected, at places in its steps, and beside breaks of the loading."""
     n = chosen_steps(history.store, comparable(history))
-    expected = _of_waves if body.has_waves else _of_spring
     worst, compared = 0.0, 0
     for some in np.array_split(n, len(n) // AT_ONCE + 1):
         xi = np.tile(INSIDE, len(some))
@@ -86,7 +73,7 @@ def comparable(history: History) -> Places:
     return np.flatnonzero(known)
 
 
-def _times(history: History, piece: Places, xi: Floats) -> tuple[NDArray[np.int64], Floats, Floats, Floats]:
+def times_in(history: History, piece: Places, xi: Floats) -> tuple[NDArray[np.int64], Floats, Floats, Floats]:
     """Return the round trips and phases (s) of places in pieces, their times (s since the start), and these away from breaks.
 
     A time at a break of the loading, to rounding, counts as on that side of it where the middle of its piece is.
@@ -97,51 +84,3 @@ def _times(history: History, piece: Places, xi: Floats) -> tuple[NDArray[np.int6
     time = trip * history.round_trip_time + phase
     near = near_break(history, time)
     return trip, phase, time, time + np.clip(middle - phase, -near, near)
-
-
-def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
-    """Return the load of a block minus the reference strength (N): that of its spring, and inertia on moving ground."""
-    problem = history.problem
-    _, _, time, inside = _times(history, piece, xi)
-    slip = history.slipped(Positions.inside(piece, xi))
-    _, acceleration = of_ground(problem, time, inside)
-    return np.asarray(
-        problem.excess + problem.body.stiffness * (pulled(problem, time) - slip) - problem.body.inertia * acceleration
-    )
-
-
-def _of_waves(history: History, piece: Places, xi: Floats) -> Floats:
-    """Return the load of a uniform body minus the reference strength (Pa): the echo, what the driver sends, and moving ground."""
-    problem, body = history.problem, as_waves(history.problem.body)
-    trip, phase, time, inside = _times(history, piece, xi)
-    leaving = np.empty(len(piece))
-    first = trip == 0
-    slope = body.impedance * problem.initial_shear / (0.5 * history.round_trip_time)
-    leaving[first] = slope * (history.round_trip_time - phase[first]) - wave_before(problem)
-    leaving[~first] = _left(history, piece[~first], trip[~first], phase[~first], inside[~first])
-    delay = 0.5 * history.round_trip_time
-    if body.has_machine:
-        load = FromMachine(history).at(time) - leaving
-    else:
-        load = share_at(problem, inside - delay) * leaving + sent_at(problem, time - delay, inside - delay)
-    load = np.where(first & (inside < delay), problem.excess + slope * phase, load)
-    velocity, acceleration = of_ground(problem, time, inside)
-    return np.asarray(load - body.impedance * velocity - body.inertia * acceleration)
-
-
-def _left(history: History, piece: Places, trip: NDArray[np.int64], phase: Floats, inside: Floats) -> Floats:
-    """Return the wave 2 Z v - load, plus the reference (Pa), that left the contact one round trip before places in pieces."""
-    problem, store = history.problem, history.store
-    if not len(piece):
-        return np.empty(0)
-    before = np.searchsorted(store.trip, trip, side="left") - 1
-    source = history.phases.latest(phase, before)
-    known = source >= 0
-    source = np.where(known, source, 0)
-    echoed = history.xi(source, np.maximum(phase - store.phase_from[source], 0.0))
-    rests = (trip - 1 - store.trip[source]).astype(float)
-    at = Positions(source, echoed, rests, np.zeros(len(piece), bool), source)
-    velocity, acceleration = of_ground(problem, (trip - 1) * history.round_trip_time + phase, inside - history.round_trip_time)
-    left = 2.0 * problem.body.impedance * history.rate(at) - history.excess(at)
-    left += problem.body.impedance * velocity - problem.body.inertia * acceleration
-    return np.where(known, left, np.nan)

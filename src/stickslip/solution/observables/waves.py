@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from stickslip.engine import START, Epoch, History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
-from stickslip.problem import Inflow, inflow_of, wave_before
+from stickslip.problem import wave_before
 from stickslip.problem.bodies import BodyWithWaves
+from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.quadrature import NODES, WEIGHTS, over, places_in
 
 OfWave = Callable[[Floats, Floats], Floats]
@@ -51,32 +51,6 @@ class Sampled(NamedTuple):
 NOWHERE = Sampled(np.empty(0), np.empty(0), np.empty(0))
 
 
-class FromMachine:
-    """What a driver that is a machine adds to the echo, 2 Z Vd, as it arrives at the contact (Pa): in the form of an `Inflow`."""
-
-    def __init__(self, history: History) -> None:
-        problem = history.problem
-        self.motion, self.doubled, self.delay = history.machine, 2.0 * problem.body.impedance, 0.5 * problem.round_trip_time
-        self.breaks = inflow_of(problem).breaks
-
-    def at(self, time: Floats, _: Floats | None = None) -> Floats:
-        """Return it at times (s since the start of the run)."""
-        return np.asarray(self.doubled * self.motion.at(time - self.delay))
-
-    def total(self, low: Floats, high: Floats) -> Floats:
-        """Return its integral between times (s)."""
-        return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
-
-    def many_edges(self, low: float, high: float) -> float:
-        """Return the number of times that `edges` returns, at most."""
-        return float(len(self.motion.start))
-
-    def edges(self, low: float, high: float) -> Floats:
-        """Return the times (s) between two others when parts of its motion arrive."""
-        start = self.motion.start + self.delay
-        return np.asarray(start[(start > low) & (start < high)])
-
-
 class Waves:
     """Integrals over the waves in a slab; energies are in J/m^2."""
 
@@ -86,10 +60,8 @@ class Waves:
         self.round, self.half = body.two_way_time, 0.5 * body.two_way_time
         self.slope = body.impedance * history.problem.initial_shear / self.half  # G (V - v0) / h
         self.before: float = wave_before(history.problem)
-        self.inflow: Inflow | FromMachine = FromMachine(history) if body.has_machine else inflow_of(history.problem)
-        self.share = RIGID if body.has_machine else body.reflection
-        self.changes = history.problem.driver_changes
-        self.by_storing = body.is_driven_rigidly or self.changes  # how work over round trips at rest is found: see `_at_rest`
+        self.driver = driver_behind(history.problem).a_slab(history, body)
+        self.inflow, self.by_storing = self.driver.adds, self.driver.by_storing
         self._seen: tuple[Epoch, Sampled, Sampled] | None = None  # the waves at the last moment that was asked for
 
     def leaving(self, at: Positions) -> Floats:
@@ -112,8 +84,7 @@ class Waves:
 
     def share_of(self, left: Floats) -> Floats | float:
         """Return the share (1) that the driver sends back of waves that left the contact at times (s since the start)."""
-        assert isinstance(self.inflow, Inflow) or not self.changes
-        return self.inflow.reflection_at(left + self.round) if self.changes else self.share  # type: ignore[union-attr] # as asserted
+        return self.driver.share_at(left + self.round)
 
     def first_load(self, time: Floats) -> Floats:
         """Return the load minus the reference (Pa) that the initial state brings, at times (s) up to h/c after the start."""
@@ -130,14 +101,13 @@ class Waves:
     # ---- energies -----------------------------------------------------------------------------------------------------------
 
     def stored(self, now: Epoch) -> float:
-        """Return the elastic and kinetic energy inside the slab, up to a constant."""
+        """Return the elastic and kinetic energy inside the slab and of its driver, up to a constant."""
         doubled = 2.0 * self.reference
         down, up = self._inside(now)
         both = down.integral(lambda load, _: load * (doubled + load)) + up.integral(
             lambda leaving, _: leaving * (leaving - doubled)
         )
-        machine = self.history.machine.kinetic(self.begun(now)) if self.body.has_machine else 0.0
-        return both / (4.0 * self.body.impedance) + machine
+        return both / (4.0 * self.body.impedance) + self.driver.kinetic(self.begun(now))
 
     def trapped(self, now: Epoch) -> float:
         """Return the energy of the waves inside the slab: the stored energy beyond the energy of the same mean stress at rest.
@@ -146,9 +116,7 @@ class Waves:
         """
         down, up = self._inside(now)
         mean = (float(down.wave @ down.weight) - float(up.wave @ up.weight)) / (2.0 * self.half)
-        rigid = self.share_of(np.array(self.begun(now) - self.half)) == RIGID and not self.body.has_machine
-        rate = float(self.history.problem.pull_rate_at(self.begun(now))) if rigid else 0.0
-        drift = self.body.impedance * rate / self.half
+        drift = self.body.impedance * self.driver.shears_at(self.begun(now)) / self.half
 
         both = down.integral(lambda load, away: (load - mean - drift * away) ** 2)
         both += up.integral(lambda leaving, away: (leaving + mean - drift * away) ** 2)
@@ -173,8 +141,17 @@ class Waves:
 
     def work(self, now: Epoch) -> float:
         """Return the work of the driver since the start of the run; of a machine, the work of its gains and of the far stress."""
-        if self.body.has_machine:
-            return self.history.machine.work(0.0, self.begun(now))
+        return self.driver.work(self.passed, None, now)
+
+    def work_between(self, first: Epoch, last: Epoch) -> float:
+        """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
+        return self.driver.work(self.passed, first, last)
+
+    def passed(self, first: Epoch | None, last: Epoch) -> float:
+        """Return the sum of the power between two moments, or since the start."""
+        return self._since_start(last) if first is None else self._within(first, last)
+
+    def _since_start(self, now: Epoch) -> float:
         end = Epoch(now.trip, now.offset - self.half) if now.offset >= self.half else Epoch(now.trip - 1, now.offset + self.half)
         if end.trip < 0:
             return self._before(-self.half, end.offset - self.round).integral(self.power)
@@ -218,10 +195,7 @@ class Waves:
         one, last = (self.in_trip(trip, 0.0, self.round).integral(self.power) for trip in (first, past - 1))
         return (past - first - 1) * one + last
 
-    def work_between(self, first: Epoch, last: Epoch) -> float:
-        """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
-        if self.body.has_machine:
-            return self.history.machine.work(self.begun(first), self.begun(last))
+    def _within(self, first: Epoch, last: Epoch) -> float:
         lasting = (last.trip - first.trip) * self.round + (last.offset - first.offset)
         begun = self.begun(last)
         left = self._between(last, -self.half - lasting, -self.half)
@@ -376,34 +350,20 @@ class Radiation(Waves):
 
     def __init__(self, history: History, body: BodyWithWaves) -> None:
         super().__init__(history, body)
-        self.is_none, self.by_storing = history.problem.is_driven_rigidly, False
+        self.by_storing = False
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """Return the power of the wave beyond the driver, h/c after a wave left the contact; it is zero for a rigid driver."""
-        if self.is_none:
-            return np.zeros(len(leaving))
         behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
-        return np.asarray(self._impedance(left) * behind**2)
-
-    def _impedance(self, left: Floats) -> Floats | float:
-        """Return that of the driver h/c after waves left the contact (Pa s/m); 0 for one that is rigid for a time."""
-        if not self.changes:
-            return self.body.driver_impedance
-        share = np.asarray(self.share_of(left))
-        lossy = share != RIGID
-        return np.where(lossy, self.body.impedance * (1.0 - share) / np.where(lossy, 1.0 + share, 1.0), 0.0)
+        return np.asarray(self.driver.impedance_at(left + self.round) * behind**2)
 
     def work(self, now: Epoch) -> float:
         """Return the energy radiated since the start of the run; it is zero for a rigid driver."""
-        if self.body.has_machine:
-            return self.history.machine.dissipated(0.0, self.begun(now))
-        return 0.0 if self.is_none else super().work(now)
+        return self.driver.radiated(self.passed, None, now)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the energy radiated between two moments; it is zero for a rigid driver."""
-        if self.body.has_machine:
-            return self.history.machine.dissipated(self.begun(first), self.begun(last))
-        return 0.0 if self.is_none else super().work_between(first, last)
+        return self.driver.radiated(self.passed, first, last)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Return zero: all echoes at rest move the driver in the same way."""

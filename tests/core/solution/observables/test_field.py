@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import stickslip as ss
 from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from stickslip.solution.observables.field import Field
+from stickslip.solution.observables.asked import Field
 from tests.core.engine import problems
 from tests.core.engine.drawn import few, ran
 from tests.core.engine.drawn import problems as random_problems

@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.observables.field import Field
+from stickslip.solution.observables.asked import Field
 from tests.core.solution.observables.runs import slab_of
 from tests.problems import (
     IMPEDANCE,

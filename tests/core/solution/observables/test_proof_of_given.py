@@ -9,8 +9,9 @@ import pytest
 from benchmarks.wrong_series import BLOCK, SLAB
 
 import stickslip as ss
-from stickslip.engine.input import forcing, prepare
+from stickslip.engine.input import prepare
 from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.pressing import pressing_of
 from stickslip.solution.observables import proof
 from stickslip.solution.observables.given_on_discs import NormalLoads
 from stickslip.solution.observables.proof import proven
@@ -31,7 +32,7 @@ def wrong_by(monkeypatch: pytest.MonkeyPatch) -> Iterator[float]:
         for cached in (prepare._of_problem, prepare._prepared):
             cached.cache_clear()
 
-    right, by = forcing.pressing_of, 1e-3
+    right, by = pressing_of, 1e-3
 
     def wrong(problem: ss.Problem) -> object:
         found = right(problem)

@@ -1,7 +1,7 @@
-"""What moving ground adds to the energies of a run: its work, the absolute velocity of a contact, the force of a block's spring.
+"""What moving ground adds to the energies of a run: its work on a body with waves, and the absolute velocity of a contact.
 
 A slab is seen from outside: the ground works against friction. A block is seen from the ground: the force of inertia -m a works on
-its slip, and is no force of the spring.
+its slip, and is no force of the spring (`solution.observables.kinds.rigid`).
 """
 
 from __future__ import annotations
@@ -27,15 +27,3 @@ def speed(history: History, at: Positions) -> Floats:
     """Return the absolute velocity of the contact (m/s): its slip rate, and the velocity of the ground."""
     ground = history.problem.ground
     return history.rate(at) if ground is None else history.rate(at) + ground.velocity_at(*history.times_inside(at))
-
-
-def pushing(history: History, at: Positions) -> Floats:
-    """Return the mass of a block times the acceleration of the ground, N."""
-    ground, mass = history.problem.ground, history.problem.body.inertia
-    return np.zeros(len(at.piece)) if ground is None else mass * ground.acceleration_at(*history.times_inside(at))
-
-
-def spring_force(history: History, at: Positions) -> Floats:
-    """Return the force of a block's spring minus the reference strength (N): the load without the inertia of moving ground."""
-    force = history.excess(at)
-    return force if history.problem.ground is None else np.where(at.before, force, force + pushing(history, at))

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine import Epoch, Floats, History
-from stickslip.foundation.constants import RIGID
 from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
@@ -102,16 +101,9 @@ class LayerEnergy:
 
         The second result is the stress (Pa) that drag then takes between the contact and each cell.
         """
-        body, waves = self.body, self.waves
-        pulled = self.history.problem.pull_rate_at(now.trip * waves.round + now.offset)
-        rigid = body.is_driven_rigidly
-        if rigid and waves.shares is not None:
-            rigid = waves.shares.reflection_at(np.array(now.trip * waves.round + now.offset + waves.ladder.delay)) == RIGID
-        rate = float(pulled) if rigid else 0.0
-        found, held = [], []
-        for n, layers in enumerate(body.stacks):
-            driver = rate if n == 0 or body.is_joined else 0.0
-            contact = 0.0 if len(body.stacks) == 1 or body.is_joined else driver - rate * body.stiffness / layers.stiffness
+        waves, found, held = self.waves, [], []
+        rate = waves.driver.shears_at(now.trip * waves.round + now.offset)
+        for layers, (contact, driver) in zip(self.body.stacks, self.body.rates_at_start(0.0, rate), strict=True):
             passed = layers.passed[:-1] + np.diff(layers.passed) * (ago / waves.time)[:, None]
             found.append(contact + (driver - contact) * passed)
             held.append(layers.held(contact, driver)[:-1])

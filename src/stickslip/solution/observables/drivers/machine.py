@@ -1,4 +1,8 @@
-"""The motion of a driver that is a machine behind layers, from the series of its rate that the run kept with each piece."""
+"""A driver that is a machine, which sends what its own motion makes beside the echo of a rigid driver.
+
+Behind a uniform body its motion follows from all the waves that have met it. Behind layers the run has kept the series of its rate
+with each piece.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +13,50 @@ from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.engine import Epoch, Floats, History, Integers
-from stickslip.problem import settled_rate
+from stickslip.foundation.constants import RIGID
+from stickslip.problem import driver_of, settled_rate
+from stickslip.problem.bodies import BodyWithWaves, OfLayers
+from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, FromMachine, SumOfPower
+from stickslip.solution.observables.given_load import far_excess_at, pulled, value_at
 
 BEYOND = 1.0 + 1e-9
 """Factor (1) that keeps a phase at the end of a round trip below that of the start of the next one."""
 
 
-class LayerMachine:
+class MachineDriver(DriverOfWaves):
+    """A machine behind a uniform body: it sends back what a rigid driver would, and what its own motion adds."""
+
+    def __init__(self, history: History, body: BodyWithWaves) -> None:
+        super().__init__(history, body)
+        self.history, self.adds, self.share = history, FromMachine(history), RIGID
+
+    def kinetic(self, time: float) -> float:
+        """Return that of its mass."""
+        return self.history.machine.kinetic(time)
+
+    def work(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
+        """Return the work of its gains and of the far stress."""
+        return self.history.machine.work(self._begun(first), self._begun(last))
+
+    def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
+        """Return what its proportional gain takes up."""
+        return self.history.machine.dissipated(self._begun(first), self._begun(last))
+
+    def _begun(self, now: Epoch | None) -> float:
+        """Return the time since the start of the run (s)."""
+        return 0.0 if now is None else now.trip * self.body.two_way_time + now.offset
+
+    def load_at(self, leaving: Floats, time: Floats, inside: Floats) -> Floats:
+        """Return the load from the motion of the machine."""
+        return self.adds.at(time) - leaving
+
+
+class LayerMachine(DriverOfLayers):
     """The rate of a machine at round trips and phases; where the contact rests and nothing was kept, it has settled."""
 
-    def __init__(self, history: History) -> None:
-        self.problem, self.round, self.store = history.problem, history.round_trip_time, history.store
+    def __init__(self, history: History, body: OfLayers) -> None:
+        super().__init__(history, body)
+        self.store, self.gain = history.store, float(body.stacks[0].driver_impedance)
         self.series = history.store.state[:, -1]
         count = self.series.shape[1]
         speed, bend = (np.array(column, float)[:, None] for column in (self.store.speed, self.store.bend))
@@ -85,12 +122,39 @@ class LayerMachine:
         piece = np.where((piece > first) & (phases < self.store.phase_from[piece]), piece - 1, piece)  # if rounding missed it
         after = np.minimum(piece + 1, last)
         piece = np.where(phases >= self.store.phase_from[after], after, piece)
-        since = phases - self.store.phase_from[piece]
-        speed, bend = self.store.speed[piece], self.store.bend[piece]
-        pace = speed + np.sqrt(np.maximum(speed * speed + 4.0 * bend * np.maximum(since, 0.0), 0.0))
-        return piece, np.clip(2.0 * since / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0), known
+        return piece, self.history.xi(piece, np.maximum(phases - self.store.phase_from[piece], 0.0)), known
 
     def kinetic(self, now: Epoch) -> float:
         """Return the kinetic energy of the machine (J/m^2) at a moment."""
         rate, _ = self.motion(np.array([now.trip]), np.array([now.offset]))
         return 0.5 * self.problem.body.driver_inertia * float(rate[0]) ** 2
+
+    def share_at(self, time: Floats) -> float:
+        """Return that of a rigid driver: all else that it sends comes from its motion."""
+        return RIGID
+
+    def sent(self, trip: Integers, phase: Floats, loaded: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+        """Return what its motion sends, whatever it is loaded with."""
+        rate, way = self.motion(trip, phase)
+        doubled = 2.0 * self.body.last_impedance
+        return doubled * rate, doubled * way
+
+    def ramp(self, trip: Integers) -> Floats:
+        """Return the growth of the load while the machine has settled."""
+        return np.asarray(self.problem.body.grows_in_a_trip(1.0) * self._settled(trip))
+
+    def missed(self, last: Floats, trip: Integers, phase: Floats) -> Floats:
+        """Return by how much (Pa) it misses M dVd/dt = kp (V0 - Vd) + q + s - Z Vd + w, `last` being the wave that it sends.
+
+        There q is the force of the integral gain, and w = 2 Z Vd - `last` what it meets.
+        """
+        problem, body, time = self.problem, self.problem.body, trip * self.round + phase
+        rate, faster = self.motion(trip, phase)[0], self.acceleration(trip, phase)
+        force = body.driver_impedance * value_at(problem.pull_rate, time, time) + far_excess_at(problem, time, time)
+        first = driver_of(problem).at_first(problem)[1]
+        push = first + body.driver_integral_gain * (pulled(problem, time) - self.moved(trip, phase))
+        met = 2.0 * body.last_impedance * rate - last
+        return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)
+
+
+ANSWERS = DriverBehind(MachineDriver, LayerMachine)

@@ -1,0 +1,157 @@
+"""What a driver does to the waves that come to it, behind a uniform body or behind layers, and to their energy.
+
+A passive driver sends back a share of each wave and adds what it is loaded with, so that the waves know its work. One that is a
+machine has a motion of its own, which knows more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.engine import Epoch, Floats, History, Integers
+from stickslip.foundation.by_kind import ByKind
+from stickslip.problem import Inflow, Problem, inflow_of
+from stickslip.problem.bodies import BodyWithWaves, OfLayers
+from stickslip.solution.observables.given_load import sent_at, share_at
+
+SumOfPower = Callable[[Epoch | None, Epoch], float]
+"""The sum of a power of waves at the driver between two moments, or since the start (J/m^2)."""
+
+
+class FromMachine:
+    """What a driver that is a machine adds to the echo, 2 Z Vd, as it arrives at the contact (Pa): in the form of an `Inflow`."""
+
+    def __init__(self, history: History) -> None:
+        problem = history.problem
+        self.motion, self.doubled, self.delay = history.machine, 2.0 * problem.body.impedance, 0.5 * problem.round_trip_time
+        self.breaks = inflow_of(problem).breaks
+
+    def at(self, time: Floats, _: Floats | None = None) -> Floats:
+        """Return it at times (s since the start of the run)."""
+        return np.asarray(self.doubled * self.motion.at(time - self.delay))
+
+    def total(self, low: Floats, high: Floats) -> Floats:
+        """Return its integral between times (s)."""
+        return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
+
+    def many_edges(self, low: float, high: float) -> float:
+        """Return the number of times that `edges` returns, at most."""
+        return float(len(self.motion.start))
+
+    def edges(self, low: float, high: float) -> Floats:
+        """Return the times (s) between two others when parts of its motion arrive."""
+        start = self.motion.start + self.delay
+        return np.asarray(start[(start > low) & (start < high)])
+
+
+class DriverOfWaves:
+    """A passive driver behind a uniform body, of finite impedance. Times are in s since the start of the run."""
+
+    by_storing = False
+    """True if its work over round trips at rest is found from what the slab stores."""
+    adds: Inflow | FromMachine
+    """What it adds to the echo."""
+
+    def __init__(self, history: History, body: BodyWithWaves) -> None:
+        self.problem, self.body = history.problem, body
+        self.adds, self.share = self.inflow, body.reflection
+
+    @property
+    def inflow(self) -> Inflow:
+        """The inflow of its loading."""
+        return inflow_of(self.problem)
+
+    @property
+    def steps(self) -> tuple[tuple[float, float], ...]:
+        """The times from which it sends back a share of the waves that come to it, the first 0, and these shares."""
+        return ((0.0, self.share),)
+
+    def share_at(self, time: Floats) -> Floats | float:
+        """Return the share (1) of a wave that it has sent back of what arrives at the contact at times."""
+        return self.share
+
+    def impedance_at(self, time: Floats) -> Floats | float:
+        """Return its impedance (Pa s/m) when it sent what arrives at the contact at times; 0 for one that is rigid."""
+        return self.body.driver_impedance
+
+    def shears_at(self, time: float) -> float:
+        """Return the rate (m/s) at which it shears the slab in the state without waves: its pull rate while it is rigid, else 0."""
+        return 0.0
+
+    def kinetic(self, time: float) -> float:
+        """Return its kinetic energy (J/m^2)."""
+        return 0.0
+
+    def work(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
+        """Return its work between two moments, or since the start (J/m^2), net of what is radiated: the sum of its power."""
+        return passed(first, last)
+
+    def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
+        """Return what is radiated through it between two moments, or since the start (J/m^2): the sum of that power."""
+        return passed(first, last)
+
+    def load_at(self, leaving: Floats, time: Floats, inside: Floats) -> Floats:
+        """Return the load minus the reference strength (Pa) of waves that left one round trip before times, found again.
+
+        What holds at a time is what holds at one `inside` its piece.
+        """
+        delay = 0.5 * self.problem.round_trip_time
+        return share_at(self.problem, inside - delay) * leaving + sent_at(self.problem, time - delay, inside - delay)
+
+
+class DriverOfLayers:
+    """A passive driver, the first one behind a body of layers."""
+
+    gain = 0.0
+    """The proportional gain of a machine (Pa s/m)."""
+
+    def __init__(self, history: History, body: OfLayers) -> None:
+        self.history, self.problem, self.body, self.round = history, history.problem, body, body.round_trip_time
+
+    def share_at(self, time: Floats) -> Floats | float:
+        """Return the share (1) of a wave that it sends back at times (s), counted where waves are followed."""
+        return self.body.reflection
+
+    @property
+    def turned(self) -> tuple[Integers, Floats, Floats]:
+        """Its changes in order: round trips and phases (s) of its new waves, and the share before less that after."""
+        return np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
+
+    def sent(self, trip: Integers, phase: Floats, loaded: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+        """Return what it sends beside the echo (Pa), and the integral of that in the round trip (Pa s): what it is loaded with."""
+        return loaded
+
+    def ramp(self, trip: Integers) -> Floats:
+        """Return the growth of the load (Pa) in a round trip of a settled rest, under the loading of round trips."""
+        return np.full(len(trip), self.history.ramp)
+
+    def shears_at(self, time: float) -> float:
+        """Return the rate (m/s) at which it shears the body in the state without waves, at a time (s): see `DriverOfWaves`."""
+        return 0.0
+
+    def kinetic(self, now: Epoch) -> float:
+        """Return its kinetic energy (J/m^2)."""
+        return 0.0
+
+    def missed(self, last: Floats, trip: Integers, phase: Floats) -> Floats:
+        """Return by how much (Pa) it misses an equation of motion, `last` being the wave in the last cell."""
+        return np.zeros(len(last))
+
+
+class DriverBehind(NamedTuple):
+    """What a kind of driver is behind each kind of body with waves."""
+
+    a_slab: type[DriverOfWaves]
+    layers: type[DriverOfLayers]
+    """The first driver behind layers."""
+
+
+BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers")
+
+
+def driver_behind(problem: Problem) -> DriverBehind:
+    """Return the answers of the kind of driver of a problem."""
+    return BEHIND[problem.driver_kind]

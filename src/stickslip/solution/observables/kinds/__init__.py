@@ -1,0 +1,1 @@
+"""What each kind of body makes of a finished run (`solution.observables.asked`)."""

@@ -1,0 +1,148 @@
+"""What a finished run of a rigid body on a spring says: its driver is the end of the spring, and nothing travels inside."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.engine import History, Positions, Side
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem
+from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Field, FollowedFronts, LoadCompared, ObservablesOfKind
+from stickslip.solution.observables.energy.balance import heat
+from stickslip.solution.observables.field import NO_INSIDE, rounding
+from stickslip.solution.observables.given_load import of_ground, pulled
+from stickslip.solution.observables.proof import Places
+from stickslip.solution.observables.proof_of_load import compared_in_steps, times_in
+from stickslip.solution.observables.quadrature import Integrand, between, up_to
+
+
+class ObservablesOfRigid(ObservablesOfKind):
+    """The answers of rigid bodies; energies are in J."""
+
+    def energies(self, history: History, at: Positions, nodes: int) -> dict[str, Floats]:
+        """Return them from the force of the spring; work, heat and damping are integrated with `nodes` nodes on each piece."""
+        problem = history.problem
+        body = problem.body
+        force, rate = spring_force(history, at), history.rate(at)
+        spring = _stretching(history, np.full(len(force), problem.excess), force)
+        slipping = np.flatnonzero(history.store.mode)
+        return {
+            "work": up_to(history, at, _pulling(history), nodes=nodes) + _at_rest(history, at),
+            "stored": spring + 0.5 * body.inertia * rate**2,
+            "elastic": spring,
+            "kinetic": 0.5 * body.inertia * rate**2,
+            "heat": heat(history, at, nodes),
+            "damped": up_to(history, at, _damping(history), slipping, nodes=nodes) if body.damping else np.zeros(len(force)),
+            "radiated": np.zeros(len(force)),
+            "trapped": np.zeros(len(force)),
+        }
+
+    def event_energies(self, history: History, first: Positions, last: Positions) -> dict[str, Floats]:
+        """Return them from the forces of the spring at the start and at the end of each event."""
+        body = history.problem.body
+        force, left = spring_force(history, first), spring_force(history, last)
+        spring = _stretching(history, left, force)
+        return {
+            "released": spring + 0.5 * body.inertia * (history.rate(first) ** 2 - history.rate(last) ** 2),
+            "work": between(history, first, last, _pulling(history)),
+            "damped": between(history, first, last, _damping(history)),
+            "trapped": np.zeros(len(force)),
+        }
+
+    def energetics(self, history: History, first: Positions, last: Positions) -> dict[str, Floats]:
+        """Return the kinetic energy that the body gains; nothing is radiated or trapped."""
+        nothing = np.zeros(len(first.piece))
+        moving = 0.5 * history.problem.body.inertia * (history.rate(last) ** 2 - history.rate(first) ** 2)
+        return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
+
+    def trapped(self, history: History) -> None:
+        """Return None: there are no waves."""
+
+    def at_driver(self, history: History, time: Floats, side: Side) -> AtDriver:
+        """Return the rate at which the end of the spring is pulled, and the force of the spring."""
+        begun = history.epoch.trip * history.round_trip_time + history.epoch.offset
+        slack = rounding(time, history.round_trip_time) * (1.0 if side == "left" else -1.0)
+        rate = history.problem.pull_rate_at(np.maximum(begun + time - slack, 0.0))
+        return AtDriver(np.asarray(rate, float), history.problem.strength + spring_force(history, history.find(time, side)))
+
+    def ways(self, problem: Problem) -> list[float]:
+        """Return 0: the spring acts at once."""
+        return [0.0]
+
+    def field(self, history: History, at_contact: AtContact, place: Floats, time: Floats, side: Side) -> Field:
+        """Raise InputError: there is nothing inside."""
+        raise InputError(NO_INSIDE)
+
+    def extent(self, problem: Problem) -> Extent:
+        """Raise InputError: there is nothing inside."""
+        raise InputError(NO_INSIDE)
+
+    def fronts(self, problem: Problem) -> FollowedFronts:
+        """Raise InputError: there is nothing inside."""
+        raise InputError(NO_INSIDE)
+
+    def load_compared(self, history: History) -> LoadCompared:
+        """Compare the loads with the forces of the spring, in steps and beside breaks of the loading."""
+        return compared_in_steps(history, _of_spring)
+
+
+def spring_force(history: History, at: Positions) -> Floats:
+    """Return the force of the spring minus the reference strength (N): the load without the inertia of moving ground."""
+    force = history.excess(at)
+    return force if history.problem.ground is None else np.where(at.before, force, force + _pushing(history, at))
+
+
+def _pushing(history: History, at: Positions) -> Floats:
+    """Return the mass of the body times the acceleration of the ground, N."""
+    ground, mass = history.problem.ground, history.problem.body.inertia
+    return np.zeros(len(at.piece)) if ground is None else mass * ground.acceleration_at(*history.times_inside(at))
+
+
+def _pulling(history: History) -> Integrand:
+    """Return the power (W) of the driver, and of the inertial force where the ground moves, as a function of positions."""
+    problem = history.problem
+
+    def power(at: Positions) -> Floats:
+        trip, offset = history.placed(at)
+        pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + spring_force(history, at))
+        return np.asarray(pulling if problem.ground is None else pulling - _pushing(history, at) * history.rate(at))
+
+    return power
+
+
+def _at_rest(history: History, at: Positions) -> Floats:
+    """Return the work of the driver up to each position in rests that were not recorded, J: the spring has stored it."""
+    trip = history.store.trip
+    before = np.flatnonzero(np.diff(trip) > 1)  # the last pieces before leaps
+    force, left = (spring_force(history, Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
+    whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
+    last = spring_force(history, Positions.inside(at.last, 1.0))
+    part = np.where(at.at_rest, _stretching(history, last, spring_force(history, at)), 0.0)
+    return np.asarray(whole[np.searchsorted(before, at.last)] + part)
+
+
+def _stretching(history: History, force: Floats, later: Floats) -> Floats:
+    """Return the energy (J) that the spring gains from one force to another (both minus the reference)."""
+    body = history.problem.body
+    return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
+
+
+def _damping(history: History) -> Integrand:
+    """Return the power that the damping dissipates as a function of positions, W."""
+    damping = history.problem.body.damping
+    return lambda at: damping * history.rate(at) ** 2
+
+
+def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
+    """Return the load minus the reference strength (N): that of the spring, and inertia on moving ground."""
+    problem = history.problem
+    _, _, time, inside = times_in(history, piece, xi)
+    slip = history.slipped(Positions.inside(piece, xi))
+    _, acceleration = of_ground(problem, time, inside)
+    return np.asarray(
+        problem.excess + problem.body.stiffness * (pulled(problem, time) - slip) - problem.body.inertia * acceleration
+    )
+
+
+ANSWERS = ObservablesOfRigid()
