@@ -46,6 +46,10 @@ from stickslip.problem.inflow import (
     Inflow,  # Straight segments, each with the time (s) of its arrival, plus a tone.
     breaks_of,  # Return the round trips and offsets (s) of times (s); an edge between two is offset 0 of the later.
 )
+from stickslip.problem.kinds import (
+    BODY_KINDS,  # Each kind of body (`Body.structure`), with the one that it is like where it has no answers of its own.
+    DRIVER_KINDS,  # Each kind of driver (`Problem.driver_kind`), with the one that it is like.
+)
 from stickslip.problem.limits import (
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
     LARGEST_SHARE,
@@ -150,9 +154,11 @@ from stickslip.problem.selection_rule import (
 
 __all__ = [
     "BAD_PARAMETERS",
+    "BODY_KINDS",
     "CHECKPOINT_INTERVAL",
     "CREEP_RTOL",
     "DRIVERS",
+    "DRIVER_KINDS",
     "DURATION",
     "EDGE",
     "ENOUGH_EVENTS",

@@ -40,7 +40,7 @@ from stickslip.foundation.by_kind import ByKind
 from stickslip.foundation.errors import InputError
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula import Enclosure
-from stickslip.problem import Problem, Resistance
+from stickslip.problem import DRIVER_KINDS, Problem, Resistance
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 BELOW_REST = 1e-6
@@ -188,5 +188,5 @@ def stable_states(problem: Problem) -> Floats | None:
     return next((_states(problem.friction, one) for one in _slidings(problem) if one.stable is True), None)
 
 
-STEADY_LEAPS: ByKind[SteadyLeaps] = ByKind("stickslip.engine.creep.drivers")
+STEADY_LEAPS: ByKind[SteadyLeaps] = ByKind("stickslip.engine.creep.drivers", DRIVER_KINDS)
 """The leaps by `Problem.driver_kind`: not of a machine or a driver that changes, before which nothing is leaped over."""

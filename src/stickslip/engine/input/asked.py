@@ -9,7 +9,7 @@ from stickslip.engine.input.shaking import Shaken
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import LadderCell
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import Problem
+from stickslip.problem import BODY_KINDS, Problem
 
 NO_LADDER = LadderCell.table(0)
 """Table `Setup.ladder` of a body without layers."""
@@ -59,5 +59,5 @@ class InputOfBody(ABC):
         return Cells()
 
 
-INPUTS: ByKind[InputOfBody] = ByKind("stickslip.engine.input.kinds")
+INPUTS: ByKind[InputOfBody] = ByKind("stickslip.engine.input.kinds", BODY_KINDS)
 """What preparation is answered by each kind of body, by `Body.structure`."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from stickslip.foundation.by_kind import ByKind
+from stickslip.problem import BODY_KINDS
 from stickslip.problem.bodies import BodyOnCharacteristics, as_waves
 
 
@@ -27,4 +28,4 @@ class DrawnKind:
         return as_waves(body).modulus
 
 
-DRAWN_KINDS: ByKind[DrawnKind] = ByKind("stickslip.figures.runs.kinds")
+DRAWN_KINDS: ByKind[DrawnKind] = ByKind("stickslip.figures.runs.kinds", BODY_KINDS)

@@ -15,6 +15,7 @@ from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.segments import arriving
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.inflow import Inflow
+from stickslip.problem.kinds import DRIVER_KINDS
 from stickslip.problem.loading import SILENT, Segment, Tone
 from stickslip.problem.problem import Problem
 
@@ -90,7 +91,7 @@ class Driver(ABC):
         return math.inf
 
 
-DRIVERS: ByKind[Driver] = ByKind("stickslip.problem.drivers")
+DRIVERS: ByKind[Driver] = ByKind("stickslip.problem.drivers", DRIVER_KINDS)
 """What each kind of driver answers, by `Problem.driver_kind`."""
 
 

@@ -7,6 +7,7 @@ from typing import ClassVar, Literal
 
 from stickslip.foundation.by_kind import ByKind
 from stickslip.problem.drivers.driver import driver_of
+from stickslip.problem.kinds import BODY_KINDS
 from stickslip.problem.problem import Problem
 
 Over = Literal["creep", "swinging creep", "slow sliding", "steady sliding", ""]
@@ -41,7 +42,7 @@ class LeapsOfBody(ABC):
         """Return True if its echoes come back whole, or through layers, so that events get ever shorter under rate weakening."""
 
 
-LEAPS: ByKind[LeapsOfBody] = ByKind("stickslip.problem.leaps")
+LEAPS: ByKind[LeapsOfBody] = ByKind("stickslip.problem.leaps", BODY_KINDS)
 """What each kind of body answers, by `Body.structure`."""
 
 

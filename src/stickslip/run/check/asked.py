@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from stickslip.contact import Uniqueness
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import Problem
+from stickslip.problem import BODY_KINDS, DRIVER_KINDS, Problem
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario
 from stickslip.run.check.facts import Fact
@@ -70,5 +70,5 @@ class CheckOfDriver:
         return []
 
 
-CHECK_KINDS: ByKind[CheckOfKind] = ByKind("stickslip.run.check.kinds")
-CHECK_DRIVERS: ByKind[CheckOfDriver] = ByKind("stickslip.run.check.drivers")
+CHECK_KINDS: ByKind[CheckOfKind] = ByKind("stickslip.run.check.kinds", BODY_KINDS)
+CHECK_DRIVERS: ByKind[CheckOfDriver] = ByKind("stickslip.run.check.drivers", DRIVER_KINDS)

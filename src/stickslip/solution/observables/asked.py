@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from stickslip.engine import History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import Problem
+from stickslip.problem import BODY_KINDS, Problem
 
 AtContact = Callable[[], Floats]
 """The displacement of the contact (m) at the times that are asked about. It raises InputError for times outside the run."""
@@ -128,7 +128,7 @@ class ObservablesOfKind(ABC):
         """Return how far the loads of a history are from those that follow from its slip and its problem."""
 
 
-OBSERVABLES: ByKind[ObservablesOfKind] = ByKind("stickslip.solution.observables.kinds")
+OBSERVABLES: ByKind[ObservablesOfKind] = ByKind("stickslip.solution.observables.kinds", BODY_KINDS)
 
 
 def observables_of(problem: Problem) -> ObservablesOfKind:

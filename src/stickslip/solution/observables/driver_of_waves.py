@@ -13,7 +13,7 @@ import numpy as np
 
 from stickslip.engine import Epoch, Floats, History, Integers
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import Inflow, Problem, inflow_of
+from stickslip.problem import DRIVER_KINDS, Inflow, Problem, inflow_of
 from stickslip.problem.bodies import BodyWithWaves, OfLayers
 from stickslip.solution.observables.given_load import sent_at, share_at
 
@@ -149,7 +149,7 @@ class DriverBehind(NamedTuple):
     """The first driver behind layers."""
 
 
-BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers")
+BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DRIVER_KINDS)
 
 
 def driver_behind(problem: Problem) -> DriverBehind:

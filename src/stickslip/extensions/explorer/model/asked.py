@@ -9,6 +9,7 @@ from stickslip.extensions.explorer.model.answer import SlabPicture
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
+from stickslip.problem import BODY_KINDS
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario
 
@@ -44,4 +45,4 @@ class ShownKind(ABC):
         """Return the energies at times (s) by name; None where they are not known."""
 
 
-SHOWN_KINDS: ByKind[ShownKind] = ByKind("stickslip.extensions.explorer.model.kinds")
+SHOWN_KINDS: ByKind[ShownKind] = ByKind("stickslip.extensions.explorer.model.kinds", BODY_KINDS)

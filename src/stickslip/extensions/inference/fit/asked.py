@@ -9,7 +9,7 @@ from stickslip.extensions.inference.fit.free import Free
 from stickslip.extensions.inference.fit.part import Part, StickSlip
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem import BODY_KINDS, LoadingHistory, Problem
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 
@@ -49,4 +49,4 @@ class FittedKind(ABC):
         yield from ()
 
 
-FITTED_KINDS: ByKind[FittedKind] = ByKind("stickslip.extensions.inference.fit.kinds")
+FITTED_KINDS: ByKind[FittedKind] = ByKind("stickslip.extensions.inference.fit.kinds", BODY_KINDS)

@@ -12,7 +12,7 @@ from stickslip.problem import inflow_of
 from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves
 
 
-class ChangingDriver(DriverOfWaves):
+class ChangingBehindSlab(DriverOfWaves):
     """A driver that changes, behind a uniform body."""
 
     by_storing = True
@@ -39,7 +39,7 @@ class ChangingDriver(DriverOfWaves):
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 
 
-class ChangingDriverOfLayers(DriverOfLayers):
+class ChangingBehindLayers(DriverOfLayers):
     """A driver that changes, behind layers."""
 
     def share_at(self, time: Floats) -> Floats:
@@ -61,4 +61,4 @@ class ChangingDriverOfLayers(DriverOfLayers):
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 
 
-ANSWERS = DriverBehind(ChangingDriver, ChangingDriverOfLayers)
+ANSWERS = DriverBehind(ChangingBehindSlab, ChangingBehindLayers)

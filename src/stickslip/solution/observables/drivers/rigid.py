@@ -6,7 +6,7 @@ from stickslip.engine import Epoch, Floats
 from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, SumOfPower
 
 
-class RigidDriver(DriverOfWaves):
+class RigidBehindSlab(DriverOfWaves):
     """A rigid driver behind a uniform body."""
 
     by_storing = True
@@ -24,7 +24,7 @@ class RigidDriver(DriverOfWaves):
         return 0.0
 
 
-class RigidDriverOfLayers(DriverOfLayers):
+class RigidBehindLayers(DriverOfLayers):
     """A rigid driver behind layers, as the one on the other side is, if there is one."""
 
     def shears_at(self, time: float) -> float:
@@ -32,4 +32,4 @@ class RigidDriverOfLayers(DriverOfLayers):
         return float(self.problem.pull_rate_at(time))
 
 
-ANSWERS = DriverBehind(RigidDriver, RigidDriverOfLayers)
+ANSWERS = DriverBehind(RigidBehindSlab, RigidBehindLayers)
