@@ -87,8 +87,9 @@ def margins(contacts: Sequence[Resistance], **tolerance: float) -> list[float]:
 
 
 def check_no_contact_mass(problem: Problem, where: str) -> None:
-    """Raise InputError, which begins with `where`, for a slab with a contact mass; a block is refused by `margin`."""
-    if problem.body.has_waves and problem.body.has_inertia:
+    """Raise InputError, which begins with `where`, for a slab with a contact mass; a block is refused by `resistance`."""
+    resistance(problem)
+    if problem.body.has_inertia:
         raise InputError(f"{where}: the contact mass makes the slip rate a state, the motion is unique whatever the law")
 
 

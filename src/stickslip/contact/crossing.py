@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from stickslip.contact.disturbance import Disturbed
+from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.roots import sign_change
 
 NARROW = 1.2
@@ -17,22 +17,22 @@ ROUNDS = 10
 """Largest number of roots that are followed."""
 
 
-def crossing(disturbed: Callable[[float], Disturbed], low: float, high: float, stable_above: bool) -> float:
+def crossing(modes_at: Callable[[float], LayerModes], low: float, high: float, stable_above: bool) -> float:
     """Return the slip rate (m/s) between two others at which sliding gains or loses its stability.
 
-    `disturbed` returns a disturbed body at a slip rate (m/s). Sliding is stable at `high` if `stable_above`, else at `low`.
+    `modes_at` returns the modes at a slip rate (m/s). Sliding is stable at `high` if `stable_above`, else at `low`.
     """
-    return _RateSought(disturbed, stable_above).between(low, high)
+    return _RateSought(modes_at, stable_above).between(low, high)
 
 
 @dataclass(frozen=True)
 class _RateSought:
-    disturbed: Callable[[float], Disturbed]
+    modes_at: Callable[[float], LayerModes]
     stable_above: bool
 
     def is_beyond(self, rate: float) -> bool | None:
         """Return True if the verdict at a slip rate (m/s) is that above the crossing, None if it is not decided."""
-        stable = self.disturbed(rate).is_stable()
+        stable = self.modes_at(rate).verdict
         return None if stable is None else stable == self.stable_above
 
     def between(self, low: float, high: float) -> float:
@@ -59,19 +59,19 @@ class _RateSought:
 
     def side(self, rate: float) -> float:
         """Return a number above 0 beyond the crossing, where what is not decided counts as stable: no root is found that grows."""
-        return 1.0 if (self.disturbed(rate).is_stable() is not False) == self.stable_above else -1.0
+        return 1.0 if (self.modes_at(rate).verdict is not False) == self.stable_above else -1.0
 
     def followed(self, low: float, high: float) -> float:
         """Return where the root that grows fastest at one of two slip rates (m/s) crosses the axis; nan if it does not."""
         unstable, stable = (low, high) if self.stable_above else (high, low)
-        begin = self.disturbed(unstable).one_that_grows()
+        begin = self.modes_at(unstable).one_that_grows
         if begin is None:
             return math.nan
         last = begin
 
         def growth(rate: float) -> float:
             nonlocal last
-            root = self.disturbed(rate).near(last)
+            root = self.modes_at(rate).near(last)
             if root is None:
                 return math.nan
             last = root

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial as poly
 
-from stickslip.contact.layer_response import Complex, Quotient, at_driver, crossings_of, met_by
+from stickslip.contact.layer_response import Complex, Quotient, at_driver, crossings_of, met_by, sides_of
 from stickslip.contact.wave_modes import Polynomial
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
@@ -65,6 +65,8 @@ class _Side(NamedTuple):
     """Half the radius of the disc that holds the smaller wave over the larger one."""
     turned: Floats
     """Angle (rad) by which the phase of the larger wave may differ from that in the middle."""
+    impedance: float
+    """Impedance at the contact (Pa s/m)."""
 
 
 class _Waves(NamedTuple):
@@ -124,7 +126,7 @@ def _of_side(layers: Layers, s: Complex, half: Floats) -> _Side:
     waves = waves.mapped(found, 1.0, 0.0)
     larger = np.where(waves.returns, found.below - found.above, found.above + found.below)
     sign = np.where(waves.returns, 1.0, -1.0)
-    return _Side(found.below / larger, found.above / larger, sign, 0.5 * waves.radius, waves.turned)
+    return _Side(found.below / larger, found.above / larger, sign, 0.5 * waves.radius, waves.turned, layers.impedances[0])
 
 
 @dataclass(frozen=True)
@@ -158,9 +160,10 @@ class LinePieces:
 
     def bound(self, a: Polynomial, b: Polynomial) -> Bound:
         """Return a bound of a below + b above, over the larger waves of both sides."""
-        one, other = self._sides if len(self._sides) == 2 else (self._sides[0], _NOTHING)
+        one, other = (*self._sides, _NOTHING)[:2]
         parts = [self.polynomial(np.asarray(part, float)) for part in (a, b)]
-        terms = [self._terms(*both) for both in zip(*parts, strict=True)]  # of the middles, and of their radii
+        factors = partial(sides_of(self.body).factors, z=one.impedance, other=other.impedance)
+        terms = [factors(*both) for both in zip(*parts, strict=True)]  # of the middles, and of their radii
         values = [np.abs(one.below), np.abs(one.above)], [np.abs(other.below), np.abs(other.above)]
         wide = [[part + side.radius for part in sizes] for side, sizes in zip((one, other), values, strict=True)]
         first: Complex = _summed(terms[0], (0.5 + 0j, 0.5 * one.sign), (other.below, other.above))
@@ -172,17 +175,8 @@ class LinePieces:
             radius = radius + np.real(_summed(np.abs(terms[1]), *wide) + ROUNDING * _summed(np.abs(terms[0]), *values))
         return Bound(_summed(terms[0], (one.below, one.above), (other.below, other.above)), np.asarray(radius))
 
-    def _terms(self, a: Complex | Floats, b: Complex | Floats) -> Complex:
-        """Return the factors of below below', below above', above below' and above above' of the two sides."""
-        z, none = [one.impedances[0] for one in self.body.stacks], np.zeros_like(a)
-        if len(z) == 1:
-            return np.array([a, none, b * z[0], none])
-        if self.body.is_joined:
-            return np.array([a, b * z[1], b * z[0], none])
-        return np.array([none, a * z[1], a * z[0], b * (z[0] * z[1])])
 
-
-_NOTHING = _Side(np.ones(1, complex), np.zeros(1, complex), np.zeros(1), np.zeros(1), np.zeros(1))
+_NOTHING = _Side(np.ones(1, complex), np.zeros(1, complex), np.zeros(1), np.zeros(1), np.zeros(1), 0.0)
 """The other side of a contact with layers on one side only."""
 
 

@@ -12,11 +12,14 @@ of one layer are crossed at once; with drag two by two, between which it adds it
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.contact.drive import SteadyDrive
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
 from stickslip.problem.bodies.layered.layers import Layers
@@ -35,14 +38,7 @@ class Quotient(NamedTuple):
 
 def response_of(body: OfLayers, s: NDArray[Any]) -> Quotient:
     """Return how all layers of a body resist disturbances with growth rates s (1/s), as one quotient."""
-    sides = [_of_side(one, np.asarray(s, complex)) for one in body.stacks]
-    if len(sides) == 1:
-        return sides[0]
-    one, other = sides
-    crossed = one.above * other.below + other.above * one.below
-    if body.is_joined:
-        return Quotient(crossed, one.below * other.below)
-    return Quotient(one.above * other.above, crossed)
+    return reduce(sides_of(body).together, [_of_side(one, np.asarray(s, complex)) for one in body.stacks])
 
 
 class Crossing(NamedTuple):
@@ -102,31 +98,58 @@ def _of_side(layers: Layers, s: Complex) -> Quotient:
     return Quotient(found.above * layers.impedances[0], found.below)
 
 
-class SteadyDrive(NamedTuple):
-    """What drives a contact at a steady slip rate v, pulled at a rate V: traction = far stresses + by_pull V - resists v."""
+class Sides:
+    """How the sides of a contact resist and drive it together: those that move as one, or one alone, side by side."""
 
-    resists: float
-    """Impedance of drivers and drag of layers together (Pa s/m); inf if the drivers hold the rate."""
-    by_pull: float
-    """Impedance through which the pull acts (Pa s/m)."""
-    shares: tuple[float, ...] = (1.0,)
-    """Share (1) in the traction of the far stress on each side."""
+    def together(self, one: Quotient, other: Quotient) -> Quotient:
+        """Return how two sides resist a disturbance."""
+        return Quotient(one.above * other.below + other.above * one.below, one.below * other.below)
+
+    def factors(self, a: Complex, b: Complex, z: float, other: float) -> Complex:
+        """Return the factors of below below', below above', above below' and above above' in a below + b above of two sides.
+
+        Here `above` of each side is over its impedance at the contact, z and `other` (Pa s/m): 0 where there is no side.
+        """
+        return np.array([a, b * other, b * z, np.zeros_like(a)])
+
+    def driven(self, drivers: Sequence[float], resists: Sequence[float]) -> SteadyDrive:
+        """Return what drives the contact at a steady rate, from impedances (Pa s/m) of drivers, and of drivers with drag."""
+        return SteadyDrive(sum(resists), sum(drivers), (1.0,) * len(drivers))
+
+
+class SidesApart(Sides):
+    """Two sides that slip on each other, the first one pulled, the other one held: they resist in series."""
+
+    def together(self, one: Quotient, other: Quotient) -> Quotient:
+        """Return how both resist in series."""
+        return Quotient(one.above * other.above, one.above * other.below + other.above * one.below)
+
+    def factors(self, a: Complex, b: Complex, z: float, other: float) -> Complex:
+        """Return the factors of two in series."""
+        return np.array([np.zeros_like(a), a * other, a * z, b * (z * other)])
+
+    def driven(self, drivers: Sequence[float], resists: Sequence[float]) -> SteadyDrive:
+        """Return what both do in series: a side that nothing holds bears no stress."""
+        if min(resists) == 0.0:
+            free = [one == 0.0 for one in resists]
+            return SteadyDrive(0.0, 0.0, tuple(one / sum(free) for one in free))
+        if math.isinf(min(resists)):
+            return SteadyDrive(math.inf, math.inf, (0.0, 0.0))
+        whole = 1.0 / sum(1.0 / one for one in resists)
+        held = 1.0 if math.isinf(drivers[0]) else drivers[0] / resists[0]
+        return SteadyDrive(whole, whole * held, tuple(whole / one for one in resists))
+
+
+def sides_of(body: OfLayers) -> Sides:
+    """Return how the sides of a body act together."""
+    return Sides() if body.has_ground else SidesApart()
 
 
 def driven_steadily(body: OfLayers) -> SteadyDrive:
     """Return what drives a contact of layers at a steady rate, at which all of a side moves alike."""
-    drivers = [one.driver_impedance for one in body.stacks]
+    drivers = [math.inf if one.driver_gain > 0.0 else one.driver_impedance for one in body.stacks]
     resists = [driver + float(one.drags.sum()) for driver, one in zip(drivers, body.stacks, strict=True)]
-    if body.is_joined or len(drivers) == 1:
-        return SteadyDrive(sum(resists), sum(drivers), (1.0,) * len(drivers))
-    if min(resists) == 0.0:
-        free = [one == 0.0 for one in resists]
-        return SteadyDrive(0.0, 0.0, tuple(one / sum(free) for one in free))
-    if math.isinf(min(resists)):
-        return SteadyDrive(math.inf, math.inf, (0.0, 0.0))
-    whole = 1.0 / sum(1.0 / one for one in resists)
-    held = 1.0 if math.isinf(drivers[0]) else drivers[0] / resists[0]
-    return SteadyDrive(whole, whole * held, tuple(whole / one for one in resists))
+    return sides_of(body).driven(drivers, resists)
 
 
 def taken_by_layers(body: OfLayers) -> float:

@@ -98,10 +98,9 @@ class LayerRoots:
             abs(one.reflection) == 1.0 and (one.drag is None or one.driver_impedance == held) and not self.body.has_machine
             for one in self.body.stacks
         ]
-        apart = len(sides) > 1 and not self.body.is_joined
         if of_a and of_b:
             return False
-        return any(sides) if (of_a == 0.0) == apart else all(sides)
+        return any(sides) if (of_a == 0.0) != self.body.has_ground else all(sides)
 
     @property
     def is_algebraic(self) -> bool:

@@ -128,7 +128,6 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     """
     names = two_parameters(problem, x, y, "regime map")
     check_no_contact_mass(problem, "regime map")
-    margin(problem)  # raises for a block, which `at` would otherwise turn into a map of NaN
 
     def at(points: Sequence[tuple[float, float]]) -> Floats:
         problems = [put_both(names, point) for point in points]

@@ -182,7 +182,7 @@ class SteadySlidings:
     varies: bool = False
     """True if the pull rate or the far stress varies in time: all results are then for its value at the start."""
     is_damped: bool = True
-    """False if neither body nor driver takes energy from a disturbance, so that only friction can."""
+    """False if something slides, and neither body nor driver takes energy from a disturbance, so that only friction can."""
     why_none: str = ""
     """Reason why there is no steady sliding; "" if there is."""
     traction_at_pull_rate: float = math.nan

@@ -17,7 +17,6 @@ Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343; Campillo et al. 1996, eqs (7)
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -25,30 +24,19 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.contact.crossing import crossing
-from stickslip.contact.disturbance import Disturbed, Response
+from stickslip.contact.asked import CONTACT_KINDS, ContactOfKind, Withstood
+from stickslip.contact.disturbance import Modes
+from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.folds import Certificate, certificate
-from stickslip.contact.layer_response import SteadyDrive, driven_steadily, response_of, taken_by_layers
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
-from stickslip.contact.steady_proof import proven_changes
+from stickslip.contact.steady_friction import SteadyFriction
+from stickslip.contact.steady_proof import ChangeBetween, proven_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.friction.contract import one_argument
-from stickslip.friction.formula import value_and_slopes
 from stickslip.problem import LoadingHistory, Problem, Resistance
-from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies import BodyOnCharacteristics
 
-FAR = (0.0, 0.37, 1e3)
-"""Steady sliding requires that friction does not change with slip over these distances (m)."""
-CANCELLED = 1e-14
-"""Rounding of a slope of a state's rate by the slip rate, relative to its terms."""
-SURE = 1e-12
-"""Stability at a rate counts as known if this relative change of the normal load does not change it."""
-PATIENT = 1 << 20
-"""Largest number of pieces in which the roots of one motion on layers are counted, a second or two of work."""
-BELOW = 1e-4
-"""What layers withstand is checked by a count of roots under a fall of friction that is smaller by this share (1)."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) next to rest; tractions that differ by less than this (relative) are equal."""
 
@@ -85,18 +73,24 @@ class _Steady:
     """True if a proof is wanted under a law with a state, too."""
 
     @cached_property
-    def is_soft(self) -> bool:
-        """True if the driver gives way in the long run: an integral gain does not."""
-        body = self.problem.body
-        return math.isfinite(self.driver.resists) and not body.is_driven_rigidly and body.driver_integral_gain == 0.0
+    def kind(self) -> ContactOfKind[Any, Any]:
+        """What the kind of body answers."""
+        return CONTACT_KINDS[self.problem.body.structure]
+
+    @property
+    def pressed(self) -> tuple[BodyOnCharacteristics, float]:
+        """The body and the normal load on its contact (Pa, N or N m)."""
+        return self.problem.body, self.problem.normal
 
     @cached_property
     def driver(self) -> SteadyDrive:
         """What driver, far stress and drag do to a contact at a steady rate."""
-        body = self.problem.body
-        if isinstance(body, OfLayers):
-            return driven_steadily(body)
-        return SteadyDrive(body.driver_impedance + body.damping - body.impedance, body.driver_impedance)
+        return self.kind.steady_drive(self.problem.body)
+
+    @property
+    def is_soft(self) -> bool:
+        """True if the driver gives way in the long run."""
+        return math.isfinite(self.driver.resists)
 
     @property
     def varies(self) -> bool:
@@ -119,11 +113,7 @@ class _Steady:
     @property
     def _held_at_start(self) -> float:
         """The stress (Pa) that drag takes between the contact and the far stresses at the start."""
-        problem, body = self.problem, self.problem.body
-        if not isinstance(body, OfLayers):
-            return 0.0
-        rates = body.rates_at_start(problem.rate, problem.initial_shear)
-        held = [float(one.held(*both)[-1]) for one, both in zip(body.stacks, rates, strict=True)]
+        held = self.problem.body.held_at_start(self.problem.rate, self.problem.initial_shear)
         return sum(share * one for share, one in zip(self.driver.shares, held, strict=True))
 
     @property
@@ -148,7 +138,7 @@ class _Steady:
             far = slidings[0].traction + self._lost * slidings[0].rate
         strength = problem.strength if problem.friction.sticks else 0.0
         rests = self.far_stress is not None and abs(self.drive) <= strength
-        damped = bool(problem.friction.states) or self.taken_away > 0.0
+        damped = not slidings or bool(problem.friction.states) or self.withstood.fall > 0.0
         return SteadySlidings(
             pull_rate=problem.first_pull_rate,
             far_stress=far,
@@ -186,20 +176,13 @@ class _Steady:
         first = " at first" if problem.loading_varies else ""
         if problem.far_stress_rate and not problem.is_driven_rigidly:
             return "the far stress keeps changing"
-        if problem.body.has_machine and not problem.body.is_uniform:
-            return "not sought for layers behind a driver with a mass or an integral gain"
+        if not_sought := self.kind.not_sought(problem.body):
+            return not_sought
         if self.drive == 0.0:
             return f"nothing pulls{first}"
         if law.states and law.steady_state(1.0) is None:
             return f"{type(law).__name__} does not say in which state it slides steadily"
-        return "friction keeps changing with slip" if self._changes_with_slip() else ""
-
-    def _changes_with_slip(self) -> bool:
-        law, states = self.problem.friction, self.states(1.0)[1]
-        slips = self.slip + math.copysign(1.0, self.drive) * np.array(FAR)
-        formulas = [(law.trees()[i], law.numbers(i)) for i in self.pieces]
-        formulas += [(tree, law.numbers(self.pieces[0])) for tree in law.state_trees()]
-        return any(value_and_slopes(tree, numbers, slips, 1.0, *states)[1][0].any() for tree, numbers in formulas)
+        return "friction keeps changing with slip" if self.friction.changes_with_slip else ""
 
     @property
     def _lost(self) -> float:
@@ -210,70 +193,29 @@ class _Steady:
         pull = self.problem.first_pull_rate
         return math.copysign(self.traction(abs(pull)), pull) + self._lost * pull if pull else math.nan
 
-    # ---- the law --------------------------------------------------------------------------------------------------------------
-
     @cached_property
-    def pieces(self) -> tuple[int, ...]:
-        """The pieces of the law that steady sliding may be on: after a long way, a law of slip is on its last one."""
-        law = self.problem.friction
-        if law.knot_variable == "rate" or not law.knots:
-            return tuple(range(len(law.pieces)))
-        return (0,) if self.drive < 0.0 and law.counts == "net" else (len(law.pieces) - 1,)
-
-    @cached_property
-    def slip(self) -> float:
-        """A slip (m) of the law in the piece of steady sliding."""
-        law = self.problem.friction
-        if law.knot_variable == "rate" or not law.knots:
-            return self.problem.law_slip
-        return law.knots[-1] if self.pieces[0] else float(np.nextafter(law.knots[0], -math.inf))
-
-    def states(self, rate: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the states of steady sliding at a slip rate (m/s): as users see them, and as formulas use them."""
-        law = self.problem.friction
-        found = law.steady_state(rate) if law.states else None
-        seen = () if found is None else tuple(np.ravel(found).tolist())
-        return seen, law.inner_states(seen)
+    def friction(self) -> SteadyFriction:
+        """What the law does after a long way."""
+        return SteadyFriction(self.problem, self.drive)
 
     def traction(self, rate: float) -> float:
         """Return the traction (Pa, N or N m) of steady sliding at a slip rate (m/s)."""
-        mu = self.problem.friction.coefficient(self.slip, rate, one_argument(self.states(rate)[1]))
-        return self.problem.normal * float(mu)
+        return self.friction.traction(rate)
 
-    def response(self, rate: float) -> Response:
-        """Return how friction responds to a disturbance of steady sliding at a slip rate (m/s).
-
-        With w' = f(v, w) it is Phi = mu_v + mu_w (s - f_w)^-1 f_v.
-        """
-        law, states = self.problem.friction, self.states(rate)[1]
-        piece = int(law.piece_at(self.slip, rate))
-        numbers, at, many = law.numbers(piece), (self.slip, rate, *states), len(states)
-        slopes = value_and_slopes(law.trees()[piece], numbers, *at)[1]
-        if not many:
-            return Response(slopes[1:2], np.ones(1))
-        evolve = np.array([value_and_slopes(tree, numbers, *at)[1] for tree in law.state_trees()])
-        matrix, forced, felt = evolve[:, 2:], evolve[:, 1], slopes[2:]
-        # a difference of nearly equal terms is rounding, as for friction that is the same at any rate
-        forced = np.where(np.abs(forced) * rate > CANCELLED * np.abs(np.diag(matrix) * states), forced, 0.0)
-        below = np.real(np.poly(matrix))[::-1]
-        above = np.zeros(many)
-        above[-1] = felt @ forced
-        if many == 2:  # the adjugate of s - f_w is s + f_w - trace
-            above[0] = felt @ (matrix - np.trace(matrix) * np.eye(2)) @ forced
-        return Response(np.append(above, 0.0) + slopes[1] * below, below)
-
-    def disturbed(self, rate: float) -> Disturbed:
-        return Disturbed(self.problem.body, self.problem.normal, self.response(rate))
+    def modes(self, rate: float, *, patient: bool = False) -> Modes:
+        """Return the disturbances of steady sliding at a slip rate (m/s)."""
+        found: Modes = self.kind.modes(*self.pressed, self.friction.response(rate), patient=patient)
+        return found
 
     def sliding(self, rate: float) -> Sliding:
         """Return steady sliding at a slip rate (m/s), with its stability."""
-        disturbed, sign = replace(self.disturbed(rate), pieces=PATIENT), math.copysign(1.0, self.drive)
-        growth = disturbed.growth()
+        modes, sign = self.modes(rate, patient=True), math.copysign(1.0, self.drive)
+        growth = modes.growth()
         period = 2.0 * math.pi / growth.frequency if growth.frequency else math.inf
-        stable, unit = disturbed.is_stable(), self.problem.load_unit
+        stable, unit = modes.verdict, self.problem.load_unit
         if (stable is True and growth.rate > 0.0) or (stable is False and growth.rate <= 0.0):
             stable, growth, period = None, growth._replace(rate=math.nan), math.inf  # they contradict each other: not decided
-        return Sliding(sign * rate, sign * self.traction(rate), self.states(rate)[0], stable, growth.rate, period, unit)
+        return Sliding(sign * rate, sign * self.traction(rate), self.friction.states(rate)[0], stable, growth.rate, period, unit)
 
     # ---- the rates ------------------------------------------------------------------------------------------------------------
 
@@ -304,110 +246,44 @@ class _Steady:
             return None
 
     def resistance(self, damping: float) -> Resistance:
-        return Resistance(self.problem.friction, damping, self.problem.normal, self.slip, self.problem.load_unit)
+        return Resistance(self.problem.friction, damping, self.problem.normal, self.friction.slip, self.problem.load_unit)
 
     def changes(self) -> tuple[tuple[StabilityChange, ...], bool]:
         """Return where stability changes along the slip rate, and whether it is proven that it changes nowhere else."""
         law = self.problem.friction
         if law.states:
             return self._changes_under_states()
-        taken = self.taken_away
-        if not law.depends_on_rate or not math.isfinite(taken):
+        fall, is_known = self.withstood
+        if not law.depends_on_rate or not math.isfinite(fall):
             return (), True
-        proof, g = self.turns(taken), self.resistance(taken)
+        proof, g = self.turns(fall), self.resistance(fall)
         if proof is None:
             return (), False
         found, rates = [], proof.rates
         for k, rate in enumerate(rates):
             beyond = 0.5 * (rate + rates[k + 1]) if k + 1 < len(rates) else 2.0 * rate
             found.append(self._change(rate, bool(g.slope(beyond) > 0.0), proof.enclosure(rate)))
-        return tuple(found), proof.verdict == "proven" and not self._is_searched
-
-    @property
-    def _is_searched(self) -> bool:
-        """True if what the waves take away is not known in closed form."""
-        body = self.problem.body
-        return body.has_machine or not (body.is_uniform or body.is_driven_rigidly)
-
-    def _changes_under_states(self) -> tuple[tuple[StabilityChange, ...], bool]:
-        problem = self.problem
-        ends = (float(RATES[0]), float(RATES[-1]))
-        proves = self.proves and problem.body.is_uniform and not problem.body.has_machine
-        found = proven_changes(problem.body, problem.normal, problem.friction, self.slip, ends) if proves else None
-        if found is None:
-            return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
-        return tuple(self._change(self._edge(*one), one.stable_above, (one.low, one.high)) for one in found), True
+        return tuple(found), proof.verdict == "proven" and is_known
 
     @cached_property
-    def taken_away(self) -> float:
-        """The steepest fall of friction with the slip rate (Pa s/m, N s/m or N m s) under which steady sliding is stable."""
-        body = self.problem.body
-        if not body.has_waves:
-            return body.damping
-        if body.driver_inertia > 0.0 and not body.has_inertia:
-            return body.damping - body.impedance  # a mass sends sharp fronts back whole
-        if body.has_machine:
-            return _largest(lambda fall: self._withstands(fall), self._surely_falls())
-        dragged = isinstance(body, OfLayers) and body.has_drag
-        if not dragged and (body.is_driven_rigidly or not (self.is_soft or isinstance(body, OfLayers))):
-            return body.damping - body.impedance
-        if isinstance(body, OfLayers):
-            heavy = body.inertia > 0.0
-            return _largest(self._withstands, self._surely_falls_on_layers(body)) if heavy else self._taken_by_layers(body)
-        driver, own = body.driver_impedance, body.impedance
-        if not body.has_inertia:
-            return body.damping - own + min(driver, own * own / driver if driver else 0.0)
-        return _largest(lambda fall: self._withstands(fall), driver + body.damping - own)
+    def withstood(self) -> Withstood:
+        """How steeply friction may fall with the slip rate without making sliding unstable."""
+        return self.kind.withstood(*self.pressed)
 
-    def _taken_by_layers(self, body: OfLayers) -> float:
-        """Return the same for layers without a mass at the contact: found by sampling, and checked by a count of roots.
+    def _changes_under_states(self) -> tuple[tuple[StabilityChange, ...], bool]:
+        law, ends = self.problem.friction, (float(RATES[0]), float(RATES[-1]))
+        judge = self.kind.judge(*self.pressed, len(law.states)) if self.proves else None
+        proven = proven_changes(judge, law, self.friction.slip, ends) if judge else None
+        found = self._searched() if proven is None else proven
+        enclosures = [one[:2] if proven else None for one in found]
+        edges = [(self.kind.edge(self.modes, *one), one.stable_above) for one in found]
+        return tuple(self._change(*edge, within) for edge, within in zip(edges, enclosures, strict=True)), proven is not None
 
-        A count decides nothing where a root is as good as on the axis, so it is made a little below.
-        """
-        found = taken_by_layers(body)
-        return found if found == 0.0 or self._withstands(found * (1.0 - BELOW)) else _largest(self._withstands, found)
-
-    def _surely_falls(self) -> float:
-        """Return a fall of friction with the slip rate (Pa s/m) that a slab under a machine does not withstand.
-
-        A disturbance exp(t/R) grows under it: friction gives what body, waves and machine take at s = 1/R.
-        """
-        body, s = self.problem.body, 1.0 / self.problem.round_trip_time
-        machine = body.driver_inertia * s + body.driver_impedance + body.driver_integral_gain / s
-        echo = math.exp(-1.0) * (body.impedance - machine) / (body.impedance + machine)
-        return body.impedance * (1.0 - echo) / (1.0 + echo) + body.inertia * s + body.damping - body.impedance
-
-    def _surely_falls_on_layers(self, body: OfLayers) -> float:
-        """Return the same for layers and a mass at the contact."""
-        s = 1.0 / body.two_way_time
-        above, below = response_of(body, np.array([s], complex))
-        return float((above[0] / below[0]).real) + body.inertia * s
-
-    def _withstands(self, fall: float) -> bool:
-        """Return True if sliding is stable where friction falls with the slip rate by `fall` (Pa s/m)."""
-        response = Response(np.array([-fall / self.problem.normal]), np.ones(1))
-        return Disturbed(self.problem.body, self.problem.normal, response).is_stable() is True
-
-    def _searched(self) -> list[tuple[float, bool]]:
-        """Return the slip rates (m/s) where stability changes under a law with states, and whether sliding is stable above each."""
-        known = [(rate, stable) for rate in RATES.tolist() if (stable := self._surely_stable(rate)) is not None]
-        return [(self._edge(low, high, after), after) for (low, before), (high, after) in pairwise(known) if before != after]
-
-    def _surely_stable(self, rate: float) -> bool | None:
-        """Return whether sliding is stable; None if rounding decides: a little more or less normal load changes the answer."""
-        body, response = self.problem.body, self.response(rate)
-        if isinstance(body, OfLayers):
-            return Disturbed(body, self.problem.normal, response).is_stable()
-        more, less = (
-            Disturbed(body, self.problem.normal * share, response).is_stable() is True for share in (1.0 + SURE, 1.0 - SURE)
-        )
-        return more if more == less else None
-
-    def _edge(self, low: float, high: float, stable_above: bool) -> float:
-        """Return the slip rate (m/s) between two others where stability changes."""
-        if isinstance(self.problem.body, OfLayers):
-            return crossing(self.disturbed, low, high, stable_above)
-        return sign_change(lambda rate: 1.0 if (self.disturbed(rate).is_stable() is True) == stable_above else -1.0, low, high)
+    def _searched(self) -> list[ChangeBetween]:
+        """Return the slip rates (m/s) between which stability changes under a law with states."""
+        verdicts = ((rate, self.kind.is_surely_stable(*self.pressed, self.friction.response(rate))) for rate in RATES.tolist())
+        known = [(rate, stable) for rate, stable in verdicts if stable is not None]
+        return [ChangeBetween(low, high, after) for (low, before), (high, after) in pairwise(known) if before != after]
 
     def _change(self, rate: float, stable_above: bool, enclosure: Any) -> StabilityChange:
         return StabilityChange(rate, self._pull_rate(rate), stable_above, enclosure, self.problem.load_unit)
@@ -421,13 +297,3 @@ class _Steady:
             return None
         sign = math.copysign(1.0, self.drive)
         return (sign * (driver.resists * rate + self.traction(rate)) - self.far_stress) / driver.by_pull
-
-
-def _largest(holds: Callable[[float], bool], high: float) -> float:
-    """Return the largest number between 0 and `high` that satisfies a condition, by bisection; all smaller ones satisfy it."""
-    low = 0.0
-    while True:
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            return low
-        low, high = (middle, high) if holds(middle) else (low, middle)

@@ -251,8 +251,8 @@ def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = No
 def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     """Determine the uniqueness at a slip (m) of the law; None stands for the initial one."""
     if problem.body.has_inertia:
-        mass = "The contact mass" if problem.body.has_waves else "The block"
-        return Uniqueness("regular", problem.rule, INERTIA.format(body=mass, rule=problem.rule), problem=problem, law_slip=slip)
+        said = INERTIA.format(body=problem.body.what_is_heavy, rule=problem.rule)
+        return Uniqueness("regular", problem.rule, said, problem=problem, law_slip=slip)
     if problem.friction.states:
         text = STATE if rises_with_rate(problem.friction) else STATE_FALLS
         said = text.format(law=type(problem.friction).__name__, rule=problem.rule)

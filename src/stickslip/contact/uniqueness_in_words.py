@@ -12,7 +12,7 @@ MOST_SHOWN = 6
 
 
 INERTIA = (
-    "{body} has inertia: its slip rate is a state that changes continuously, and the motion is unique (regular) whatever the "
+    "The {body} has inertia: its slip rate is a state that changes continuously, and the motion is unique (regular) whatever the "
     "friction law. The selection rule ({rule}) has no effect."
 )
 STATE = (

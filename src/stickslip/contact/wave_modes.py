@@ -72,6 +72,13 @@ class WaveModes:
     round_trip: float
 
     @property
+    def verdict(self) -> bool | None:
+        """True if every disturbance fades, False if one grows, None if one keeps its size."""
+        if self.is_off_branch or self.roots_beyond(0.0) > 0:
+            return False
+        return None if self.is_neutral else True
+
+    @property
     def is_off_branch(self) -> bool:
         """True if g falls with the slip rate: a contact without mass then leaves the rate at once."""
         degree = len(self.z) - 1

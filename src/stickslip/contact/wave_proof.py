@@ -23,13 +23,14 @@ Source: Nyquist 1932, Bell Syst. Tech. J. 11, 126; Rice & Ruina 1983, J. Appl. M
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from stickslip.contact.drive import driver_impedance
+from stickslip.contact.steady_proof import Discs, slope_symbols
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula import Disc, Expression, Parameter, on_discs
 from stickslip.problem.bodies import BodyOnCharacteristics
@@ -37,12 +38,6 @@ from stickslip.problem.bodies import BodyOnCharacteristics
 OUT = 4e-15
 """Bounds are moved outward by this relative rounding of a few operations and of an arc tangent."""
 SHARE, SQUARE = Parameter("q"), Parameter("y")
-
-
-def slope_symbols(many: int) -> tuple[tuple[Expression, ...], ...]:
-    """Return symbols of the slopes of friction, and then of the rate of each state, by slip rate and by each state."""
-    states = range(1, many + 1)
-    return tuple(tuple(Parameter(f"{of}_{by}") for by in ("v", *states)) for of in ("mu", *states))
 
 
 class CellBounds(NamedTuple):
@@ -76,7 +71,7 @@ def _equation() -> dict[str, Expression]:
 EQUATION = _equation()
 
 
-def of_slab(body: BodyOnCharacteristics, normal: float, slopes: Mapping[Expression, Disc]) -> tuple[Floats, Floats]:
+def of_slab(body: BodyOnCharacteristics, normal: float, slopes: Discs) -> tuple[Floats, Floats]:
     """Return for each cell whether sliding is proven to be stable, and whether it is proven to be unstable.
 
     `slopes` holds the discs of the slopes by their symbols, with f_w < 0, and `normal` is the normal load (Pa).
@@ -131,12 +126,13 @@ class _Slab:
 
     body: BodyOnCharacteristics
     normal: float
-    slopes: Mapping[Expression, Disc]
+    slopes: Discs
 
     def range(self, name: str, y: Disc | None = None) -> CellBounds:
         """Return the range of a number of the equation, where w^2 is in the disc y."""
-        body, own, driver = self.body, self.body.impedance, self.body.driver_impedance
-        share = 0.0 if body.is_driven_rigidly else driver / (own * own + driver * driver)
+        body, own = self.body, self.body.impedance
+        resists, over = (float(one[0]) for one in driver_impedance(body))
+        share = resists * over / (own * own * over + resists * resists)
         numbers = {"m": body.inertia, "D": body.damping, "Z": own, "S": self.normal}
         found = on_discs(EQUATION[name], numbers, {**self.slopes, SHARE: Disc.of(share, OUT * share), SQUARE: y or Disc.of(0.0)})
         radius = found.radius + OUT * found.most

@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact import layer_count
-from stickslip.contact.disturbance import Disturbed, Response
+from stickslip.contact.disturbance import Response
 from stickslip.contact.layer_discs import LinePieces
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.layer_response import response_of
@@ -19,6 +19,7 @@ from stickslip.contact.steady import _Steady, steady_slidings
 from stickslip.contact.wave_modes import Growth
 from stickslip.problem.bodies import OfLayers
 from tests.core.contact.layer_truth import exact_root, sought_roots
+from tests.core.contact.modes import modes_of
 
 BUNDLED = ("pipe-and-collar", "low-velocity-zone", "bowed-string-tenth", "steel-on-granite")
 APART = ss.TwoSlabs([153.182], [1522.85], [3978.43], [64.585], [2281.08], [1333.82], 215497, driver_impedance=6.05855e6)
@@ -33,7 +34,7 @@ GROWTHS = {0.64: 2.756e-5, 1.0: 1.134e-3, 40.0: 3.21e-5, 60.0: 2.14e-5, 95.7: 1.
 
 def sliding_of(body: OfLayers, law: Any, rate: float) -> tuple[Sliding, Response, float]:
     steady = _Steady(ss.Problem(body, law, pull_rate=rate, initial_rate="steady"))
-    return steady.sliding(rate), steady.response(rate), steady.problem.normal
+    return steady.sliding(rate), steady.friction.response(rate), steady.problem.normal
 
 
 def growth_of(sliding: Sliding) -> Growth:
@@ -103,7 +104,7 @@ def test_two_slabs_have_the_critical_rates_at_which_roots_cross_the_axis_and_no_
         below, above = (_Steady(problem).sliding(change.rate * share) for share in (1.0 - 1e-6, 1.0 + 1e-6))
         assert (below.stable, above.stable) == ((False, True) if change.stable_above else (True, False))
         unstable = below if change.stable_above else above
-        felt = _Steady(problem).response(change.rate)
+        felt = _Steady(problem).friction.response(change.rate)
         root = exact_root(APART, problem.normal, felt, complex(*growth_of(unstable)))
         assert abs(root.real) < 1e-7 * unstable.growth + 1e-13 * abs(root)
 
@@ -170,7 +171,7 @@ def test_as_many_roots_are_counted_as_are_found(seed: int):
     time = body.two_way_time * 10.0 ** draw.uniform(-0.5, 0.5)
     above = np.array([-draw.uniform(0.3, 2.0), draw.uniform(-0.5, 0.5) * time]) * body.impedance / 1e6
     felt = Response(above, np.array([1.0, time]))
-    modes = Disturbed(body, 1e6, felt)._waves
+    modes = modes_of(body, 1e6, felt)
     assert isinstance(modes, LayerModes)
     found = sought_roots(body, 1e6, felt, modes.growth(), seed, number=6000)
     found = np.concatenate([found, found.conj()])

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.disturbance import Disturbed, Response, _all_left
+from stickslip.contact.disturbance import Response
+from stickslip.contact.kinds.rigid import ModesOfBlock
 from stickslip.contact.steady import steady_slidings
 from stickslip.run.reference.rate_and_state import SteadySliding
+from tests.core.contact.modes import modes_of
 
 DENSITY, SPEED, THICKNESS, S = 2800.0, 3500.0, 1e4, 1e8
 Z, R = DENSITY * SPEED, 2 * THICKNESS / SPEED
@@ -45,32 +47,32 @@ def test_each_echo_multiplies_a_disturbance_of_a_massless_contact_by_its_gain(dr
     """abs(r (1 - 2 Z / g')) in one round trip, which closes with a change of sign or without one. To 1e-12."""
     body = slab(driver)
     gain = body.reflection * (2.0 / (1.0 + share) - 1.0)  # of the disturbance itself, with its sign
-    found = Disturbed(body, S, slope(share))
+    found = modes_of(body, S, slope(share))
     rate, frequency = found.growth()
     echoed = math.log(abs(body.reflection)) + math.log1p(-share) - math.log1p(share)
     assert rate == pytest.approx(echoed / R, rel=1e-12, abs=0.0)
     assert frequency == pytest.approx(math.pi / R if gain < 0.0 else 0.0, rel=1e-12, abs=0.0)
-    assert found.is_stable() is (abs(gain) < 1.0)
+    assert found.verdict is (abs(gain) < 1.0)
 
 
 @pytest.mark.parametrize("share", [-1.1, -3.0])
 def test_nothing_stays_where_friction_falls_faster_than_waves_carry_away(share: float):
-    assert Disturbed(slab(), S, slope(share)).growth().rate == math.inf
-    assert Disturbed(slab(0.5), S, slope(share)).is_stable() is False
+    assert modes_of(slab(), S, slope(share)).growth().rate == math.inf
+    assert modes_of(slab(0.5), S, slope(share)).verdict is False
 
 
 @pytest.mark.parametrize("share", [0.0, -0.1, 0.1])
 def test_a_matched_driver_lets_every_disturbance_leave(share: float):
-    assert Disturbed(slab(1.0), S, slope(share)).growth().rate == -math.inf
+    assert modes_of(slab(1.0), S, slope(share)).growth().rate == -math.inf
 
 
 def test_constant_friction_under_a_rigid_driver_is_neutral():
     for body in (slab(), slab(mass=1e6)):
-        assert Disturbed(body, S, slope(0.0)).is_stable() is None
-        assert Disturbed(body, S, slope(0.0)).growth().rate == 0.0
+        assert modes_of(body, S, slope(0.0)).verdict is None
+        assert modes_of(body, S, slope(0.0)).growth().rate == 0.0
     block = ss.SpringBlock(1.0, 100.0, S)
-    assert Disturbed(block, S, slope(0.0)).is_stable() is None
-    assert Disturbed(block, S, slope(0.0)).growth() == (0.0, 10.0)
+    assert modes_of(block, S, slope(0.0)).verdict is None
+    assert modes_of(block, S, slope(0.0)).growth() == (0.0, 10.0)
 
 
 @pytest.mark.sampled(every=5)
@@ -94,7 +96,7 @@ def test_no_root_lies_farther_right_than_the_one_that_is_found(seed: int):
     time = R * 10.0 ** draw.uniform(-1.5, 1.5)
     high, low = draw.uniform(-0.9, 1.5), draw.uniform(-2.0, 2.0)  # Phi at high and at low frequencies, in Z
     response = Response(np.array([low, high * time]) * Z / S, np.array([1.0, time]))
-    growth, frequency = Disturbed(body, S, response).growth()
+    growth, frequency = modes_of(body, S, response).growth()
     s = (draw.uniform(-3.0, 3.0, 2000) + 1j * draw.uniform(0.0, 40.0, 2000)) / R
     with np.errstate(all="ignore"):
         for _ in range(30):
@@ -107,7 +109,7 @@ def test_no_root_lies_farther_right_than_the_one_that_is_found(seed: int):
         assert abs(miss(body, response, np.complex128(complex(growth, frequency)))) < 1e-9
     assert max(roots) <= growth + 1e-7 * abs(growth) + 1e-12
     if growth != 0.0:  # which stands for modes that fade ever more slowly, under a rigid driver
-        assert Disturbed(body, S, response).is_stable() is (growth < 0.0)
+        assert modes_of(body, S, response).verdict is (growth < 0.0)
 
 
 def test_routh_agrees_with_the_roots():
@@ -117,7 +119,7 @@ def test_routh_agrees_with_the_roots():
         equation[-1] = 1.0
         roots = np.polynomial.polynomial.polyroots(equation)
         if abs(roots.real).min() > 1e-6:
-            assert _all_left(equation) is bool((roots.real < 0.0).all())
+            assert ModesOfBlock(equation).verdict is bool((roots.real < 0.0).all())
 
 
 def swings(run: ss.Solution, found: Any, start: float) -> np.ndarray:
@@ -225,8 +227,8 @@ def test_a_contact_mass_changes_what_a_soft_driver_withstands():
     (change,) = found.changes
     fall = -S * law.slopes(0.0, change.rate)[1]
     assert 0.25 * Z < fall < 4.0 * Z
-    assert Disturbed(body, S, slope(-fall / Z * (1 + 1e-9))).is_stable() is False
-    assert Disturbed(body, S, slope(-fall / Z * (1 - 1e-9))).is_stable() is True
+    assert modes_of(body, S, slope(-fall / Z * (1 + 1e-9))).verdict is False
+    assert modes_of(body, S, slope(-fall / Z * (1 - 1e-9))).verdict is True
 
 
 def test_a_dead_load_has_no_critical_pull_rate():

@@ -9,12 +9,13 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.contact.disturbance import Disturbed, Response
+from stickslip.contact.disturbance import Response
 from stickslip.contact.layer_response import growth_on_layers, response_of, taken_by_layers
 from stickslip.contact.steady import steady_slidings
 from stickslip.problem.bodies import OfLayers
 from stickslip.run.check.stability import stability_of
 from stickslip.run.reference.slab import growth_rate
+from tests.core.contact.modes import modes_of
 
 DENSITY, SPEED, THICKNESS, S = 2800.0, 3500.0, 1e4, 1e8
 Z, R = DENSITY * SPEED, 2 * THICKNESS / SPEED
@@ -66,9 +67,9 @@ def test_layers_of_one_kind_resist_as_a_uniform_slab_does(driver: float):
 @pytest.mark.parametrize("share", [-1.1, -0.97, -0.5, -1e-7, 0.0, 0.3])
 def test_without_mass_they_grow_as_on_a_uniform_slab(driver: float, share: float):
     felt = Response(np.array([share * Z / S]), np.ones(1))
-    known, found = Disturbed(uniform(driver), S, felt), Disturbed(cut(0.2, 0.8, driver=driver), S, felt)
+    known, found = modes_of(uniform(driver), S, felt), modes_of(cut(0.2, 0.8, driver=driver), S, felt)
     assert found.growth().rate == pytest.approx(known.growth().rate, rel=1e-9, abs=0.0)
-    assert found.is_stable() is known.is_stable()
+    assert found.verdict is known.verdict
 
 
 @pytest.mark.sampled(every=7)
@@ -79,9 +80,9 @@ def test_with_mass_and_states_they_grow_or_fade_as_on_a_uniform_slab(seed: int):
     numbers["mass"] = 10.0 ** draw.uniform(4, 8) if seed % 3 else 0.0
     time, high, low = R * 10.0 ** draw.uniform(-1.5, 1.5), draw.uniform(-0.9, 1.5), draw.uniform(-2.0, 2.0)
     felt = Response(np.array([low, high * time]) * Z / S, np.array([1.0, time]))
-    known, found = Disturbed(uniform(**numbers), S, felt), Disturbed(cut(0.1, 0.3, 0.6, **numbers), S, felt)
+    known, found = modes_of(uniform(**numbers), S, felt), modes_of(cut(0.1, 0.3, 0.6, **numbers), S, felt)
     assert found.growth().rate == pytest.approx(known.growth().rate, rel=1e-9, abs=0.0)
-    assert found.is_stable() is known.is_stable()
+    assert found.verdict is known.verdict
 
 
 @pytest.mark.parametrize("driver", [0.01, 0.4, 1.0, 3.0])
@@ -132,7 +133,7 @@ def test_no_root_lies_farther_right_than_the_one_that_is_found(name: str):
     """Newton's method from 3 000 places finds none, and the one found solves the equation to 1e-9 of Z."""
     body, time = BODIES[name], 2.0
     felt = Response(np.array([-0.3, 0.4 * time]) * body.impedance / S, np.array([1.0, time]))
-    rate, frequency = Disturbed(body, S, felt).growth()
+    rate, frequency = modes_of(body, S, felt).growth()
 
     def miss(s: np.ndarray) -> np.ndarray:
         phi = np.polyval(felt.numerator[::-1], s) / np.polyval(felt.denominator[::-1], s)
@@ -150,7 +151,7 @@ def test_no_root_lies_farther_right_than_the_one_that_is_found(name: str):
         roots = s.real[abs(miss(s)) < 1e-8]
     assert len(roots) > 100
     assert roots.max() <= rate + 1e-7 * abs(rate)
-    assert Disturbed(body, S, felt).is_stable() is (rate <= 0.0)
+    assert modes_of(body, S, felt).verdict is (rate <= 0.0)
 
 
 @pytest.mark.sampled(every=4)

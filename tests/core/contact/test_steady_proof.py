@@ -12,10 +12,13 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact import steady_proof
-from stickslip.contact.disturbance import Disturbed, Response
+from stickslip.contact.disturbance import Response
+from stickslip.contact.kinds import rigid, uniform
 from stickslip.contact.steady import proven_slidings, steady_slidings
-from stickslip.contact.wave_proof import of_slab, slope_symbols
+from stickslip.contact.steady_proof import slope_symbols
+from stickslip.contact.wave_proof import of_slab
 from stickslip.friction.formula.operations.sets import Disc
+from tests.core.contact.modes import modes_of
 
 NORMAL, DISTANCE, RATE = 1e6, 1e-5, 1e-6
 WEAKER = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": DISTANCE, "rate": RATE}
@@ -116,7 +119,7 @@ def test_states_that_feel_each_other_are_proven():
         evolution="dz/dt = (x - z)/T; dx/dt = (v - x)/T - c*z",
     )
     body = ss.SpringBlock(10.0, 2e4, 1e4, damping=50.0)
-    changes = steady_proof.proven_changes(body, 1e4, law, 0.0, (9e-4, 2e-3))
+    changes = steady_proof.proven_changes(rigid.ANSWERS.judge(body, 1e4, 2), law, 0.0, (9e-4, 2e-3))
 
     def stable(v: float) -> bool:
         z = v / 1.2  # x = z, and (v - z)/T = c z
@@ -301,7 +304,7 @@ def test_two_close_changes_of_a_slab_are_told_apart_and_one_that_only_touches_is
             {"f": 0.4, "A": 10.0, "e": half_width, "v0": 0.5, "T": 1e-3},
             evolution="dz/dt = (v - v0 - z)/T",
         )
-        return steady_proof.proven_changes(slab, NORMAL, law, 0.0, (0.1, 1.0))
+        return steady_proof.proven_changes(uniform.ANSWERS.judge(slab, NORMAL, 1), law, 0.0, (0.1, 1.0))
 
     first, second = changes(1e-4)
     assert (first.stable_above, second.stable_above) == (False, True)
@@ -321,7 +324,7 @@ def count_says_stable(slab: ss.ElasticSlab, slopes: Any) -> bool | None:
     """Return the verdict of Nyquist's count of roots."""
     mu_v, mu_w, f_v, f_w = slopes.tolist()
     response = Response(np.array([mu_w * f_v - mu_v * f_w, mu_v]), np.array([-f_w, 1.0]))
-    return Disturbed(slab, 1.0, response).is_stable()
+    return modes_of(slab, 1.0, response).verdict
 
 
 def close_to_its_edge(drawn: np.random.Generator, slab: ss.ElasticSlab, slopes: Any, width: float) -> ss.ElasticSlab:
@@ -373,6 +376,6 @@ def test_discs_that_do_not_hold_the_steady_states_prove_nothing(monkeypatch: pyt
     """With discs half as wide as the change of the state in a cell no cell is decided."""
     law = ss.friction.RateAndState(**WEAKER)
     body = ss.SpringBlock(10.0, 3.0 * CRITICAL, NORMAL)
-    assert steady_proof.proven_changes(body, NORMAL, law, 0.0, (1e-9, 1e-3)) == []
+    assert steady_proof.proven_changes(rigid.ANSWERS.judge(body, NORMAL, 1), law, 0.0, (1e-9, 1e-3)) == []
     monkeypatch.setattr(steady_proof, "WIDER", 0.5)
-    assert steady_proof.proven_changes(body, NORMAL, law, 0.0, (1e-9, 1e-3)) is None
+    assert steady_proof.proven_changes(rigid.ANSWERS.judge(body, NORMAL, 1), law, 0.0, (1e-9, 1e-3)) is None
