@@ -188,5 +188,5 @@ def stable_states(problem: Problem) -> Floats | None:
     return next((_states(problem.friction, one) for one in _slidings(problem) if one.stable is True), None)
 
 
-STEADY_LEAPS: ByKind[SteadyLeaps] = ByKind("stickslip.engine.creep.drivers", SteadyLeaps)  # type: ignore[type-abstract] # a list
+STEADY_LEAPS: ByKind[SteadyLeaps] = ByKind("stickslip.engine.creep.drivers")
 """The leaps by `Problem.driver_kind`: not of a machine or a driver that changes, before which nothing is leaped over."""
