@@ -13,6 +13,7 @@ from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.roots import sign_change
 from stickslip.contact.steady_proof import Judge
 from stickslip.foundation.by_kind import ByKind
+from stickslip.problem import BODY_KINDS
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 SURE = 1e-12
@@ -76,4 +77,4 @@ class ContactOfKind(ABC, Generic[BodyT, ModesT]):
             low, high = (middle, high) if self.withstands(body, normal, middle) else (low, middle)
 
 
-CONTACT_KINDS: ByKind[ContactOfKind[Any, Any]] = ByKind("stickslip.contact.kinds", ContactOfKind)  # type: ignore[type-abstract] # nobody makes one of it
+CONTACT_KINDS: ByKind[ContactOfKind[Any, Any]] = ByKind("stickslip.contact.kinds", BODY_KINDS)

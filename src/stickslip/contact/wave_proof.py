@@ -29,10 +29,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.contact.drive import driver_impedance
 from stickslip.contact.steady_proof import Discs, slope_symbols
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula import Disc, Expression, Parameter, on_discs
+from stickslip.problem import driver_impedance
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 OUT = 4e-15

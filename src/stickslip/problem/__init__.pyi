@@ -10,6 +10,7 @@ from stickslip.problem.at_first import (
 )
 from stickslip.problem.drivers.driver import (
     DRIVERS,  # What each kind of driver answers, by `Problem.driver_kind`.
+    driver_impedance,  # Return how the driver of a uniform body resists a motion exp(s t) of its end.
     driver_of,  # Return what the driver of a problem answers.
     inflow_of,  # Return the inflow of a problem.
     loading_rate,  # Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
@@ -217,6 +218,7 @@ __all__ = [
     "check_shortest_event",
     "creep_tolerance",
     "default_event_rate",
+    "driver_impedance",
     "driver_of",
     "far_at_first",
     "far_excess",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.drive import driver_impedance
+from stickslip.problem import driver_impedance
 
 Z, KP, M, KI = 9.8e6, 3e6, 2e7, 4e5
 

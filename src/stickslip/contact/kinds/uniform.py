@@ -9,12 +9,13 @@ from numpy.polynomial import polynomial as poly
 
 from stickslip.contact.asked import ContactOfKind, Withstood
 from stickslip.contact.disturbance import Response, of_contact
-from stickslip.contact.drive import SteadyDrive, driver_impedance
+from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.steady_proof import Discs, Judge, slope_symbols
 from stickslip.contact.wave_modes import Polynomial, WaveModes
 from stickslip.contact.wave_proof import of_slab
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
+from stickslip.problem import driver_impedance
 from stickslip.problem.bodies import BodyWithWaves
 
 

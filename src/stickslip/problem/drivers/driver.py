@@ -12,6 +12,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
 from stickslip.problem.bodies import BodyOnCharacteristics
+from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.inflow import Inflow
@@ -31,6 +32,10 @@ class Driver(ABC):
     def reflection(self, body: BodyOnCharacteristics) -> float:
         """Return the share (1) of a wave that comes back before the driver itself has moved."""
         return body.reflection
+
+    @abstractmethod
+    def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:
+        """Return how it resists a motion exp(s t) of its end, which decides how disturbances of steady sliding grow."""
 
     @abstractmethod
     def steady_inflow(self, problem: Problem) -> tuple[float, float]:
@@ -98,6 +103,11 @@ DRIVERS: ByKind[Driver] = ByKind("stickslip.problem.drivers", DRIVER_KINDS)
 def driver_of(problem: Problem) -> Driver:
     """Return what the driver of a problem answers."""
     return DRIVERS[problem.driver_kind]
+
+
+def driver_impedance(body: BodyOnCharacteristics) -> DriverImpedance:
+    """Return how the driver of a uniform body resists a motion exp(s t) of its end."""
+    return DRIVERS[body.driver_kind].impedance(body)
 
 
 def loading_rate(problem: ProblemFields) -> float:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from stickslip.problem.at_first import far_at_first
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.driver import Driver
+from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.inflow import Inflow
@@ -16,6 +19,10 @@ from stickslip.problem.problem import Problem
 
 class LossyDriver(Driver):
     """What a driver of finite impedance Zd answers: it sends (1 + r) (Zd V + far stress)."""
+
+    def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:
+        """Return Zd."""
+        return DriverImpedance(np.array([body.driver_impedance]), np.ones(1))
 
     def gain(self, body: BodyOnCharacteristics) -> Any:
         """Return the share (1) of its stress that it sends to the contact."""

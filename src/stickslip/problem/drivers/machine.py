@@ -11,11 +11,13 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.polynomial import polynomial as poly
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.driver import inflow_of
+from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.lossy import LossyDriver
 from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.inflow import Inflow
@@ -32,6 +34,13 @@ class Machine(LossyDriver):
     def reflection(self, body: BodyOnCharacteristics) -> float:
         """Return -1: what its own motion sends comes on top."""
         return RIGID
+
+    def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:
+        """Return Zd + M s + ki/s."""
+        resists = np.asarray(poly.polytrim([body.driver_impedance, body.driver_inertia]), float)
+        if body.driver_integral_gain > 0.0:
+            return DriverImpedance(np.append(body.driver_integral_gain, resists), np.array([0.0, 1.0]))
+        return DriverImpedance(resists, np.ones(1))
 
     def gain(self, body: BodyOnCharacteristics) -> float:
         """Return 1: all of its stress moves it."""

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.driver import Driver
+from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.inflow import Inflow
 from stickslip.problem.problem import Problem
@@ -10,6 +14,10 @@ from stickslip.problem.problem import Problem
 
 class RigidDriver(Driver):
     """What a rigid driver answers."""
+
+    def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:
+        """Return 1/0: it does not give way."""
+        return DriverImpedance(np.ones(1), np.zeros(1))
 
     def steady_inflow(self, problem: Problem) -> tuple[float, float]:
         """Return the inflow 2 Z V, which does not grow."""

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.driver import Driver
+from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.ground import Ground
 from stickslip.problem.inflow import Inflow
@@ -27,6 +29,10 @@ class InflowOfSpring(Inflow):
 
 class Spring(Driver):
     """What the far end of a spring answers."""
+
+    def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:
+        """Return 1/0: it does not give way."""
+        return DriverImpedance(np.ones(1), np.zeros(1))
 
     def steady_inflow(self, problem: Problem) -> tuple[float, float]:
         """Return the growth of the load (N/s), K V, which does not grow."""
