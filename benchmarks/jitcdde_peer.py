@@ -15,8 +15,8 @@ import numpy as np
 
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.engine.input.forcing import steady_inflow
 from stickslip.friction import SinusoidalSlip
+from stickslip.problem import steady_inflow
 from stickslip.problem.bodies import ElasticSlab
 from stickslip.run.simulate import simulate
 

@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.engine.input.forcing import steady_inflow
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
+from stickslip.problem import steady_inflow
 from stickslip.problem.bodies import ElasticSlab
 
 Function = Callable[[float], float]

@@ -11,13 +11,13 @@ Answers = TypeVar("Answers")
 class ByKind(Generic[Answers]):
     """The answers of every kind to the questions of one part of the program; `KINDS[name]` are those of one.
 
-    A folder has a module for each kind, whose `ANSWERS` answers all questions of the class `asked`. It is imported when the first of
-    its kind is asked about. A kind of somebody else is added by its name: `KINDS.add("beam", AnswersOfBeams())`.
+    A folder has a module for each kind, whose `ANSWERS` answers all questions. It is imported when the first of its kind is asked
+    about. A kind of somebody else is added by its name: `KINDS.add("beam", AnswersOfBeams())`.
     """
 
-    def __init__(self, home: str, asked: type[Answers]) -> None:
-        """Take the folder with the modules, as a package, and the class that lists the questions."""
-        self.home, self.asked = home, asked
+    def __init__(self, home: str) -> None:
+        """Take the folder with the modules, as a package."""
+        self.home = home
         self._known: dict[str, Answers] = {}
 
     def __getitem__(self, kind: str) -> Answers:

@@ -2,6 +2,25 @@
 
 from stickslip.problem import loading
 from stickslip.problem import selection_rule as selection
+from stickslip.problem.at_first import (
+    far_at_first,  # Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa).
+    far_excess,  # Return the default far stress, that in the slab at the start, minus the reference strength (Pa).
+    # Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start.
+    wave_before,
+)
+from stickslip.problem.drivers.driver import (
+    DRIVERS,  # What each kind of driver answers, by `Problem.driver_kind`.
+    driver_of,  # Return what the driver of a problem answers.
+    inflow_of,  # Return the inflow of a problem.
+    loading_rate,  # Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
+    steady_inflow,  # Return the inflow of a loading that does not vary: its value at 0 s and its growth per second.
+    tone_of,  # Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground.
+)
+from stickslip.problem.drivers.machine import (
+    pull_of,  # Return the pull rate (m/s) of a machine, as it arrives at the contact.
+    # Return the rate (m/s) that a machine tends to while the contact rests, under the loading that has arrived at times (s).
+    settled_rate,
+)
 from stickslip.problem.equivalent_block import (
     block_for,  # Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
 )
@@ -21,6 +40,11 @@ from stickslip.problem.given_units import (
 )
 from stickslip.problem.ground import (
     Ground,  # Pieces of the ground's motion: what holds where each begins, without the tone, and the constant jerk on it.
+)
+from stickslip.problem.inflow import (
+    EDGE,  # Distance from the edge of a round trip, as a share of it, within which a break lies on the edge.
+    Inflow,  # Straight segments, each with the time (s) of its arrival, plus a tone.
+    breaks_of,  # Return the round trips and offsets (s) of times (s); an edge between two is offset 0 of the later.
 )
 from stickslip.problem.limits import (
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
@@ -65,6 +89,9 @@ from stickslip.problem.parameters import (
     pressed_body,  # Return the body of a problem with another normal load: the weight on a string's bit is in proportion to it.
     # Return a problem with other values (SI) of its numbers, by their full names; an initial load replaces an excess, and back.
     put_many,
+)
+from stickslip.problem.pressing import (
+    pressing_of,  # Return the growth of a normal load; one part without growth if it is constant.
 )
 from stickslip.problem.problem import (
     Problem,  # Everything that a run needs except its duration and its tolerance.
@@ -120,15 +147,14 @@ from stickslip.problem.selection_rule import (
     names,  # Return the names of all selection rules, first the built-in ones and then the registered ones.
     registered,  # Selection rules that users have registered, by name.
 )
-from stickslip.problem.start import (
-    loading_rate,  # Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
-)
 
 __all__ = [
     "BAD_PARAMETERS",
     "CHECKPOINT_INTERVAL",
     "CREEP_RTOL",
+    "DRIVERS",
     "DURATION",
+    "EDGE",
     "ENOUGH_EVENTS",
     "EVENT_SHARE",
     "FULL_HISTORY",
@@ -159,6 +185,7 @@ __all__ = [
     "Branch",
     "Crowd",
     "Ground",
+    "Inflow",
     "LoadingHistory",
     "Parameter",
     "PiecewiseLinear",
@@ -175,6 +202,7 @@ __all__ = [
     "Tone",
     "automatic_length",
     "block_for",
+    "breaks_of",
     "check_creep_rtol",
     "check_event_rate",
     "check_problem",
@@ -183,7 +211,11 @@ __all__ = [
     "check_shortest_event",
     "creep_tolerance",
     "default_event_rate",
+    "driver_of",
+    "far_at_first",
+    "far_excess",
     "in_given_units",
+    "inflow_of",
     "leaps_but_for_pull",
     "leaps_over",
     "loading",
@@ -192,11 +224,17 @@ __all__ = [
     "names",
     "normal_name",
     "pressed_body",
+    "pressing_of",
+    "pull_of",
     "put_many",
     "registered",
     "resistance_slope",
     "selection",
+    "settled_rate",
+    "steady_inflow",
+    "tone_of",
     "units_given",
     "units_shared",
+    "wave_before",
     "written_out",
 ]

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import cast
 
 from stickslip.foundation.errors import InputError
-from stickslip.problem.bodies import BodyWithWaves
 from stickslip.problem.problem import Problem
 
 
@@ -15,8 +13,6 @@ def block_for(problem: Problem) -> Problem:
 
     Raises InputError if the body is a block, or if the driver of the slab is not rigid, or not for ever.
     """
-    if not problem.body.has_waves:
-        raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
     if problem.driver_changes:
         raise InputError("analogy: a block has no driver that changes: leave driver_reflection out")
-    return replace(problem, body=cast(BodyWithWaves, problem.body).equivalent_block())
+    return replace(problem, body=problem.body.equivalent_block())

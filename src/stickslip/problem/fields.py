@@ -18,7 +18,7 @@ from stickslip.foundation.names import KINDS, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics, OfLayers
+from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics
 from stickslip.problem.ground import Ground
 from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.normal_load import begun_with_body, check_normal_load
@@ -156,7 +156,7 @@ class ProblemFields(CheckedArguments):
     def _check_two_drivers(self) -> None:
         """Raise InputError if a loading varies that acts through two drivers, and does not come through both alike."""
         varying = [name for name in self._varying if name in ("pull_rate", "far_stress")]
-        if varying and isinstance(self.body, OfLayers) and len(self.body.stacks) > 1 and not self.is_driven_rigidly:
+        if varying and self.body.drivers > 1 and not self.is_driven_rigidly:
             name = type(self.body).__name__
             raise InputError(
                 f"Problem: {varying[0]} that varies needs rigid drivers on both sides of a {name}, which do not change: "
@@ -164,12 +164,10 @@ class ProblemFields(CheckedArguments):
             )
 
     def _check_ground(self, ground: Ground) -> None:
-        if isinstance(self.body, OfLayers) and len(self.body.stacks) > 1 and not self.body.is_joined:
+        if not self.body.has_ground:
             why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
             raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
-        if self.body.has_machine:
-            cure = "set driver_inertia and driver_integral_gain to 0, or leave the ground at rest"
-            raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: {cure}")
+        self._refuse_machine("Problem: ground that moves is not followed under", "leave the ground at rest")
         if self.body.has_inertia and ground.velocity_jumps:
             unit = self.unit_of("ground_velocity")
             why = f"an infinite force on a mass: join the points (piecewise-linear), beginning with 0 {unit}"
@@ -178,14 +176,16 @@ class ProblemFields(CheckedArguments):
         if ground.tone.amplitude != 0.0 and any(one.tone.amplitude != 0.0 for one in pulls):
             raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
 
+    def _refuse_machine(self, what: str, cure: str) -> None:
+        if self.body.has_machine:
+            raise InputError(f"{what} {MACHINE}: set driver_inertia and driver_integral_gain to 0, or {cure}")
+
     def _check_driver(self, history: LoadingHistory) -> None:
         body, name = self.body, "Problem: driver_reflection"
-        if not body.has_waves:
+        if not body.driver_may_change:
             why = "which sends no waves to its driver: give a slab or a string"
             raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
-        if body.has_machine:
-            cure = "set driver_inertia and driver_integral_gain to 0, or leave driver_reflection out"
-            raise InputError(f"{name} is not followed for {MACHINE}: {cure}")
+        self._refuse_machine(f"{name} is not followed for", "leave driver_reflection out")
         if not history.is_stepped:
             raise InputError(f"{name} must change by steps, got {history.kind}: give kind steps")
         if history.lowest < RIGID or history.highest > 1.0:
@@ -256,7 +256,7 @@ class ProblemFields(CheckedArguments):
                 f" 0 {unit} if nothing holds the far end that is set free"
             )
         if self.driver_reflection is None and (self.far_stress is not None or self.far_stress_rate != 0.0):
-            noun = self.body.noun if self.body.has_waves else "slab"
+            noun = self.body.noun_with_driver
             raise InputError(f"Problem: far_stress and far_stress_rate need a {noun} with a finite driver_impedance")
 
     def _check_one_way(self) -> None:
@@ -310,6 +310,12 @@ class ProblemFields(CheckedArguments):
     def is_driven_rigidly(self) -> bool:
         """True if the driver is rigid throughout the run."""
         return self.body.is_driven_rigidly and not self.driver_changes
+
+    @property
+    def far_stress_varies(self) -> bool:
+        """True if the far stress changes in time, and a driver that gives way feels it."""
+        changes = isinstance(self.far_stress, LoadingHistory) or self.far_stress_rate != 0.0
+        return changes and not self.body.is_driven_rigidly
 
     def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the normal load S (Pa, N or N m) at times (s since the start of the run) of any shape."""

@@ -24,8 +24,6 @@ from stickslip.problem.start import Start, start_of
 
 DAY = 86_400.0
 """A day, s: what is called a round trip of a block that never sticks."""
-LONGEST_ROUND_TRIP = 1e6
-"""Largest number of periods (1) in a block's round trip."""
 
 
 class Problem(ProblemFields):
@@ -215,12 +213,11 @@ class Problem(ProblemFields):
         than the period of a tone in its loading, nor than LONGEST_ROUND_TRIP of its own periods, because times in a longer one
         would not resolve them; but it never is shorter than one period of the block.
         """
-        period = self.body.round_trip_time
-        if self.body.has_waves or self.friction.sticks:
-            return period
+        if self.friction.sticks:
+            return self.body.round_trip_time
         tones = [getattr(self, name).tone for name in self._varying]
         swing = min((2.0 * math.pi / tone.frequency for tone in tones if tone.amplitude != 0.0), default=math.inf)
-        return max(period, min(DAY, LONGEST_ROUND_TRIP * period, swing))
+        return self.body.turn_time(min(DAY, swing))
 
     @property
     def parameters(self) -> Parameters[Self]:

@@ -1,4 +1,4 @@
-"""Find the slip rate, load and state at the start of a contact that starts in motion, and how fast loading begins.
+"""Find the slip rate, load and state at the start of a contact that starts in motion.
 
 A contact that has a mass and never sticks cannot start from rest; any other may start at a rate. What the problem leaves out
 follows from the balance of forces at the start, load = damping v + S mu(u, v, state), or from steady sliding.
@@ -31,17 +31,6 @@ class Start(NamedTuple):
     rate: float
     load: float
     states: tuple[float, ...]  # those that reverse: in the forward direction
-
-
-def loading_rate(problem: ProblemFields) -> float:
-    """Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
-
-    It is exact for a block, and a mean over round trips for a slab.
-    """
-    body = problem.body
-    if not body.is_driven_rigidly:
-        return problem.far_stress_rate
-    return body.stiffness * problem.first_pull_rate
 
 
 def start_of(problem: ProblemFields) -> Start:

@@ -22,7 +22,8 @@ def test_a_kind_is_known_before_its_class_is_loaded() -> None:
 import sys
 from stickslip.friction import LAWS
 from stickslip.problem.bodies import BODIES
-loaded = lambda: {name for name in sys.modules if name.startswith(("stickslip.friction.laws.", "stickslip.problem.bodies.uniform.string"))}
+given = ("stickslip.friction.laws.", "stickslip.problem.bodies.uniform.string")
+loaded = lambda: {name for name in sys.modules if name.startswith(given)}
 assert "dahl" in LAWS and "torsional-string" in BODIES and "dahll" not in LAWS and len(LAWS) > 20 and not loaded()
 assert LAWS["dahl"].__name__ == "Dahl"
 assert loaded() == {"stickslip.friction.laws.bristles"}, loaded()

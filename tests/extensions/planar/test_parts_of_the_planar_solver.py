@@ -11,12 +11,12 @@ from scipy.integrate import quad
 from scipy.special import j1
 
 import stickslip as ss
-from stickslip.engine.input.forcing import inflow_of
 from stickslip.extensions.planar import echo as echoes
 from stickslip.extensions.planar.driving import locked_load
 from stickslip.extensions.planar.memory import advanced, recurrence
 from stickslip.extensions.planar.nodes import node_values
 from stickslip.extensions.planar.solver import PlanarSolver, our_settings
+from stickslip.problem import inflow_of
 from tests.extensions.planar.patches import SLAB, patch
 
 RANDOM = np.random.default_rng(3)

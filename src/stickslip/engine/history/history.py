@@ -11,13 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.history.series import integrals_at, values_at
-from stickslip.engine.input.forcing import inflow_of, ramp_per_rate, settled_rate
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.foundation.arrays import Floats, Floats1, Integers1
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import entry
 from stickslip.friction.contract import one_argument
-from stickslip.problem import Problem
+from stickslip.problem import Problem, driver_of
 
 if TYPE_CHECKING:
     from stickslip.engine.history.machine_motion import MachineMotion
@@ -308,8 +307,8 @@ class History:
     def excess(self, at: Positions) -> Floats:
         """Return the load minus the reference strength (Pa, N or N m)."""
         value = values_at(self.store.load, at.piece, at.xi)
-        if at.at_rest.any() and self.problem.body.has_waves:
-            left = 2.0 * self.problem.body.impedance * values_at(self.store.rate, at.piece, at.xi)
+        if at.at_rest.any():
+            left = 2.0 * self.problem.body.echo_impedance * values_at(self.store.rate, at.piece, at.xi)
             value = np.where(at.at_rest, value - left, value)
         return np.where(at.before, self.problem.excess, value + self._gained(at))
 
@@ -318,10 +317,7 @@ class History:
         if not self.problem.varies or not at.at_rest.any():
             return at.leaped * self.ramp
         offset = self.store.phase_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
-        if self.problem.body.has_machine:
-            after = (self.store.trip[at.piece] + 1.0) * self.round_trip_time
-            return np.asarray(at.leaped * ramp_per_rate(self.problem) * settled_rate(self.problem, after))
-        return inflow_of(self.problem).gathered(self.store.trip[at.piece].astype(float), offset, at.leaped)
+        return driver_of(self.problem).gathered(self.problem, self.store.trip[at.piece].astype(float), offset, at.leaped)
 
     def rate(self, at: Positions) -> Floats:
         """Return the slip rate, m/s."""

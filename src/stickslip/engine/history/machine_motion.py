@@ -17,12 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.history.series import horner
-from stickslip.engine.input.forcing import EDGE, Inflow, inflow_of, machine_at_first, pull_of, settled_rate, wave_before
 from stickslip.engine.state.layout import TERMS, Store
 from stickslip.foundation.arrays import Floats, Floats1, Floats2, Floats3
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import entry
-from stickslip.problem import Problem
+from stickslip.problem import EDGE, Inflow, Problem, driver_of, inflow_of, pull_of, settled_rate, wave_before
 
 FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
@@ -142,7 +141,7 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
     rests = np.flatnonzero(gap > 1e-9 * trip_time)
     parts = parts.with_rests(rests, gap[rests])
-    start, since = np.array(machine_at_first(problem)), -math.inf
+    start, since = np.array(driver_of(problem).at_first(problem)), -math.inf
     if store.trip[0] != 0 or store.phase_from[0] != 0.0:
         start, since = _start_in(problem, store, machine)
         parts = parts.from_time(since)

@@ -72,7 +72,7 @@ def creep_note(history: History) -> str:
         return ""
     leaps, (row, trips, error, delay) = len(history.creep), history.creep.T
     passed = leaps_over(history.problem)
-    turns = "round trips" if history.problem.body.has_waves else "periods"
+    turns = f"{history.problem.body.turn}s"
     cycles = passed == "steady sliding" and _touches_rest(history)
     of = " of cycles that touch rest" if cycles else f" of {passed}" * (passed != "creep")
     over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} {turns}{of}"

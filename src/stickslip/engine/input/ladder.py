@@ -8,20 +8,15 @@ the contact and what drag takes up to there, so that it would stay so: what a st
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
-from stickslip.engine.input.forcing import far_excess
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
-from stickslip.foundation.constants import RIGID
-from stickslip.problem import LoadingHistory, Problem
+from stickslip.engine.state.layout import FirstLoad, LadderCell
+from stickslip.problem import LoadingHistory, Problem, driver_of, far_excess
 from stickslip.problem.bodies import OfLayers
 from stickslip.problem.bodies.layered.layers import Layers
-
-NO_LADDER = LadderCell.table(0)
-"""Table `Setup.ladder` of a body without layers."""
 
 
 class StartingSide(NamedTuple):
@@ -40,19 +35,22 @@ class StartingSide(NamedTuple):
     """Share (1) in the load and its growth."""
 
 
+def layers_of(problem: Problem) -> OfLayers:
+    """Return the body of a problem, which is of layers."""
+    return cast(OfLayers, problem.body)
+
+
 def ladder_of(problem: Problem) -> at.Floats:
-    """Return the table of `LadderCell` of a problem; an empty one for a body that is uniform."""
-    body = problem.body
-    if not isinstance(body, OfLayers):
-        return NO_LADDER
+    """Return the table of `LadderCell` of a problem with a body of layers."""
+    body, driver = layers_of(problem), driver_of(problem)
     tables = [_cells_of(side) for side in sides_of(problem, body)]
-    for table, pulled in zip(tables, _pulled(problem, body), strict=True):
+    for table, pulled in zip(tables, driver.pulled_shares(problem), strict=True):
         cells = LadderCell.of(table)
         cells.pulled[-1] = pulled
-        if pulled != 0.0 or body.has_machine:
+        if pulled != 0.0 or driver.moves:  # what is pulled as it varies, or moves by itself, is added
             cells.inflow[-1] = cells.inflow_rate[-1] = 0.0
-        if body.has_machine:  # what its own motion sends is added (`waves.driver`)
-            cells.reflection[-1] = RIGID
+        if driver.moves:
+            cells.reflection[-1] = driver.reflection(problem.body)
     return np.concatenate(tables)
 
 
@@ -63,22 +61,9 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
     assert problem.varies or problem.is_driven_rigidly or not isinstance(given, LoadingHistory)
     far = None if given is None or isinstance(given, LoadingHistory) else given - problem.strength
     rates = body.rates_at_start(problem.rate, problem.initial_shear)
-    for n, (layers, (contact, driver)) in enumerate(zip(body.stacks, rates, strict=True)):
-        share = layers.stiffness / body.stiffness if body.is_joined else 1.0
-        own, pulled = None if far is None else share * far, problem.first_pull_rate if n == 0 or body.is_joined else 0.0
+    for layers, (contact, driver), share, moved in zip(body.stacks, rates, body.shares, body.is_pulled, strict=True):
+        own, pulled = None if far is None else share * far, problem.first_pull_rate if moved else 0.0
         yield StartingSide(layers, contact, driver, pulled, share * stress, own, share * growth, share)
-
-
-def _pulled(problem: Problem, body: OfLayers) -> list[float]:
-    """Return the share in a varying inflow, that of the first driver, of each driver: 0 if it is loaded steadily."""
-    if not problem.loading_varies:
-        return [0.0] * len(body.stacks)
-    if len(body.stacks) == 1:
-        return [0.0 if body.has_machine else 1.0]
-    if problem.driver_changes:  # the first one
-        return [1.0, 0.0]
-    first, other = (one.impedances[-1] for one in body.stacks)
-    return [1.0, other / first if body.is_joined else 0.0]
 
 
 def _cells_of(side: StartingSide) -> at.Floats:
@@ -118,22 +103,12 @@ def _steady_inflow(side: StartingSide) -> tuple[float, float]:
     return gain * sent, gain * growth
 
 
-def set_counts(counts: Counts, problem: Problem) -> None:
-    """Set the counts of a body of layers at t = 0."""
-    body = problem.body
-    if isinstance(body, OfLayers):
-        cells = [sum(one.counts) for one in body.stacks]
-        counts.cells, counts.first_side, counts.joined = sum(cells), cells[0], body.is_joined
-        counts.slots = counts.cells + body.has_machine
-
-
 def first_pieces(problem: Problem) -> at.Floats:
     """Return the pieces of the first round trip: the load of the start, or NaN where a driver is heard already.
 
     A driver behind an odd number of cells joins in after the time of one cell, which is where a single cell hears it.
     """
-    body = problem.body
-    assert isinstance(body, OfLayers)
+    body = layers_of(problem)
     delay, end = body.inflow_delay, problem.round_trip_time
     phases = np.array([0.0, delay, end] if 0.0 < delay < end else [0.0, end])
     table = FirstLoad.table(len(phases))

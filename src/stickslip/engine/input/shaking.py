@@ -1,6 +1,6 @@
 """What moving ground adds to the load of a contact, as segments for the engine.
 
-A block's load gains -m a(t), with a the acceleration of the ground: its growth is in `forcing.Inflow`, and its jumps are here. At
+A block's load gains -m a(t), with a the acceleration of the ground: its growth is in `drivers.spring`, its jumps are here. At
 the contact of a slab m d(v + v_g)/dt + Z (v + v_g) + tau = beta, with m its mass, if it has one, v the slip rate and v_g the
 velocity of the ground. The load of the engine is beta - Z v_g - m v_g', so that its inflow gains that and, from the wave 2 Z (v +
 v_g) - beta that comes back, r (Z v_g - m v_g')(t - R): parabolas and a sinusoid. Under layers, whose echoes are many, the engine
@@ -11,31 +11,71 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from stickslip.engine.input.forcing import Inflow, inflow_of, tone_of
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import Ground, Problem, Tone
+from stickslip.problem import Ground, Inflow, Problem, Tone, inflow_of, tone_of
 
 STILL = 1e-15
 """Ground whose velocity is below this share of its largest one (1) is at rest: the rest is rounding of sums."""
 
 
-def force_steps(problem: Problem, start: Floats) -> Floats:
-    """Return the jumps (N) of a block's load at times (s) where segments begin, the first of which is 0 s."""
-    ground, mass = problem.ground, problem.body.inertia
-    assert ground is not None
-    acceleration = ground.acceleration.copy()
-    acceleration[1:] -= acceleration[:-1] + ground.jerk[:-1] * np.diff(ground.start)
-    size = np.abs(ground.acceleration).max()
-    acceleration[1:][np.abs(acceleration[1:]) <= 1e-14 * size] = 0.0
-    amplitude, frequency, phase = ground.tone
-    acceleration[0] += amplitude * frequency * math.cos(phase)
-    steps = np.zeros(len(start))
-    steps[np.searchsorted(start, ground.start)] = -mass * acceleration
-    return steps
+class Shaken(Protocol):
+    """What moving ground does to the load of a contact, by segments of time."""
+
+    @property
+    def start(self) -> Floats:
+        """Times (s) at which segments begin."""
+        ...
+
+    @property
+    def brings_inflow(self) -> bool:
+        """True if it has the inflow of the driver in it."""
+        ...
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Write it into segments (`LoadingSegment.of` a table) that begin at times (s), its own among them."""
+        ...
+
+
+class AtRest:
+    """Ground that does not move."""
+
+    start: Floats = np.zeros(1)
+    brings_inflow: bool = False
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Leave the segments as they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class StepsOfForce:
+    """The jumps (N) of a block's load where the acceleration of the ground jumps."""
+
+    start: Floats
+    step: Floats
+    brings_inflow: bool = False
+
+    @classmethod
+    def of(cls, problem: Problem) -> StepsOfForce:
+        """Return the jumps under a problem's block."""
+        ground = moving(problem)
+        acceleration = ground.acceleration.copy()
+        acceleration[1:] -= acceleration[:-1] + ground.jerk[:-1] * np.diff(ground.start)
+        size = np.abs(ground.acceleration).max()
+        acceleration[1:][np.abs(acceleration[1:]) <= 1e-14 * size] = 0.0
+        amplitude, frequency, phase = ground.tone
+        acceleration[0] += amplitude * frequency * math.cos(phase)
+        return cls(ground.start, -problem.body.inertia * acceleration)
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Write the jumps into segments that begin at times (s)."""
+        step = np.zeros(len(start))
+        step[np.searchsorted(start, self.start)] = self.step
+        segments.step = step
+        segments.jump[1:] = segments.step[1:] != 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +89,12 @@ class Shaking:
     phasor: Floats  # complex: amplitude times exp(i phase) of the sinusoid
     jump: Floats  # 1 where the inflow jumps, else 0
     shakes: Floats  # 1 while the ground moves or its motion is on its way back
+    brings_inflow: bool = True
+
+    @classmethod
+    def of(cls, problem: Problem) -> Shaking:
+        """Return the inflow of a slab on moving ground: that of its driver from h/c on, and that of the ground."""
+        return _shaking_of(problem, moving(problem), inflow_of(problem))
 
     def put(self, segments: Any, start: Floats) -> None:
         """Write the inflow into segments (`LoadingSegment.of` a table) that begin at times (s), those of the inflow among them."""
@@ -60,22 +106,40 @@ class Shaking:
         segments.jump, segments.shakes = np.where(since == 0.0, self.jump[of], 0.0), self.shakes[of]
 
 
-def put_ground(segments: Any, ground: Ground, start: Floats) -> None:
-    """Write the velocity of the ground under layers into segments (`LoadingSegment.of` a table) that begin at times (s).
+@dataclass(frozen=True, eq=False)
+class GroundUnderLayers:
+    """The velocity of the ground under layers, whose echoes are many."""
 
-    The starts of the ground's pieces are among these.
-    """
-    middle = start + 0.5 * np.diff(np.append(start, start[-1] + 1.0))
-    (value, slope, curve), _, phasor, segments.shakes = _moved(ground, start, middle)
-    segments.ground, segments.ground_slope, segments.ground_curve = value, slope, curve
-    segments.ground_tone, segments.ground_phase = np.abs(phasor), np.angle(phasor)
-    segments.jump = np.maximum(segments.jump, _jumps(start, np.array([value, slope, curve]), phasor, ground.tone))
+    ground: Ground
+    brings_inflow: bool = False
+
+    @classmethod
+    def of(cls, problem: Problem) -> GroundUnderLayers:
+        """Return the ground of a problem."""
+        return cls(moving(problem))
+
+    @property
+    def start(self) -> Floats:
+        """Times (s) at which pieces of its motion begin."""
+        return self.ground.start
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Write the velocity of the ground into segments that begin at times (s)."""
+        middle = start + 0.5 * np.diff(np.append(start, start[-1] + 1.0))
+        (value, slope, curve), _, phasor, segments.shakes = _moved(self.ground, start, middle)
+        segments.ground, segments.ground_slope, segments.ground_curve = value, slope, curve
+        segments.ground_tone, segments.ground_phase = np.abs(phasor), np.angle(phasor)
+        segments.jump = np.maximum(segments.jump, _jumps(start, np.array([value, slope, curve]), phasor, self.ground.tone))
 
 
-def shaking_of(problem: Problem) -> Shaking:
-    """Return the inflow of a slab on moving ground: that of its driver from h/c on, and that of the ground."""
-    ground, driver, body = problem.ground, inflow_of(problem), problem.body
-    assert ground is not None
+def moving(problem: Problem) -> Ground:
+    """Return the motion of the ground, which moves."""
+    assert problem.ground is not None
+    return problem.ground
+
+
+def _shaking_of(problem: Problem, ground: Ground, driver: Inflow) -> Shaking:
+    body = problem.body
     delay, trip = 0.5 * body.round_trip_time, body.round_trip_time
     lates = (0.0, trip) if driver.reflection.any() else (0.0,)
     starts = [driver.start[driver.start > delay], np.array([0.0, delay]), *(ground.start + late for late in lates)]

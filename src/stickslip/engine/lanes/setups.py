@@ -9,17 +9,17 @@ import numpy as np
 from stickslip.contact import FASTEST as FASTEST_SEARCHED
 from stickslip.contact import Pieces, find_turns, folds_of, levels
 from stickslip.engine.compiled_formula import compile_formula, keep_with
+from stickslip.engine.input.asked import INPUTS
 from stickslip.engine.input.branch_table import is_algebraic, table_of_branches
+from stickslip.engine.input.first_pieces import together
 from stickslip.engine.input.limits import set_lumping, wait_for_creep
 from stickslip.engine.input.prepare import (
-    first_load,
     functions_of,
     parameters_of,
     references_of,
     set_references,
     set_tolerance,
     start_of,
-    together,
 )
 from stickslip.engine.lanes.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, FoundBranches, Resistances, search_branches
 from stickslip.engine.lanes.runs import fill_constants
@@ -92,7 +92,7 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
         constants=constants,
         law=law,
         branch_table=branch_table,
-        first_load=for_each(first_load(problem), 2),
+        first_load=for_each(INPUTS[problem.body.structure].first_load(problem), 2),
         branches=branches,
         irregular=irregular,
         state=group.state.numbers,

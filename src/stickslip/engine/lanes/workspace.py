@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine.history.slip_events import EventTurns
 from stickslip.engine.history.turning_points import Known, Spare, Turn
-from stickslip.engine.input.ladder import NO_LADDER
+from stickslip.engine.input.asked import NO_LADDER
 from stickslip.engine.input.prepare import NOT_VARYING
 from stickslip.engine.lanes.lane_block import LaneBlock
 from stickslip.engine.lanes.lanes import Waits

@@ -17,9 +17,10 @@ from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict,
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
-from stickslip.engine.waves.tone import dirichlet, tone_series
+from stickslip.engine.waves.tone import tone_series
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
+from stickslip.foundation.phasors import dirichlet
 
 AT_EDGE = 1e-13
 """A break of the loading lies on the edge of a piece if it is closer to it than this share of a round trip (1), by rounding."""

@@ -52,6 +52,7 @@ COMPILED_FILES = (
     "contact/slopes.py",
     "contact/turn_search.py",
     "foundation/constants.py",
+    "foundation/phasors.py",
     "friction/formula/at_points.py",
     "friction/formula/on_boxes.py",
     "friction/formula/on_cells.py",

@@ -75,6 +75,10 @@ class BodyOnCharacteristics(Body, Protocol):
     """The kind of body, by which the parts of the program answer what they are asked: "rigid", "uniform" or "layered"."""
     turn: ClassVar[str]
     """What sentences call the time after which slip acts on the contact again: "round trip" or "period"."""
+    driver_may_change: ClassVar[bool]
+    """True if the driver may be one that changes in time."""
+    noun_with_driver: ClassVar[str]
+    """What sentences call the body, or the like of it, whose driver may give way: "slab" or "string"."""
     what_is_heavy: ClassVar[str]
     """What sentences call what has the mass that slips: "contact mass" or "block"."""
     has_waves: ClassVar[bool]
@@ -91,7 +95,7 @@ class BodyOnCharacteristics(Body, Protocol):
 
     @property
     def driver_kind(self) -> str:
-        """The kind of driver (`stickslip.problem.drivers`): "spring" of a rigid body, "rigid", "lossy" or "machine" of one with waves.
+        """The kind of driver (`stickslip.problem.drivers`): "spring" of a rigid body; of others "rigid", "lossy" or "machine".
 
         Of several drivers it is "rigid" only if all are.
         """
@@ -127,6 +131,18 @@ class BodyOnCharacteristics(Body, Protocol):
         """The time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
         ...
 
+    def equivalent_block(self) -> BodyOnCharacteristics:
+        """Return the rigid body on a spring to which this one is equivalent in slow motion. Raises InputError if there is none."""
+        ...
+
+    def as_uniform(self, refusal: str) -> BodyOnCharacteristics:
+        """Return the body if it is a uniform one with waves: see `as_waves`."""
+        ...
+
+    def turn_time(self, longest: float) -> float:
+        """Return the length of a round trip of a history (s), which may be as long as that of a rigid body that never rests."""
+        ...
+
     @property
     def longest_way(self) -> float:
         """The time (s) of a wave to the driver and back, through all layers; of a block its period."""
@@ -145,6 +161,23 @@ class BodyOnCharacteristics(Body, Protocol):
 
     def held_at_start(self, rate: float, shear: float) -> list[float]:
         """Return the stress (Pa) that drag then takes between the contact and the driver of each side."""
+        ...
+
+    def meets_driver_at_first(self, excess: Any, rate: Any, shear: Any) -> Any:
+        """Return the wave (Pa, minus the reference strength) that meets the driver at the start.
+
+        The load then has an excess over that strength (Pa), the contact slips at `rate`, and the driver is by `shear` faster (m/s).
+        """
+        ...
+
+    @property
+    def pulled_shares(self) -> list[float]:
+        """The share (1) of each driver in an inflow that varies, which is that of the first one."""
+        ...
+
+    @property
+    def echo_impedance(self) -> float:
+        """The impedance (Pa s/m) with which slip comes back as load after a round trip: Z, and 0 of a rigid body."""
         ...
 
     @property
@@ -229,18 +262,10 @@ class BodyWithWaves(BodyOnCharacteristics, Protocol):
         """The share of a sharp wave front that the driver sends back."""
         ...
 
-    def equivalent_block(self) -> BodyOnCharacteristics:
-        """Return the rigid body on a spring to which this one is equivalent in slow motion."""
-        ...
-
 
 def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with waves") -> BodyWithWaves:
     """Return a uniform body that must carry waves. Raises InputError, with the text `refusal` for a rigid one."""
-    if not body.has_waves:
-        raise InputError(refusal)
-    if not body.is_uniform:
-        raise InputError(f"needs a uniform body with waves: a {type(body).__name__} has layers")
-    return cast(BodyWithWaves, body)
+    return cast(BodyWithWaves, body.as_uniform(refusal))
 
 
 class WithNormalLoad:

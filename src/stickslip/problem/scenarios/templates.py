@@ -18,6 +18,7 @@ from stickslip.foundation.show import brief, clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
+from stickslip.problem.drivers.driver import loading_rate
 from stickslip.problem.fields import HISTORIES_ONLY
 from stickslip.problem.loading import HISTORIES
 from stickslip.problem.problem import Problem
@@ -37,7 +38,6 @@ from stickslip.problem.scenarios.schema import (
     read_part,
 )
 from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.problem.start import loading_rate
 
 LOADINGS = 3
 """Number of loads from nothing to the strength in which a contact slips several times, as few events take all of the load."""

@@ -10,11 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stickslip.engine.input import far_at_first, machine_at_first
 from stickslip.foundation.names import KINDS
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem import MAY_VARY, LoadingHistory, Problem
+from stickslip.problem import MAY_VARY, LoadingHistory, Problem, driver_of, far_at_first
 from stickslip.problem.bodies import OfLayers
 
 SAME = 1e-12
@@ -93,7 +92,7 @@ def _driver(problem: Problem) -> Iterator[str]:
         return
     why = "the pull rate" if body.driver_inertia > 0.0 else "at which the forces on it balance"
     gain = ", and its integral gain has nothing to make up for yet" * (body.driver_integral_gain > 0.0)
-    yield f"the driver begins at {brief(machine_at_first(problem)[0], unit)}, {why}{gain}"
+    yield f"the driver begins at {brief(driver_of(problem).at_first(problem)[0], unit)}, {why}{gain}"
 
 
 def _far_side(problem: Problem) -> Iterator[str]:

@@ -128,7 +128,7 @@ class ObservablesOfKind(ABC):
         """Return how far the loads of a history are from those that follow from its slip and its problem."""
 
 
-OBSERVABLES: ByKind[ObservablesOfKind] = ByKind("stickslip.solution.observables.kinds", ObservablesOfKind)  # type: ignore[type-abstract] # the class that lists the questions
+OBSERVABLES: ByKind[ObservablesOfKind] = ByKind("stickslip.solution.observables.kinds")
 
 
 def observables_of(problem: Problem) -> ObservablesOfKind:

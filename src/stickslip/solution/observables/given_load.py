@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.input import far_at_first
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem import LoadingHistory, Problem, far_at_first
 from stickslip.solution.observables.asked import observables_of
 
 BESIDE = 1e-10

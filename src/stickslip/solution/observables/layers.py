@@ -16,8 +16,9 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.engine import Floats, History, Integers, LadderCell, Positions
-from stickslip.engine.input import inflow_of, ladder_of, sides_of
+from stickslip.engine.input import ladder_of, sides_of
 from stickslip.foundation.constants import RIGID
+from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.layer_records import (
@@ -84,7 +85,7 @@ class LayerWaves:
         self._inflow = np.array([cells.inflow[self.last], cells.inflow_rate[self.last]], float)
         self._before = np.array(cells.inflow_before[self.last], float)
         self._pulled = np.array(cells.pulled[self.last], float)
-        self._is_pulled = np.array([1.0] + [float(body.is_joined)] * (len(sides) - 1))
+        self._is_pulled = np.array(body.is_pulled, float)
         trips = np.unique(self.contact.trip)
         self._steps = np.union1d(trips, trips + 1)
 

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import START, Epoch, History, Positions
-from stickslip.engine.input import wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem import wave_before
 from stickslip.problem.bodies import BodyWithWaves
 from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.quadrature import NODES, WEIGHTS, over, places_in

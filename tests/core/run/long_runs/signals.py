@@ -18,16 +18,18 @@ PHASES = 12
 def with_signal_at(call: int, act: Callable[[], Any]) -> tuple[Any, int]:
     """Return what `act` returns, or KeyboardInterrupt if it raises that, with a Ctrl-C at one of its calls of our functions.
 
-    The calls are numbered; at -1 there is none. The second number returned is how many there were. In a library's own functions a
-    signal might leave a lock closed, on which other tests would wait for ever.
+    The calls are numbered; at -1 there is none. The second number returned is how many there were. The signal comes once, as a
+    function of ours begins. In a library's own functions, or as one of C is called, it might leave a lock closed, on which other
+    tests would wait for ever: only a profiler interrupts `with lock` before its `__exit__`.
     """
     seen, ours = 0, str(Path(ss.__file__).parent)
 
     def count(frame: FrameType, event: str, _: Any) -> None:
         nonlocal seen
-        seen += event == "call" and frame.f_code.co_filename.startswith(ours)
-        if seen == call:
-            signal.raise_signal(signal.SIGINT)
+        if event == "call" and frame.f_code.co_filename.startswith(ours):
+            seen += 1
+            if seen == call:
+                signal.raise_signal(signal.SIGINT)
 
     sys.setprofile(count)
     try:

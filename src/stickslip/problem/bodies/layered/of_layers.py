@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, Self, cast
 
 from stickslip.foundation.conversion import Number, OptionalNumbers
 from stickslip.foundation.errors import InputError
@@ -23,6 +23,7 @@ from stickslip.problem.bodies.layered.layers import (
     longest_cell,
     travel_times,
 )
+from stickslip.problem.bodies.layered.sides import Joined, Sides
 from stickslip.problem.bodies.uniform.with_waves import WithWaves
 
 DRAG_STEP = Quantity("1", "largest share of a wave that drag takes at one place", above=0)
@@ -60,25 +61,28 @@ class OfLayers(WithWaves, ABC):
         """The cells of equal travel time that the layers are cut into."""
 
     @property
+    def sides_together(self) -> Sides:
+        """How the sides go together."""
+        return Joined()
+
+    @property
     def is_joined(self) -> bool:
         """True if there are two sides that move as one."""
         return False
+
+    @property
+    def _stiffness(self) -> list[float]:
+        return [one.stiffness for one in self.stacks]
 
     @property
     def has_drag(self) -> bool:
         """True if there is drag in any layer, against which waves die."""
         return any(one.drag is not None for one in self.stacks)
 
-    def _together(self, numbers: tuple[float, ...]) -> float:
-        """Return what several impedances or stiffnesses are together: sides that are joined resist side by side."""
-        if len(numbers) == 1:
-            return numbers[0]
-        return sum(numbers) if self.is_joined else 1.0 / sum(1.0 / one for one in numbers)
-
     @property
     def impedance(self) -> float:
         """The impedance Z at the contact (Pa s/m), which damps the slip there."""
-        return self._together(tuple(one.impedances[0] for one in self.stacks))
+        return self.sides_together.together([one.impedances[0] for one in self.stacks])
 
     @property
     def last_impedance(self) -> float:
@@ -88,7 +92,7 @@ class OfLayers(WithWaves, ABC):
     @property
     def stiffness(self) -> float:
         """The decrease of the load per metre of slow slip under rigid drivers (Pa/m)."""
-        return self._together(tuple(one.stiffness for one in self.stacks))
+        return self.sides_together.together(self._stiffness)
 
     @property
     def round_trip_time(self) -> float:
@@ -117,12 +121,37 @@ class OfLayers(WithWaves, ABC):
     @property
     def has_ground(self) -> bool:  # type: ignore[override]
         """True unless two sides slip on each other: each is then the ground of the other."""
-        return self.drivers == 1 or self.is_joined
+        return self.sides_together.has_ground
+
+    def as_uniform(self, refusal: str) -> Self:
+        """Refuse: it has layers."""
+        raise InputError(f"needs a uniform body with waves: a {type(self).__name__} has layers")
+
+    def meets_driver_at_first(self, excess: Any, rate: Any, shear: Any) -> Any:
+        """Return the wave (Pa, minus the reference strength) that meets the first driver at the start."""
+        behind = self.first_share * (excess - self.impedance * rate) + self.held_at_start(rate, shear)[0]
+        return self.last_impedance * (rate + shear) - behind
+
+    @property
+    def pulled_shares(self) -> list[float]:
+        """The share (1) of each driver in an inflow that varies: 0 of one that is held."""
+        first = self.last_impedance
+        return [one.impedances[-1] / first if pulled else 0.0 for one, pulled in zip(self.stacks, self.is_pulled, strict=True)]
 
     @property
     def first_share(self) -> float:  # type: ignore[override]
         """The share (1) of the load that the first side bears."""
-        return self.stacks[0].stiffness / self.stiffness if self.is_joined else 1.0
+        return self.shares[0]
+
+    @property
+    def shares(self) -> list[float]:
+        """The share (1) of the load that each side bears."""
+        return self.sides_together.shares(self._stiffness)
+
+    @property
+    def is_pulled(self) -> list[bool]:
+        """True for each side whose driver is pulled; it is held on another."""
+        return self.sides_together.is_pulled(self.drivers)
 
     @property
     def inflow_delay(self) -> float:
@@ -159,10 +188,7 @@ class OfLayers(WithWaves, ABC):
 
         The contact slips at `rate`, and the drivers move apart by `shear` faster than that; sides that are apart share this.
         """
-        if len(self.stacks) == 1 or self.is_joined:
-            return [(rate, rate + shear)] * len(self.stacks)
-        first, other = (shear * self.stiffness / one.stiffness for one in self.stacks)
-        return [(rate + shear - first, rate + shear), (-other, 0.0)]
+        return self.sides_together.rates_at_start(rate, shear, self._stiffness)
 
     def held_at_start(self, rate: float, shear: float) -> list[float]:
         """Return the stress (Pa) that drag takes at the start between the contact and the driver of each side."""
@@ -177,8 +203,7 @@ class OfLayers(WithWaves, ABC):
         """
         soft = "other_driver_impedance" if math.isinf(self.stacks[0].driver_impedance) else "driver_impedance"
         check_equivalent(cast(BodyOnCharacteristics, self), soft)
-        whole = self.stiffness
-        shares = [1.0 if self.is_joined else whole / one.stiffness for one in self.stacks]
+        shares = self.sides_together.slipping(self._stiffness)
         mass = sum(share * share * one.slow_mass for share, one in zip(shares, self.stacks, strict=True))
         damping = sum(share * share * one.slow_damping for share, one in zip(shares, self.stacks, strict=True))
         return mass, damping

@@ -25,11 +25,13 @@ from stickslip.problem.bodies.layered.layers import (
     travel_times,
 )
 from stickslip.problem.bodies.layered.of_layers import DRAG_STEP, USUAL_STEP, OfLayers, OfOneSide, check_stacks
+from stickslip.problem.bodies.layered.sides import Apart, Joined, Sides
 from stickslip.problem.bodies.rigid.blocks import SpringBlock
 from stickslip.problem.bodies.uniform.slab import DRIVER_INERTIA, DRIVER_INTEGRAL_GAIN
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
+TOGETHER: dict[str, Sides] = {APART: Apart(), JOINED: Joined()}
 OTHER = " on the other side"
 LISTS = ("thickness", "density", "wave_speed", "drag")
 """The lists of one side of a slab that have a number for each layer."""
@@ -143,10 +145,15 @@ class TwoSlabs(Declared, OfSlabs):
     def __post_init__(self) -> None:
         check_body(self)
         check_stacks(self, [[f"{side}{name}" for name in LISTS] for side in ("", "other_")], self.drag_step)
-        if self.contact_mass > 0.0 and not self.is_joined:
+        if self.contact_mass > 0.0 and not self.has_ground:
             why = "between two slabs it is not clear which of them it is on"
             raise InputError(f'{type(self).__name__}: contact_mass needs sides = "joined": {why}')
         _ = self.cells
+
+    @property
+    def sides_together(self) -> Sides:
+        """How the sides go together."""
+        return TOGETHER[self.sides]
 
     @property
     def is_joined(self) -> bool:

@@ -7,7 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithNormalLoad
+
+LONGEST_ROUND_TRIP = 1e6
+"""Largest number of periods (1) in a block's round trip."""
 
 
 class OnSpring(WithNormalLoad):
@@ -15,12 +19,16 @@ class OnSpring(WithNormalLoad):
 
     structure: ClassVar[str] = "rigid"
     noun: ClassVar[str] = "block"
+    driver_may_change: ClassVar[bool] = False
+    noun_with_driver: ClassVar[str] = "slab"
     turn: ClassVar[str] = "period"
     what_is_heavy: ClassVar[str] = "block"
     drivers: int = 1
     first_share: float = 1.0
     has_ground: bool = True
     driver_kind: str = "spring"
+    echo_impedance: float = 0.0
+    pulled_shares: ClassVar[list[float]] = [1.0]
     has_waves: ClassVar[bool] = False
     is_uniform: ClassVar[bool] = True
     has_inertia: ClassVar[bool] = True
@@ -61,6 +69,23 @@ class OnSpring(WithNormalLoad):
     def held_at_start(self, rate: float, shear: float) -> list[float]:
         """Return the stress that drag takes between contact and driver: none."""
         return [0.0]
+
+    def as_uniform(self, refusal: str) -> BodyOnCharacteristics:
+        """Refuse: a rigid body has no waves."""
+        raise InputError(refusal)
+
+    def equivalent_block(self) -> BodyOnCharacteristics:
+        """Refuse: a block stands for itself."""
+        raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
+
+    def turn_time(self: BodyOnCharacteristics, longest: float) -> float:
+        """Return the period (s), or as long a time as is asked for if it never rests, up to LONGEST_ROUND_TRIP periods."""
+        period = self.round_trip_time
+        return max(period, min(LONGEST_ROUND_TRIP * period, longest))
+
+    def meets_driver_at_first(self, excess: Any, rate: Any, shear: Any) -> Any:
+        """Return the load of the spring (N, minus the reference strength), which the far end bears."""
+        return excess
 
     @property
     def period(self: BodyOnCharacteristics) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -16,6 +16,7 @@ class WithWaves(WithNormalLoad):
     """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
 
     structure: ClassVar[str] = "uniform"
+    driver_may_change: ClassVar[bool] = True
     turn: ClassVar[str] = "round trip"
     what_is_heavy: ClassVar[str] = "contact mass"
     drivers: int = 1
@@ -62,6 +63,33 @@ class WithWaves(WithNormalLoad):
     def held_at_start(self, rate: float, shear: float) -> list[float]:
         """Return the stress (Pa) that drag takes between contact and driver: none."""
         return [0.0]
+
+    def as_uniform(self, refusal: str) -> Self:
+        """Return the body, which is a uniform one with waves."""
+        return self
+
+    @property
+    def noun_with_driver(self: BodyWithWaves) -> str:
+        """What sentences call the body."""
+        return self.noun
+
+    def turn_time(self: BodyWithWaves, longest: float) -> float:
+        """Return the length of a round trip of a history (s): that of waves."""
+        return self.round_trip_time
+
+    def meets_driver_at_first(self: BodyWithWaves, excess: Any, rate: Any, shear: Any) -> Any:
+        """Return the wave (Pa, minus the reference strength) that meets the driver at the start."""
+        return self.impedance * shear - (excess - 2.0 * self.impedance * rate)
+
+    @property
+    def pulled_shares(self) -> list[float]:
+        """The share (1) of the driver in an inflow that varies: all."""
+        return [1.0]
+
+    @property
+    def echo_impedance(self: BodyWithWaves) -> float:
+        """The impedance (Pa s/m) with which slip comes back as load after a round trip: Z."""
+        return self.impedance
 
     @property
     def inflow_delay(self: BodyWithWaves) -> float:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine import Epoch, Floats, History
-from stickslip.engine.input import inflow_of
+from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
 from stickslip.solution.observables.layers import MOST, LayerWaves

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions, Side
-from stickslip.engine.input import wave_before
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import Problem
+from stickslip.problem import Problem, wave_before
 from stickslip.problem.bodies import as_waves
 from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Field, FollowedFronts, LoadCompared, ObservablesOfKind
 from stickslip.solution.observables.driver_of_waves import driver_behind

@@ -1,0 +1,1 @@
+"""What the engine is told of each kind of body: a module for each."""

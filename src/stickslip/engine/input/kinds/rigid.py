@@ -1,0 +1,41 @@
+"""What the engine is told of a rigid body on a spring: its load grows steadily, and its slip rate is a state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from stickslip.engine.input.asked import InputOfBody
+from stickslip.engine.input.first_pieces import pieces_of
+from stickslip.engine.input.shaking import Shaken, StepsOfForce
+from stickslip.engine.state import layout as at
+from stickslip.problem import EVENT_SHARE, Problem, driver_of
+
+
+class InputOfRigid(InputOfBody):
+    """Answers of a rigid body."""
+
+    def numbers(self, problem: Problem) -> dict[str, Any]:
+        """Return its stiffness, and the slip rate (m/s) below which it is slow."""
+        body = problem.body
+        slow = EVENT_SHARE * problem.normal * problem.contact_law.variation / body.impedance
+        return {"stiffness": body.stiffness, "slow": slow}
+
+    def steady_numbers(self, problem: Problem) -> dict[str, Any]:
+        """Return the growth of the load in a period."""
+        return {"ramp": driver_of(problem).ramp(problem)}
+
+    def first_load(self, problem: Problem) -> at.Floats:
+        """Return one straight piece."""
+        growth = problem.body.stiffness * problem.first_pull_rate
+        return pieces_of([0.0, problem.round_trip_time], [problem.excess], [growth])
+
+    def first_load_varying(self, problem: Problem) -> at.Floats:
+        """Return one piece that does not grow: all growth is inflow."""
+        return pieces_of([0.0, problem.round_trip_time], [problem.excess], [0.0])
+
+    def on_ground(self, problem: Problem) -> Shaken:
+        """Return the jumps of the force of inertia; its growth is in the inflow."""
+        return StepsOfForce.of(problem)
+
+
+ANSWERS = InputOfRigid()

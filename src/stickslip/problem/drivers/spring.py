@@ -1,0 +1,59 @@
+"""The far end of a rigid body's spring, pulled as given: its load grows by K V(t), less the mass times the jerk of the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.problem.drivers.driver import Driver
+from stickslip.problem.drivers.segments import arriving, scaled
+from stickslip.problem.ground import Ground
+from stickslip.problem.inflow import Inflow
+from stickslip.problem.loading import Tone
+from stickslip.problem.problem import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class InflowOfSpring(Inflow):
+    """The growth of a block's load (N/s)."""
+
+    def gathered(self, trip: Floats, offset: Floats, trips: Floats) -> Floats:
+        """Return the growth of a load at rest over the given number of whole periods."""
+        time = trip * self.round_trip_time + offset
+        return self.total(time, time + trips * self.round_trip_time)
+
+
+class Spring(Driver):
+    """What the far end of a spring answers."""
+
+    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+        """Return the growth of the load (N/s), K V, which does not grow."""
+        return problem.body.stiffness * problem.first_pull_rate, 0.0
+
+    def varying_inflow(self, problem: Problem) -> Inflow:
+        """Return the growth of the load under a pull that varies."""
+        return arriving(*scaled(problem.pull_rate, problem.body.stiffness), 0.0, problem, InflowOfSpring)
+
+    def ramp(self, problem: Problem) -> float:
+        """Return the growth of the load at rest in one period, or in what is called a round trip of a block that never rests."""
+        return problem.body.stiffness * problem.first_pull_rate * problem.round_trip_time
+
+    def inflow(self, problem: Problem) -> Inflow:
+        """Return the growth of the load, whether the pull varies or not."""
+        pulled = self.varying_inflow(problem)
+        return pulled if problem.ground is None else _on_ground(pulled, problem.ground, problem.body.inertia)
+
+
+def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:
+    """Return the growth of a block's load where the ground moves: K V - m a', with a the acceleration of the ground."""
+    start = np.union1d(pulled.start, ground.start)
+    of_pull, of_ground = pulled.segment(start), np.searchsorted(ground.start, start, side="right") - 1
+    value = pulled.value[of_pull] + pulled.slope[of_pull] * (start - pulled.start[of_pull]) - mass * ground.jerk[of_ground]
+    amplitude, frequency, phase = ground.tone
+    tone = Tone(mass * amplitude * frequency * frequency, frequency, phase) if amplitude != 0.0 else pulled.tone
+    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone)
+
+
+ANSWERS = Spring()

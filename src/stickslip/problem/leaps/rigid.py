@@ -1,0 +1,38 @@
+"""Leaps of a rigid body on a spring, which swings as it creeps."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from stickslip.problem.leaps.asked import LeapsOfBody, Over
+from stickslip.problem.problem import Problem
+
+
+class LeapsOfRigid(LeapsOfBody):
+    """Answers of a rigid body."""
+
+    creep: ClassVar[Over] = "swinging creep"
+
+    def missing_for_creep(self, problem: Problem) -> str:
+        """Return what a block lacks for leaps over creep, in which it swings."""
+        law = problem.friction
+        if not law.depends_on_slip or law.depends_on_rate or law.states:
+            return f"a friction law of slip alone ({type(law).__name__} is not one)"
+        if law.memory != "all":
+            return "a friction law that remembers all slip (no memory of its own)"
+        if not law.sticks or law.static_excess != 0.0:
+            return "a friction law under which slip begins at the friction of rest"
+        if problem.ground is not None or problem.one_way:
+            return "ground at rest, and slip in both directions"
+        return "a constant pull rate and normal load" if problem.varies else ""
+
+    def why_not_lumped(self, problem: Problem) -> str:
+        """Return that there are no echoes."""
+        return "only with waves and a rigid driver do echoes get ever shorter"
+
+    def lumps_by_itself(self, problem: Problem) -> bool:
+        """Return False: there are no echoes."""
+        return False
+
+
+ANSWERS = LeapsOfRigid()
