@@ -94,7 +94,7 @@ class Session(Generic[Options]):
         self.last = split_time(self.options.numbers.duration, self.problem.round_trip_time)
         if self.leaps is not None:
             self.leaps.begin(self.count)
-        if self.count.cells > 0 and not len(self.waves):
+        if are_rows_short(self.count, self.waves):
             self.waves = np.zeros((FIRST_ROW + FIRST_ROWS, int(self.count.slots), at.TERMS))
         lend_history(self.memory, self.store, self.echoes, self.waves)
         lend_parts_at_hand(self.memory)

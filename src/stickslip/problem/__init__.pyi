@@ -1,6 +1,6 @@
 # What others take from problem. Each name is imported when it is first used; all else is the room's own.
 
-from stickslip.problem import loading
+from stickslip.problem import features, loading
 from stickslip.problem import selection_rule as selection
 from stickslip.problem.at_first import (
     far_at_first,  # Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa).
@@ -214,6 +214,7 @@ __all__ = [
     "driver_of",
     "far_at_first",
     "far_excess",
+    "features",
     "in_given_units",
     "inflow_of",
     "leaps_but_for_pull",

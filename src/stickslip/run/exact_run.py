@@ -10,6 +10,7 @@ import numpy as np
 from typing_extensions import override
 
 from stickslip.engine import SPARE, Checkpoint, Session
+from stickslip.foundation.constants import RIGID
 from stickslip.problem import (
     ENOUGH_EVENTS,
     FULL_HISTORY,
@@ -132,6 +133,8 @@ class ExactRun(Session[RunOptions]):
 
     def _full(self) -> Status:
         """Return the status of a run whose history is full, with remedies; measures that begin after its end would not help."""
+        from stickslip.run.check.asked import CHECK_DRIVERS
+
         options, history = self.options, self.history()
         trips, cures, stream = history.store.trip, [], self._new_stream()
         stream.look(history).tell()
@@ -143,12 +146,11 @@ class ExactRun(Session[RunOptions]):
         if options.shortest_event == 0.0 and counts.max() > MOST_PIECES and lumps_by_itself(self.problem):
             cures.append("lumping of the shortest events (leave out shortest_event = 0)")
         body, heals = self.problem.body, self.problem.friction.memory == "since-arrest"
-        if heals and body.has_waves and body.is_driven_rigidly and counts[-2:].max() > counts[len(counts) // 2]:
-            cures.append("a driver that lets waves out and yet holds the slab (driver_impedance and driver_integral_gain)")
+        if heals and counts[-2:].max() > counts[len(counts) // 2]:
+            cures += CHECK_DRIVERS[body.driver_kind].to_let_waves_out
         half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
-        turn = "round trip" if body.has_waves else "period"
         taken = self.taken if self.is_short_of_memory else None
-        return Crowd(self.length, history.duration, half, last, options.duration, turn, taken).status(cures)
+        return Crowd(self.length, history.duration, half, last, options.duration, body.turn, taken).status(cures)
 
     def forget_reported(self) -> int:
         """Discard history that neither events to come nor the engine need. Returns the number of pieces discarded.

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.creep.creep_writer import HistoryWriter
-from stickslip.engine.creep.landing import Piece
+from stickslip.engine.creep.creep_landing import CreepLanding
+from stickslip.engine.creep.creep_walk import Piece
+from stickslip.engine.creep.planner import CreepPlan
 from stickslip.engine.state.layout import TERMS, new_store
 from stickslip.foundation.units import to_si
 from tests.core.run.long_runs.problems import continued, differences
@@ -118,8 +119,10 @@ def test_a_piece_of_no_width_is_not_written_where_a_leap_lands() -> None:
     zeros = np.zeros(TERMS)
     ends = [0.0, 0.125 * turn, sliver, edge + 2.0 * np.spacing(turn)]
     pieces = [Piece(True, begin, end - begin, 0.0, 0.0, zeros, zeros) for begin, end in pairwise(ends)]
-    begun: Any = SimpleNamespace(slip_now=0.0, law_slip=0.0, piece=0)
-    past = HistoryWriter(store, RINGS, turn, 1, 1.0, begun, begun).write_landing(2, 7, pieces, np.array([0.0, edge, turn]))
+    begun = SimpleNamespace(slip_now=0.0, law_slip=0.0, piece=0)
+    run: Any = SimpleNamespace(store=store, state=begun, count=begun)
+    averaged: Any = SimpleNamespace(strength=SimpleNamespace(sign=1.0))
+    past = CreepLanding(RINGS, averaged, CreepPlan([], 0.0), 0.0).write_landing(run, 2, 7, pieces, np.array([0.0, edge, turn]))
     assert past == 4
     assert store.phase_from[2:past].tolist() == [0.0, 0.125 * turn]
     assert store.phase_to[2:past].tolist() == [0.125 * turn, edge]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.creep.steady import Multiplier
+from stickslip.engine.creep.drivers.rigid import Multiplier
 from stickslip.engine.input.limits import PATIENCE
 from stickslip.friction import FrictionLaw
 from tests.core.run.long_runs.problems import differences, stopped_and_continued

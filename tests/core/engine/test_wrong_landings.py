@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.creep import slow, steady_landing, stepper
+from stickslip.engine.creep import creep_landing, slow
+from stickslip.engine.creep.leaping_run import LeapingRun
+from stickslip.engine.creep.steady_landing import SteadyLanding
 from tests.core.engine.creep_truth import ROUND, printed
 
 FAULT = ss.ElasticSlab(2700.0, 3000.0, 1e4, 50e6)
@@ -19,8 +21,9 @@ STEADY = ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1.0, 1e6), "0.6 + 0.05*log(1 
 
 def wrong_creep(monkeypatch: pytest.MonkeyPatch) -> None:
     """Slip, where a leap over creep lands, that is too large."""
-    land = stepper.landing
-    monkeypatch.setattr(stepper, "landing", lambda averaged, creep: land(averaged, replace(creep, slip=1.3 * creep.slip)))
+    last = creep_landing.last_pieces
+    wrong = lambda averaged, creep: last(averaged, replace(creep, slip=1.3 * creep.slip))  # noqa: E731
+    monkeypatch.setattr(creep_landing, "last_pieces", wrong)
 
 
 def wrong_slow_sliding(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -31,9 +34,13 @@ def wrong_slow_sliding(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def wrong_steady_sliding(monkeypatch: pytest.MonkeyPatch) -> None:
     """A load, behind a leap over steady sliding, that is too large."""
-    write = steady_landing.write
-    shifted = lambda run, leap, off: write(run, leap, replace(off, load_there=off.load_there + 5000.0))  # noqa: E731
-    monkeypatch.setattr(steady_landing, "write", shifted)
+    write = SteadyLanding.write
+
+    def shifted(self: SteadyLanding, run: LeapingRun) -> None:
+        off = replace(self.deviation, load_there=self.deviation.load_there + 5000.0)
+        write(replace(self, deviation=off), run)
+
+    monkeypatch.setattr(SteadyLanding, "write", shifted)
 
 
 WRONG: dict[str, tuple[Callable[[pytest.MonkeyPatch], None], ss.Problem, float, dict[str, float]]] = {

@@ -36,4 +36,4 @@ def test_the_explorer_draws_layers_and_sides(name: str, lowest: float, boundarie
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.figures.runs.inside.TIMES", 60)
     monkeypatch.setattr("stickslip.figures.runs.inside.CELLS", 20)
-    monkeypatch.setattr("stickslip.figures.runs.inside.COARSER", 1)
+    monkeypatch.setattr("stickslip.figures.runs.kinds.layered.ANSWERS.coarser", 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
@@ -50,6 +51,8 @@ def test_changes_of_loading_are_felt_when_they_come_to_the_contact() -> None:
     assert felt(problem, 70.0, 0.1) == pytest.approx([10.0, 40.03])
     slab = ss.Problem(ss.ElasticSlab(2700.0, 3000.0, 30.0, 5e6), ss.friction.Coulomb(0.6, 0.5), pull_rate=STEPS, initial_load=1e6)
     assert felt(slab, 120.0, 0.1) == pytest.approx([40.04, 80.08])
+    layers = replace(slab, body=ss.LayeredSlab([30.0, 60.0], [2700.0, 2900.0], [3000.0, 3000.0], 5e6))
+    assert felt(layers, 120.0, 0.1) == pytest.approx([40.06, 80.1])  # after the way through all layers
     assert changes_of(STEPS, 70.0) == pytest.approx([40.03])
 
 

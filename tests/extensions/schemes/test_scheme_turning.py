@@ -13,7 +13,7 @@ DOORS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "schemes": (
         ("schemes",),
         "schemes: a TorsionalString has no grid: they are of an ElasticSlab",
-        "schemes: a block has no grid: they are of an ElasticSlab",
+        "schemes: a RotatingBlock has no grid: they are of an ElasticSlab",
     ),
 }
 

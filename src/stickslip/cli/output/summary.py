@@ -161,8 +161,7 @@ def _say_how(screen: Console, scenario: Scenario, status: Status, reached: float
         say(screen, f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}")
     elif creep:
         tolerance = creep_tolerance(scenario.problem, None, scenario.rtol)
-        turn = "round trip" if scenario.problem.body.has_waves else "period"
-        say(screen, f"creep_rtol {tolerance:g} (automatic; 0 runs every {turn}): {creep}")
+        say(screen, f"creep_rtol {tolerance:g} (automatic; 0 runs every {scenario.problem.body.turn}): {creep}")
 
 
 def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], units: Sequence[str]) -> None:

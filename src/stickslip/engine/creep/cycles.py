@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from stickslip.engine.creep.landing import SHORTEST_LEAP, continue_after, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.slow_landing import ROUNDINGS
-from stickslip.engine.creep.steady import SHORTEST_LEAP, integrals
-from stickslip.engine.creep.steady_landing import continue_after, write_piece
 from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.problem import default_event_rate
@@ -132,6 +131,7 @@ def _rest(last: CyclePart, end: float, load: float) -> CyclePart:
 class CycleLeap:
     """A leap over whole periods of a block that goes through the same cycle all the time, ready to be written."""
 
+    may_rest: ClassVar[bool] = True
     cycle: Cycle
     trips: int
     error: float  # bound of the error of slip, m
@@ -184,15 +184,13 @@ class CycleLeap:
         store = run.store
         store.mode[n], store.law_piece[n] = part.mode, part.law_piece
         store.load[n], store.rate[n] = part.load, part.rate
-        moved = float(integrals(store.rate[n : n + 1], store.speed[n : n + 1], store.bend[n : n + 1])[0])
-        run.state.slip_now += moved
-        run.state.law_slip += moved if run.problem.friction.counts == "net" else abs(moved)
+        move_over(run, n)
 
 
 def leap_over_cycles(run: LeapingRun, most: int, tolerance: float) -> CycleLeap | None:
     """Return a leap over at most so many periods of a block under a law of the slip rate alone; None if it finds no cycles."""
     problem, body, law = run.problem, run.problem.body, run.problem.friction
-    if body.has_waves or law.states or law.depends_on_slip or law.memory != "all" or most < SHORTEST_LEAP:
+    if law.states or law.depends_on_slip or law.memory != "all" or most < SHORTEST_LEAP:
         return None
     cycle = Cycle.of(run)
     if cycle is None or cycle.differs > SAME * cycle.length or cycle.peak > default_event_rate(problem):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 
+from stickslip.engine.creep.landing import continue_after, move, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.slow import BOTH, NODES, PLACES, RoundTrip, to_powers
 from stickslip.engine.creep.slow_leaps import RATE_SHARE, SlowLeap
-from stickslip.engine.creep.steady import integrals
-from stickslip.engine.creep.steady_landing import continue_after, write_piece
 from stickslip.engine.state.layout import Floats
 
 ROUNDINGS = 64.0
@@ -22,6 +22,7 @@ ROUNDINGS = 64.0
 class SlowLanding:
     """A leap over slow sliding, ready to be written."""
 
+    may_rest: ClassVar[bool] = False
     leap: SlowLeap
 
     @property
@@ -78,11 +79,11 @@ class SlowLanding:
             n = int(run.count.length) + k
             write_piece(run, n, last, (trip, *ends[k]))
             self._write_motion(run, n, load, stretch * rate, states)
-            self._move(run, stretch * grown[k])
+            move(run, int(run.count.mode) * (stretch * grown[k]))
 
     def _write_round_trip(self, run: LeapingRun, first: int, trip: int) -> None:
         """Write the round trip on which the leap lands, a piece for each stretch, and move the contact to its end."""
-        motion, store, last = self.leap.motion, run.store, int(run.count.previous_to) - 1
+        motion, last = self.leap.motion, int(run.count.previous_to) - 1
         there = RoundTrip(motion, self.leap.landing, motion.later(self.leap.landing, 1))
         rate, states = there.with_ripple()
         load = motion.friction(rate, states) + run.problem.body.impedance * rate
@@ -90,7 +91,7 @@ class SlowLanding:
             n, here = first + k, slice(k * NODES, (k + 1) * NODES)
             write_piece(run, n, last, (trip, *ends))
             self._write_motion(run, n, *(to_powers(one) for one in (load[here], rate[here], states[:, here].T)))
-            self._move(run, abs(float(integrals(store.rate[n : n + 1], store.speed[n : n + 1], store.bend[n : n + 1])[0])))
+            move_over(run, n)
 
     def _write_motion(self, run: LeapingRun, n: int, load: Floats, rate: Floats, states: Floats) -> None:
         """Write polynomials of load (Pa), slip rate (m/s) and states into piece n; the first two in the direction of slip."""
@@ -103,9 +104,3 @@ class SlowLanding:
             row[:] = 0.0
             row[:NODES] = values
         store.load[n, 0] -= run.problem.strength
-
-    def _move(self, run: LeapingRun, grown: float) -> None:
-        """Move the contact on by a slip (m) in its direction."""
-        sign = int(run.count.mode)
-        run.state.slip_now += sign * grown
-        run.state.law_slip += (sign if run.problem.friction.counts == "net" else 1) * grown

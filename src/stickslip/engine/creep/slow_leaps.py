@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.engine.creep.landing import SHORTEST_LEAP
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.slow import BOTH, HEAVY, PLAIN, Offsets, SlowMotion
-from stickslip.engine.creep.steady import SHORTEST_LEAP
 from stickslip.engine.history.series import horner
 from stickslip.engine.state.layout import Floats
 from stickslip.problem import Problem

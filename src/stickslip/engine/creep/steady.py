@@ -24,297 +24,169 @@ the round trips from one to another is the change of b over 2 Z, whatever the la
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.contact import Sliding, steady_slidings
+from stickslip.engine.creep.landing import SHORTEST_LEAP, LookedFor
 from stickslip.engine.creep.leaping_run import LeapingRun
-from stickslip.engine.creep.pattern import Pattern, monotone_parts
-from stickslip.engine.state.layout import TERMS, BranchRow, Floats
+from stickslip.engine.creep.steady_landing import Deviation, Leap, SteadyLanding
+from stickslip.engine.state.layout import Floats
+from stickslip.foundation.by_kind import ByKind
 from stickslip.foundation.errors import InputError
+from stickslip.friction import FrictionLaw
 from stickslip.friction.formula import Enclosure
 from stickslip.problem import Problem, Resistance
+from stickslip.problem.bodies import BodyOnCharacteristics
 
-SHORTEST_LEAP = 16
-"""Fewest round trips of a leap that is worth its cost."""
 BELOW_REST = 1e-6
 """Largest share of the slip rate by which a deviation may reach below rest: the contact then rests for a moment of that size."""
-STILL, LONG = 1e-3, 1000
-"""Largest deviation that is dropped, as a share of the slip rate, where its energy is proven never to grow and the leap is this
-many times as long as the run so far: the swings of a contact with mass fade ever more slowly. Else the tolerance is that share.
-"""
 ROOM = 1.001
 """Slopes of friction are bounded over a range of slip rates that reaches this much farther than the deviation."""
 ROUNDING = 4e-16
 """Rounding of a number, as a share of it."""
-MOST = 700.0
-"""Largest exponent of an exponential."""
 
 
-@dataclass(frozen=True)
-class Leap:
-    """A leap over whole round trips of steady sliding, after which the deviation from it is `factor` times the present one."""
+class Tried(NamedTuple):
+    """A leap over so many round trips of steady sliding that is tried; the error of slip may be `tolerance` times the slip."""
 
+    run: LeapingRun
+    sliding: Sliding
+    deviation: Deviation
     trips: int
-    factor: float
-    slip: float  # m, in the direction of slip
-    error: float  # bound of the error of slip, m
-
-
-@dataclass(frozen=True)
-class Deviation:
-    """The last round trip, less steady sliding; rates and loads have their signs."""
-
-    rate_there: float
-    """Slip rate of steady sliding, m/s."""
-    load_there: float
-    """Load of steady sliding, minus the reference strength, Pa or N."""
-    states_there: Floats
-    """States of friction, as the formulas use them; with the other sign those that reverse, in backward slip."""
-    rows: slice
-    rate: Floats  # (pieces, TERMS), m/s
-    load: Floats  # (pieces, TERMS), Pa or N
-    slip: float  # integral of the rate over the round trip, m
-    area: float  # that of the load, Pa s or N s
-    end: float  # load at its end, Pa or N
-    share: float  # largest deviation of a state, as a share of the state
-
-    @classmethod
-    def of(cls, run: LeapingRun, rate: float, load: float, states: Floats) -> Deviation:
-        """Return what the last round trip of a run is beyond steady sliding."""
-        rows = slice(int(run.count.previous_from), int(run.count.previous_to))
-        rates, loads = run.store.rate[rows].copy(), run.store.load[rows].copy()
-        rates[:, 0] -= rate
-        loads[:, 0] -= load
-        speed, bend = run.store.speed[rows], run.store.bend[rows]
-        slip, area = (float(integrals(one, speed, bend).sum()) for one in (rates, loads))
-        beyond = run.store.state[rows].copy()
-        beyond[..., 0] -= states
-        scales = np.maximum(np.abs(states), [state.scale for state in run.problem.friction.states])
-        share = float(max((_largest(beyond[:, k]) / scale for k, scale in enumerate(scales)), default=0.0))
-        return cls(rate, load, states, rows, rates, loads, slip, area, float(loads[-1].sum()), share)
-
-    def is_within(self, share: float) -> bool:
-        """Return True if slip rate and states deviate from steady sliding by no more than a share of themselves."""
-        return self.largest_rate <= share * abs(self.rate_there) and self.share <= share
-
-    @property
-    def largest_rate(self) -> float:
-        """The largest deviation of the slip rate, m/s."""
-        return _largest(self.rate)
-
-    @property
-    def largest_load(self) -> float:
-        """The largest deviation of the load, Pa or N."""
-        return _largest(self.load)
-
-
-def _largest(p: Floats) -> float:
-    """Return the largest absolute value of polynomials on [0, 1]."""
-    still = np.zeros(len(p))
-    return float(np.abs(Pattern(monotone_parts(p, still, still + 1.0, still)).ends).max())
-
-
-def integrals(p: Floats, speed: Floats, bend: Floats) -> Floats:
-    """Return the integrals of polynomials in xi over time: d theta = (speed + 2 bend xi) d xi."""
-    powers = np.arange(1, TERMS + 1)
-    return np.asarray(speed * (p / powers).sum(axis=1) + 2.0 * bend * (p / (powers + 1)).sum(axis=1))
-
-
-@dataclass(frozen=True)
-class SteadyLeaps:
-    """Where a run slides steadily, and how far it may leap: the error of slip is at most `tolerance` times the slip."""
-
-    problem: Problem
     tolerance: float
 
     @property
-    def stable_states(self) -> Floats | None:
-        """The states of friction, as the formulas use them, in a steady sliding that is stable; None without one."""
-        return next((self._states(sliding) for sliding in self._slidings if sliding.stable is True), None)
+    def body(self) -> BodyOnCharacteristics:
+        """The body that slides."""
+        return self.run.problem.body
 
-    def leap(self, run: LeapingRun, most: int) -> tuple[Leap, Deviation] | None:
-        """Return a leap over at most so many round trips, as long as the tolerance allows; None if none is worth its cost."""
-        for sliding in self._near(run):
-            deviation = Deviation.of(run, sliding.rate, self._load(sliding), self._states(sliding))
+    @property
+    def law(self) -> FrictionLaw:
+        """Its friction."""
+        return self.run.problem.friction
+
+    @property
+    def rate(self) -> float:
+        """The slip rate of steady sliding (m/s), without its sign."""
+        return abs(self.sliding.rate)
+
+    @property
+    def turn(self) -> float:
+        """The time of a round trip of the run, s."""
+        return self.run.problem.round_trip_time
+
+    def slopes(self, reach: float) -> tuple[float, float]:
+        """Return the least and the greatest slope of friction (Pa s/m or N s/m) at slip rates within `reach` (m/s)."""
+        problem, piece = self.run.problem, int(self.run.store.law_piece[self.deviation.rows][0])
+        formula = Enclosure((self.law.trees()[piece],), self.law.numbers(piece), problem.law_slip)
+        mu = formula.on(np.array([max(self.rate - reach, 0.0)]), np.array([self.rate + reach]))
+        return problem.normal * float(mu[0, 1, 0]), problem.normal * float(mu[1, 1, 0])
+
+    def leap(self, factor: float, beyond: float, error: float, slower: float = 0.0) -> Leap:
+        """Return the leap: a deviation is multiplied by a factor, and adds slip (m) `beyond` that of steady sliding.
+
+        It may be slower than steady sliding by `slower` (m/s): the contact rests where its rate would be below zero. A factor is 0
+        if it leaves less of the deviation than rounding does.
+        """
+        kept = abs(factor) * self.deviation.largest_rate > ROUNDING * self.rate
+        time, sign = self.trips * self.turn, math.copysign(1.0, self.sliding.rate)
+        error += time * max(slower - self.rate, 0.0)
+        return Leap(self.trips, factor if kept else 0.0, time * self.rate + sign * beyond, error)
+
+
+class SteadyLeaps(ABC):
+    """Where a run slides steadily before one kind of driver, and how far it may leap."""
+
+    def look(self, run: LeapingRun, most: int, tolerance: float) -> LookedFor:
+        """Look for a leap over at most so many round trips, as long as the tolerance allows."""
+        for sliding in _near(run):
+            deviation = Deviation.of(run, sliding.rate, _load(run.problem, sliding), _states(run.problem.friction, sliding))
             if deviation.largest_rate > (1.0 + BELOW_REST) * abs(sliding.rate):
                 continue
             trips = most
             while trips >= SHORTEST_LEAP:
-                found = self._of_length(run, sliding, deviation, trips)
-                if found is not None and found.error <= self.tolerance * (abs(float(run.state.slip_now)) + found.slip):
-                    return found, deviation
+                found = self.leap(Tried(run, sliding, deviation, trips, tolerance))
+                if found is not None and found.error <= tolerance * (abs(float(run.state.slip_now)) + found.slip):
+                    return LookedFor(SteadyLanding(found, deviation), at_end=trips == most)
                 trips //= 2
-        return None
+        return LookedFor(None)
 
-    def _near(self, run: LeapingRun) -> Iterator[Sliding]:
-        """Return the steady sliding motions, all in the direction in which the whole last round trip has slipped."""
-        store, rows = run.store, slice(int(run.count.previous_from), int(run.count.previous_to))
-        modes, pieces, mode = store.mode[rows], store.law_piece[rows], int(run.count.mode)
-        turns, changes = (modes == -mode).any(), (pieces != pieces[0]).any()
-        if mode == 0 or turns or changes or store.trip[rows][-1] != run.count.trip - 1:
-            return
-        law = self.problem.friction
-        for sliding in self._slidings:
-            here = int(law.piece_at(self.problem.law_slip, abs(sliding.rate)))
-            if sliding.rate * mode > 0.0 and here == pieces[0]:
-                yield sliding
+    @abstractmethod
+    def leap(self, tried: Tried) -> Leap | None:
+        """Return the leap that is tried, None if what a deviation does in it is not known."""
 
-    @property
-    def _slidings(self) -> tuple[Sliding, ...]:
-        with suppress(InputError):  # a law whose friction falls for ever
-            return steady_slidings(self.problem).slidings
-        return ()
+    @abstractmethod
+    def held(self, body: BodyOnCharacteristics) -> float:
+        """Return the energy (J/m^2; block: J) that a body holds for a deviation of the load by 1 Pa (N), at most."""
 
-    def _load(self, sliding: Sliding) -> float:
-        """Return the load of steady sliding minus the reference strength, with its sign."""
-        problem, sign = self.problem, math.copysign(1.0, sliding.rate)
-        if problem.friction.states:
-            return problem.body.damping * sliding.rate + sliding.traction - problem.strength
-        excess = float(self._resistance.excess(abs(sliding.rate)))
-        return excess if sign > 0.0 else -excess - 2.0 * problem.strength
+    @abstractmethod
+    def least_slope(self, body: BodyOnCharacteristics) -> float:
+        """Return the slope of friction (Pa s/m or N s/m) from which on the energy of a deviation does not grow."""
 
-    def _states(self, sliding: Sliding) -> Floats:
-        law = self.problem.friction
-        states = np.array(law.inner_states(sliding.states))
-        if sliding.rate < 0.0:
-            states[list(law.reverses)] *= -1.0
-        return states
+    @abstractmethod
+    def last_slip(self, tried: Tried, energy: float) -> tuple[float, float]:
+        """Return the slip (m) that a deviation of an energy (J/m^2; block: J) still adds as it fades, and how far it may be off."""
 
-    @property
-    def _resistance(self) -> Resistance:
-        problem = self.problem
-        return Resistance(problem.friction, problem.body.damping, problem.normal, problem.law_slip)
+    def faded(self, tried: Tried, share: float) -> Leap | None:
+        """Return a leap after which nothing is left of a deviation within a share of the slip rate, None if it may grow again.
 
-    def _slopes(self, low: float, high: float, piece: int) -> tuple[float, float]:
-        """Return the least and the greatest slope of friction between two slip rates (m/s), Pa s/m or N s/m."""
-        law, slip, normal = self.problem.friction, self.problem.law_slip, self.problem.normal
-        mu = Enclosure((law.trees()[piece],), law.numbers(piece), slip).on(np.array([max(low, 0.0)]), np.array([high]))
-        return normal * float(mu[0, 1, 0]), normal * float(mu[1, 1, 0])
-
-    def _of_length(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int) -> Leap | None:
-        """Return the leap over so many round trips, None if what a deviation does in them is not known."""
-        body, law = self.problem.body, self.problem.friction
-        piece = int(run.store.law_piece[deviation.rows][0])
-        if not (law.states or body.has_inertia):
-            return self._multiplied(run, sliding, deviation, trips, piece)
-        if not (law.states or body.has_waves) and (found := self._repeated(run, sliding, deviation, trips, piece)):
-            return found
-        is_long = trips >= LONG * run.count.trip and body.has_waves and not law.states
-        if deviation.is_within(STILL if is_long else self.tolerance) and self._fades(sliding, deviation, piece):
-            return self._dropped(sliding, deviation, trips)
-        return None
-
-    def _multiplied(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int, piece: int) -> Leap | None:
-        """Return a leap of a contact without mass: deviations are multiplied by a number in each round trip."""
-        body, rate, later = self.problem.body, abs(sliding.rate), trips + 1
-        slope, _ = self._slopes(rate, rate, piece)
-        if not body.damping + slope > 0.0:
+        That is decided by its energy or, with states of friction, by linear stability.
+        """
+        body, load = tried.body, tried.deviation.largest_load
+        if not tried.deviation.is_within(share):
             return None
-        reach = ROOM * max(deviation.largest_rate, deviation.largest_load / (body.damping + slope))
-        low, high = self._slopes(rate - reach, rate + reach, piece)
-        least, spread = body.damping + low, high - low
-        if not (least > 0.0 and math.isfinite(spread)):
-            return None
-        steady, *others = (Multiplier.of(body.impedance, body.reflection, body.damping + one) for one in (slope, low, high))
-        fastest = max(one.size for one in (steady, *others))  # logarithm of the largest multiplier
-        growth = math.exp(min(max(later * fastest, 0.0), 1.0))
-        if growth * deviation.largest_load > least * reach or not self._keeps_branch(run, deviation, growth):
-            return None
-        factor = steady.power(later)
-        change = abs(body.reflection) * 2.0 * body.impedance * spread / least**2  # of the multiplier, over those slopes
-        missed = change * deviation.largest_load * later * math.exp(min((later - 1) * fastest, 1.0))
-        bent = 2.0 * spread / least**2 * abs(factor) * deviation.largest_load  # of the rate, where the load is as it should be
-        if missed / least + bent > self.tolerance * rate:
-            return None
-        turn, sign = self.problem.round_trip_time, math.copysign(1.0, sliding.rate)
-        if body.is_driven_rigidly:
-            beyond = (1.0 - factor) * deviation.area / (2.0 * body.impedance) - deviation.slip
-            error = turn * (missed / (2.0 * body.impedance) + bent)
-        elif fastest < 0.0:
-            gone = -math.expm1(fastest)
-            beyond = (steady.power(1) - factor) / (1.0 - steady.power(1)) * deviation.slip
-            error = turn * deviation.largest_load / (least * gone) * (change / gone + 2.0 * spread / least)
+        energy = load * load * self.held(body) + 0.5 * body.inertia * tried.deviation.largest_rate**2
+        if tried.law.states:
+            fades = tried.sliding.stable is True
         else:
-            return None
-        error += trips * turn * max(growth * deviation.largest_rate - rate, 0.0)  # it rests where the rate would be below zero
-        return Leap(trips, self._kept(factor, deviation), trips * turn * rate + sign * beyond, error)
-
-    def _keeps_branch(self, run: LeapingRun, deviation: Deviation, growth: float) -> bool:
-        """Return True if the selection rule keeps the branch at all loads of deviations that have grown by a factor."""
-        branch, most = BranchRow(run.setup.branches[run.count.branch]), growth * deviation.largest_load
-        there = deviation.load_there
-        seen = there if deviation.rate_there > 0.0 else -there - 2.0 * self.problem.strength
-        rounding = BELOW_REST * deviation.largest_load
-        return bool(branch.keep_from - rounding <= seen - most and seen + most <= branch.keep_to + rounding)
-
-    def _repeated(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int, piece: int) -> Leap | None:
-        """Return a leap of a block that swings with its own period, as if friction did not vary with the slip rate."""
-        body, rate, turn = self.problem.body, abs(sliding.rate), self.problem.round_trip_time
-        if body.damping or turn != body.round_trip_time:
-            return None
-        end = float(deviation.rate[-1].sum())
-        swing = math.hypot(end, deviation.end / math.sqrt(body.inertia * body.stiffness))  # of the slip rate
-        if swing > (1.0 + BELOW_REST) * rate or (swing >= rate and self.problem.friction.static_excess):
-            return None
-        low, high = self._slopes(rate - ROOM * swing, rate + ROOM * swing, piece)
-        varies = 2.0 * swing * max(-low, high)  # range of friction
-        missed = (trips + 1) * (turn * varies / body.inertia + ROUNDING * swing)
-        if not missed <= self.tolerance * rate:
-            return None
-        error = missed * math.sqrt(body.inertia / body.stiffness) + trips * turn * max(swing + missed - rate, 0.0)
-        return Leap(trips, self._kept(1.0, deviation), trips * turn * rate, error)
-
-    def _fades(self, sliding: Sliding, deviation: Deviation, piece: int) -> bool:
-        """Return True if a small deviation does not grow: by its energy or, with states of friction, by linear stability."""
-        if self.problem.friction.states:
-            return sliding.stable is True
-        reach = math.sqrt(2.0 * self._energy(deviation) / self.problem.body.inertia)
-        low, _ = self._slopes(abs(sliding.rate) - reach, abs(sliding.rate) + reach, piece)
-        return low >= (0.0 if self.problem.body.has_waves else -self.problem.body.damping)
-
-    def _energy(self, deviation: Deviation) -> float:
-        """Return a bound of the energy of a deviation: motion and spring, or motion and waves, J/m^2 (block: J)."""
-        body, load = self.problem.body, deviation.largest_load
-        held = load * load * (body.round_trip_time / (4.0 * body.impedance) if body.has_waves else 0.5 / body.stiffness)
-        return held + 0.5 * body.inertia * deviation.largest_rate**2
-
-    def _dropped(self, sliding: Sliding, deviation: Deviation, trips: int) -> Leap:
-        """Return a leap after which nothing is left of a deviation that is small already."""
-        body, turn, sign = self.problem.body, self.problem.round_trip_time, math.copysign(1.0, sliding.rate)
-        energy = self._energy(deviation)
-        if not body.has_waves:
-            beyond, error = deviation.end / body.stiffness, math.sqrt(2.0 * energy / body.stiffness)
-        else:
-            error = math.sqrt(turn * energy / body.impedance)
-            beyond = deviation.area / (2.0 * body.impedance) - deviation.slip if body.is_driven_rigidly else 0.0
-        return Leap(trips, 0.0, trips * turn * abs(sliding.rate) + sign * beyond, error)
-
-    @staticmethod
-    def _kept(factor: float, deviation: Deviation) -> float:
-        """Return a factor, or 0 if it leaves less of a deviation than rounding does."""
-        return factor if abs(factor) * deviation.largest_rate > ROUNDING * abs(deviation.rate_there) else 0.0
+            fades = tried.slopes(math.sqrt(2.0 * energy / body.inertia))[0] >= self.least_slope(body)
+        return tried.leap(0.0, *self.last_slip(tried, energy)) if fades else None
 
 
-class Multiplier(NamedTuple):
-    """Hold the factor of a deviation in a round trip, as the logarithm of its size and its sign."""
+def _near(run: LeapingRun) -> Iterator[Sliding]:
+    """Return the steady sliding motions, all in the direction in which the whole last round trip has slipped."""
+    store, rows = run.store, slice(int(run.count.previous_from), int(run.count.previous_to))
+    modes, pieces, mode = store.mode[rows], store.law_piece[rows], int(run.count.mode)
+    turns, changes = (modes == -mode).any(), (pieces != pieces[0]).any()
+    if mode == 0 or turns or changes or store.trip[rows][-1] != run.count.trip - 1:
+        return
+    for sliding in _slidings(run.problem):
+        here = int(run.problem.friction.piece_at(run.problem.law_slip, abs(sliding.rate)))
+        if sliding.rate * mode > 0.0 and here == pieces[0]:
+            yield sliding
 
-    size: float
-    sign: float
 
-    @classmethod
-    def of(cls, impedance: float, reflection: float, slope: float) -> Multiplier:
-        """Return r (2 Z / g' - 1) for the slope g' of the resistance (all in Pa s/m)."""
-        beyond = 2.0 * (impedance - slope) / slope  # 2 Z / g' - 1 is 1 and this
-        if reflection == 0.0 or beyond == -1.0:
-            return cls(-math.inf, 1.0)
-        size = math.log1p(beyond) if beyond > -1.0 else math.log(-1.0 - beyond)
-        return cls(size + math.log(abs(reflection)), math.copysign(1.0, (1.0 + beyond) * reflection))
+def _slidings(problem: Problem) -> tuple[Sliding, ...]:
+    with suppress(InputError):  # a law whose friction falls for ever
+        return steady_slidings(problem).slidings
+    return ()
 
-    def power(self, n: int) -> float:
-        """Return the factor of n round trips."""
-        return self.sign ** (n % 2) * math.exp(min(n * self.size, MOST)) if self.size > -math.inf else 0.0
+
+def _load(problem: Problem, sliding: Sliding) -> float:
+    """Return the load of steady sliding minus the reference strength, with its sign."""
+    if problem.friction.states:
+        return problem.body.damping * sliding.rate + sliding.traction - problem.strength
+    resistance = Resistance(problem.friction, problem.body.damping, problem.normal, problem.law_slip)
+    excess = float(resistance.excess(abs(sliding.rate)))
+    return excess if math.copysign(1.0, sliding.rate) > 0.0 else -excess - 2.0 * problem.strength
+
+
+def _states(law: FrictionLaw, sliding: Sliding) -> Floats:
+    states = np.array(law.inner_states(sliding.states))
+    if sliding.rate < 0.0:
+        states[list(law.reverses)] *= -1.0
+    return states
+
+
+def stable_states(problem: Problem) -> Floats | None:
+    """Return the states of friction, as the formulas use them, in a steady sliding that is stable; None without one."""
+    return next((_states(problem.friction, one) for one in _slidings(problem) if one.stable is True), None)
+
+
+STEADY_LEAPS: ByKind[SteadyLeaps] = ByKind("stickslip.engine.creep.drivers", SteadyLeaps)  # type: ignore[type-abstract] # a list
+"""The leaps by `Problem.driver_kind`: not of a machine or a driver that changes, before which nothing is leaped over."""

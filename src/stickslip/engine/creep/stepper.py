@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from stickslip.engine.creep.averaged import AveragedCreep, Strength
-from stickslip.engine.creep.creep_writer import HistoryWriter, seen
-from stickslip.engine.creep.cycles import CycleLeap, leap_over_cycles
-from stickslip.engine.creep.landing import Piece, landing
+from stickslip.engine.creep.creep_landing import CreepLanding, seen
+from stickslip.engine.creep.landing import SHORTEST_LEAP, Landing, LookedFor
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.pattern import Pattern, monotone_parts
-from stickslip.engine.creep.planner import CreepPlan, Planner
+from stickslip.engine.creep.planner import Planner
 from stickslip.engine.creep.slow_landing import SlowLanding
 from stickslip.engine.creep.slow_leaps import SlowLeaps
-from stickslip.engine.creep.steady import SHORTEST_LEAP, SteadyLeaps
-from stickslip.engine.creep.steady_landing import SteadyLanding
+from stickslip.engine.creep.steady import STEADY_LEAPS, stable_states
 from stickslip.engine.creep.swing_landing import SwingLanding
 from stickslip.engine.creep.swing_leaps import SwingLeaps
 from stickslip.engine.state.layout import NEVER, Counts, Floats
 from stickslip.problem import Problem, Stop, leaps_over
 
-Landing = SteadyLanding | SlowLanding | SwingLanding | CycleLeap
-"""A leap over sliding, ready to be written."""
 LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
 """Largest number of round trips between two attempts that found no leap: an attempt takes some milliseconds, as much as thousands
 of pieces.
@@ -36,8 +32,6 @@ LONGEST_SPENT = 4096
 """Largest number of round trips that are waited for because a search for a leap took as long as they do."""
 FAST = 1000.0
 """A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
-NEAR = 4.0
-"""A part of the round trip may slip where a leap lands if friction could fall to its load within so many round trips."""
 CHECKED = 1
 """Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
 STEPS = 10_000
@@ -57,7 +51,7 @@ class LeapStepper:
     def __post_init__(self) -> None:
         self.impedance, self.speed = self.problem.body.impedance, abs(self.problem.first_pull_rate)
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
-        self.over, self.steady = leaps_over(self.problem), SteadyLeaps(self.problem, self.tolerance)
+        self.over = leaps_over(self.problem)
 
     def at_row_end(self, run: LeapingRun) -> None:
         """Leap if there is creep, and set when to try again.
@@ -75,13 +69,12 @@ class LeapStepper:
         plan = planner.plan()
         if planner.at_end and count.to_the_end == 0:
             run.cut_at_end()
-        before = run.snapshot()
         while plan is not None and plan.trips >= SHORTEST_LEAP:
-            if self._leap(run, planner.averaged, plan):
+            if self._lands(run, CreepLanding(self.problem, planner.averaged, plan, float(run.state.slip_now))):
                 count.pause_for = 1
                 return  # the next leap may follow at once
-            run.restore(before)
-            plan = self._planner(run, plan.trips // 2).plan()
+            planner = self._planner(run, plan.trips // 2)
+            plan = planner.plan()
         count.pause_at = count.trip + count.pause_for
         unproven = self.patient and count.creep_leaps == 0
         count.pause_for = min(2 * count.pause_for, LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
@@ -91,20 +84,8 @@ class LeapStepper:
 
         The engine does not pause meanwhile, so that it may pass over echoes under which nothing slips.
         """
-        count, room = run.count, int(run.last[0] - CHECKED - 2 - run.count.trip)
-        found: Landing | None = self._steady_landing(run, room)
-        at_end, cost = found is not None and found.trips == room, 0
-        if found is None and self.over == "steady sliding":
-            found = leap_over_cycles(run, room, self.tolerance)
-            at_end = found is not None
-        elif self.over == "swinging creep":
-            swings = SwingLeaps(self.problem, self.tolerance)
-            swing = swings.leap(run, room)
-            found, at_end = None if swing is None else SwingLanding(swing), swings.at_end
-        if found is None and self.over == "slow sliding":
-            leaps = SlowLeaps(self.problem, self.tolerance, self.steady.stable_states)
-            leap = leaps.leap(run, room)
-            found, at_end, cost = None if leap is None else SlowLanding(leap), leaps.at_end, leaps.cost
+        count = run.count
+        found, at_end, cost = self._look(run, int(run.last[0] - CHECKED - 2 - count.trip))
         if at_end and count.to_the_end == 0:
             run.cut_at_end()
         lands = found is not None and self._lands(run, found)
@@ -113,16 +94,20 @@ class LeapStepper:
         again = LONGEST_WAIT if self.over == "swinging creep" and count.creep_leaps else LONGEST_FIRST_WAIT
         count.pause_for = max(1 if lands else min(2 * count.pause_for, again), spent)
 
-    def _steady_landing(self, run: LeapingRun, most: int) -> SteadyLanding | None:
-        """Return a leap of at most so many round trips over steady sliding, or None."""
-        if (
-            most < SHORTEST_LEAP
-            or self.over == "swinging creep"
-            or (self.over == "slow sliding" and self.steady.stable_states is None)
-        ):
-            return None
-        found = self.steady.leap(run, most)
-        return None if found is None else SteadyLanding(*found)
+    def _look(self, run: LeapingRun, most: int) -> LookedFor:
+        """Look for a leap over at most so many round trips of what may be leaped over."""
+        if self.over == "swinging creep":
+            swings = SwingLeaps(self.problem, self.tolerance)
+            swing = swings.leap(run, most)
+            return LookedFor(None if swing is None else SwingLanding(swing), swings.at_end)
+        stable = stable_states(self.problem) if self.over == "slow sliding" else None
+        settles = most >= SHORTEST_LEAP and (self.over == "steady sliding" or stable is not None)
+        steady = STEADY_LEAPS[self.problem.driver_kind].look(run, most, self.tolerance) if settles else LookedFor(None)
+        if steady.landing is not None or self.over == "steady sliding":
+            return steady
+        leaps = SlowLeaps(self.problem, self.tolerance, stable)
+        slow = leaps.leap(run, most)
+        return LookedFor(None if slow is None else SlowLanding(slow), leaps.at_end, leaps.cost)
 
     def _lands(self, run: LeapingRun, found: Landing) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
@@ -133,12 +118,19 @@ class LeapStepper:
         count.creep_leaps += 1
         landed, slip = int(count.trip), float(run.state.slip_now)
         count.pause_at = landed + CHECKED
-        if self._goes_on(run, landed + CHECKED, may_rest=isinstance(found, CycleLeap)):
+        if self._goes_on(run, landed + CHECKED, may_rest=found.may_rest):
             expected, allowed = found.expected(run, slip, int(count.trip) - landed, self.tolerance)
             if abs(float(run.state.slip_now) - expected) <= allowed:
                 return True
         run.restore(before)
         return False
+
+    def _goes_on(self, run: LeapingRun, row: int, *, may_rest: bool) -> bool:
+        """Compute exact round trips up to a row; return False if a failure comes first, or a rest that is leaped over."""
+        while (code := run.step(STEPS)) in (Stop.NONE, Stop.FULL):
+            if code == Stop.FULL:
+                run.reserve(2 * len(run.store.pieces))
+        return code == Stop.PAUSED and (run.count.trip == row or may_rest)
 
     # ---- before -------------------------------------------------------------------------------------------------------------
 
@@ -178,61 +170,3 @@ class LeapStepper:
         sign = self.direction if self.problem.friction.counts == "net" else 1.0
         strength = Strength(self.problem, float(run.state.law_slip), sign, self.speed * self.problem.round_trip_time)
         return AveragedCreep(pattern, strength, self.impedance, self.speed)
-
-    # ---- the leap -----------------------------------------------------------------------------------------------------------
-
-    def _leap(self, run: LeapingRun, averaged: AveragedCreep, plan: CreepPlan) -> bool:
-        """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
-        begun, slip = int(run.count.trip), float(run.state.slip_now)
-        self._write(run, averaged, plan)
-        delay = plan.error / plan.states[-1].rate * self.problem.round_trip_time
-        self.taken[run.count.creep_leaps :] = [(begun, plan.trips, plan.error, delay)]
-        run.count.creep_leaps += 1
-        if not self._goes_on(run, begun + plan.trips + 1 + CHECKED):
-            return False
-        first, now = float(run.store.slip[run.count.previous_from]), float(run.state.slip_now)
-        expected = averaged.reaching(plan.trips + CHECKED, *averaged.beyond(plan.states[-1], plan.trips + CHECKED)).slip
-        tolerance = max(self.tolerance * (abs(slip) + expected), plan.error)
-        return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
-
-    def _write(self, run: LeapingRun, averaged: AveragedCreep, plan: CreepPlan) -> None:
-        """Write the leap as pieces of the history, and set the engine to its end.
-
-        Where the engine meets only echoes that break, only what slips is written: the rest of the pattern goes on as it is.
-        """
-        count, end, rows, kept = run.count, plan.states[-1], run.standing(), np.empty(0, np.int64)
-        there, edges = averaged, np.union1d(run.store.phase_from[rows], run.store.phase_to[rows])
-        if count.sparse == 1:
-            reach = averaged.strength.slope(end.slip) * end.rate
-            slips = averaged.pattern.rows_above(-end.lift - NEAR * abs(reach), run.store.phase_to[rows])
-            kept = rows[~slips]
-            there = replace(averaged, pattern=averaged.pattern.of_rows(slips, run.store.phase_to[rows]))
-        pieces = landing(there, end)
-        run.reserve(run.length + len(plan.states) + len(pieces))
-        landed_on, sign = int(count.trip) + plan.trips, averaged.strength.sign
-        scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
-        landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
-        count.length = scribe.write_landing(landed_from, landed_on, pieces, edges)
-        self._move(run, pieces[-1], sign)
-        count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
-        count.trip, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
-        if count.sparse == 1:
-            new = np.arange(landed_from, int(count.length))
-            whole = np.concatenate([kept, new])
-            run.stand(whole[np.argsort(run.store.phase_from[whole], kind="stable")])
-
-    def _move(self, run: LeapingRun, end: Piece, sign: float) -> None:
-        """Move the contact to the end of the last piece of a landing."""
-        state, count, grown = run.state, run.count, end.slip + end.grown
-        state.slip_now += self.direction * grown
-        state.law_slip += sign * grown
-        state.rate_now = self.direction * end.rate.sum()
-        count.mode = self.direction if end.slips else 0
-        count.source = count.moved = count.trips_at_rest = count.leaving_rest = count.jump = count.cause = count.stalled = 0
-
-    def _goes_on(self, run: LeapingRun, row: int, *, may_rest: bool = False) -> bool:
-        """Compute exact round trips up to a row; return False if a failure comes first, or a rest that is leaped over."""
-        while (code := run.step(STEPS)) in (Stop.NONE, Stop.FULL):
-            if code == Stop.FULL:
-                run.reserve(2 * len(run.store.pieces))
-        return code == Stop.PAUSED and (run.count.trip == row or may_rest)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 
+from stickslip.engine.creep.landing import continue_after, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.planner import hermite
 from stickslip.engine.creep.slow import PLACES, to_powers
 from stickslip.engine.creep.slow_landing import ROUNDINGS
-from stickslip.engine.creep.steady import integrals
-from stickslip.engine.creep.steady_landing import continue_after, write_piece
 from stickslip.engine.creep.swing_leaps import LastPeriods, SwingLeap, nodes_of, stretches
 from stickslip.engine.state.layout import TERMS, Floats
 
@@ -25,6 +25,7 @@ CONTINUES = 1e-6
 class SwingLanding:
     """A leap over swinging creep, ready to be written."""
 
+    may_rest: ClassVar[bool] = False
     leap: SwingLeap
 
     @property
@@ -95,9 +96,7 @@ class SwingLanding:
         load[1] += block.spring * block.speed * length
         store.rate[n], store.load[n] = way * rate, way * load
         store.load[n, 0] -= run.problem.strength * (1 - way)
-        moved = float(integrals(store.rate[n : n + 1], store.speed[n : n + 1], store.bend[n : n + 1])[0])
-        run.state.slip_now += moved
-        run.state.law_slip += (way if run.problem.friction.counts == "net" else 1) * abs(moved)
+        move_over(run, n)
 
     def _load(self, run: LeapingRun, since: float) -> float:
         """Return the load (N) at a time (s) since the leap began, for the present slip, seen in the direction of slip."""

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.engine.creep.averaged import Strength
+from stickslip.engine.creep.landing import SHORTEST_LEAP
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.planner import INTERPOLATION, hermite
-from stickslip.engine.creep.steady import SHORTEST_LEAP
 from stickslip.engine.creep.swing import SAFETY, CreepPlace, Swing, SwingingBlock
 from stickslip.engine.state.layout import Floats
 from stickslip.problem import Problem, default_event_rate

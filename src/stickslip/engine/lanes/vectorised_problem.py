@@ -36,7 +36,7 @@ from stickslip.problem import (
     check_shortest_event,
     put_many,
 )
-from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics, BodyWithWaves, ElasticSlab, TorsionalString, as_waves
+from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics, ElasticSlab, TorsionalString
 from stickslip.problem.scenarios import Scenario
 
 Values = Mapping[str, Floats]
@@ -46,6 +46,14 @@ Places = NDArray[np.intp]
 
 QUANTITIES = COLUMNS
 """Names of the quantities that a batch can compute from a run."""
+ONE_AT_A_TIME = {
+    "layered": "[body] a {}",
+    "machine": f"[body] {MACHINE}",
+    "changing": "[loading] driver_reflection: a driver that changes",
+}
+"""What a batch does not follow, by kind of body or of driver: what its lanes know of waves is one echo at a constant share."""
+OF_MACHINES = ("body.driver_inertia", "body.driver_integral_gain")
+"""The parameters that make a driver a machine."""
 RUN = {"duration": DURATION, "rtol": RTOL}
 """The entries of [run] in a scenario that may be varied."""
 
@@ -134,17 +142,14 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
         fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
     if isinstance(body, TorsionalString) and body.outer_diameter is not None:
         fine &= np.asarray(body.inner_diameter < body.outer_diameter)
-    if body.has_waves:
-        body = as_waves(body)
-        if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
-            fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
-        pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)
-        fine &= ~(pushed & np.isinf(body.driver_impedance))
-    return fine
+    if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
+        fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.longest_way))
+    pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)
+    return fine & ~(pushed & np.isinf(body.driver_impedance))
 
 
-def driven_rigidly(body: BodyWithWaves) -> Booleans:
-    """Return True for the bodies whose driver reflects everything with the opposite sign (reflection coefficient r = -1)."""
+def driven_rigidly(body: BodyOnCharacteristics) -> Booleans:
+    """Return True for the bodies whose driver does not give way, or sends back whole waves with the opposite sign (r = -1)."""
     driver = np.asarray(body.driver_impedance)
     with np.errstate(invalid="ignore"):  # inf / inf
         return np.isinf(driver) | ((body.impedance - driver) / (body.impedance + driver) == RIGID)
@@ -157,13 +162,10 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     and the piece of the law in which they start.
     """
     problem, count = _members(scenario, values), len(next(iter(values.values())))
-    kind = np.broadcast_to(4 * pieces_at_start(problem), (count,)).copy()
-    body = problem.body
-    if body.has_waves:
-        rigid = driven_rigidly(as_waves(body))
-        kind += 2 * rigid + (np.asarray(body.inertia) > 0.0)
-        if "body.driver_impedance" in values:  # a driver with r = -1 to rounding is rigid, whatever its finite impedance
-            values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
+    body, rigid = problem.body, driven_rigidly(problem.body)
+    kind = np.broadcast_to(4 * pieces_at_start(problem) + 2 * rigid + (np.asarray(body.inertia) > 0.0), (count,))
+    if "body.driver_impedance" in values:  # a driver with r = -1 to rounding is rigid, whatever its finite impedance
+        values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
     for one in np.unique(kind):
         chosen = np.flatnonzero(kind == one)
         yield int(one), chosen, {key: value[chosen] for key, value in values.items()}
@@ -186,18 +188,15 @@ def why_not(scenario: Scenario, parameters: Sequence[str], quantities: Sequence[
 
 def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     """Yield a reason if the run has a limit of events, a machine as driver, a varying load, or leaps over creep from its start."""
+    problem = scenario.problem
     if scenario.max_events is not None:
         yield "[run] events: a batch runs for a time, not until a number of events"
-    if not scenario.problem.body.is_uniform:
-        yield f"[body] a {scenario.problem.body.kind} is followed one run at a time"
-    machine = ("body.driver_inertia", "body.driver_integral_gain")
-    if scenario.problem.body.has_machine or any(name in parameters for name in machine):
-        yield f"[body] {MACHINE} is followed one run at a time"
-    elif scenario.problem.driver_changes:
-        yield "[loading] driver_reflection: a driver that changes is followed one run at a time"
-    elif scenario.problem.varies:
+    driver = "machine" if any(name in parameters for name in OF_MACHINES) else problem.driver_kind
+    alone = [ONE_AT_A_TIME[kind].format(problem.body.kind) for kind in (problem.body.structure, driver) if kind in ONE_AT_A_TIME]
+    yield from (f"{reason} is followed one run at a time" for reason in alone)
+    if not alone and problem.varies:
         yield "[loading] a batch needs a pull, far stress and normal load that do not vary in time"
-    if scenario.problem.one_way or "loading.one_way" in parameters:
+    if problem.one_way or "loading.one_way" in parameters:
         yield "[loading] one_way: a batch slips both ways"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
         yield "[run] creep_rtol: a batch cannot leap over creep from the start of a run"
@@ -226,7 +225,7 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
 
 def _varies_mass(body: BodyOnCharacteristics, parameters: Sequence[str]) -> bool:
     """Return True if a parameter is the mass of a contact that may have none."""
-    return body.has_waves and f"body.{as_waves(body).mass_field}" in parameters
+    return f"body.{body.mass_field}" in parameters and bool(quantities_of(type(body))[body.mass_field].allows(np.zeros(1))[0])
 
 
 def _of_parameters(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:

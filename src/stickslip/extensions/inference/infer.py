@@ -27,6 +27,7 @@ from stickslip.extensions.inference.certainty.kept_walk import KeptWalk
 from stickslip.extensions.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
 from stickslip.extensions.inference.certainty.unresolved import unresolved
 from stickslip.extensions.inference.fit.asides import with_servo
+from stickslip.extensions.inference.fit.asked import FITTED_KINDS
 from stickslip.extensions.inference.fit.by_features import FeatureModel, by_features, scatter_of
 from stickslip.extensions.inference.fit.estimate import Estimate, estimate, windows_of
 from stickslip.extensions.inference.fit.free import LOAD, Free, read_free, with_scale
@@ -40,7 +41,6 @@ from stickslip.extensions.inference.fit.setup import (
     hints_of,
     own_of,
     parts_of,
-    rounded_times,
     scales_of,
     with_parts,
 )
@@ -322,7 +322,7 @@ def infer(
         notes += told
     model, offer, told = _begun(given, fitted, recorded, free, wishes)
     notes += told
-    notes += rounded_times(given.body, [one.name for one in model.free])
+    notes += FITTED_KINDS[given.body.structure].rounded_times(given.body, [one.name for one in model.free])
     doubts = [note for note in notes if note.endswith("?")]
     with telling(progress, "infer") as tell:
         for doubt in doubts:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.extensions.planar.asked import PLANAR_DRIVERS
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem import Problem
 from stickslip.problem.bodies import ElasticSlab
 
 
@@ -25,7 +26,7 @@ def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:
     found = np.empty((round_trips, steps + 1))
     found[0] = slope * within
     late = 2 * np.arange(steps + 1) >= steps  # from h/c on
-    if not body.is_driven_rigidly or isinstance(problem.pull_rate, LoadingHistory):
+    if PLANAR_DRIVERS[problem.driver_kind].reflects_at_first(problem):
         # what the driver reflects then left the contact before the start: it follows from the initial stress and velocity
         before = slope * (trip - within[late]) - problem.load
         found[0, late] = reflection * before + _entering(problem, within[late]) - problem.load
@@ -37,14 +38,5 @@ def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:
 
 def _entering(problem: Problem, times: Floats) -> Floats:
     """Return what the driver adds to the load (Pa) at given times: it set out from the driver half a round trip earlier."""
-    body = problem.body
-    assert isinstance(body, ElasticSlab)
-    sent = times - 0.5 * body.two_way_time
-    pulled = problem.pull_rate_at(np.maximum(sent, 0.0))
-    if body.is_driven_rigidly:
-        return np.asarray(2.0 * body.impedance * pulled, float)
-    far = problem.far_stress
-    stress = far.at(np.maximum(sent, 0.0)) if isinstance(far, LoadingHistory) else problem.load if far is None else far
-    stress = stress + problem.far_stress_rate * sent
-    share = 2.0 * body.impedance / (body.impedance + body.driver_impedance)
-    return np.asarray(share * (body.driver_impedance * pulled + stress), float)
+    assert isinstance(problem.body, ElasticSlab)
+    return PLANAR_DRIVERS[problem.driver_kind].entering(problem, times - 0.5 * problem.body.two_way_time)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.asked import PLANAR_DRIVERS
 from stickslip.extensions.planar.driving import locked_load
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.foundation.arrays import Floats
@@ -77,9 +78,8 @@ def _mean_motion(slab: PlanarSlab, rate: Floats, at: Floats, steps: int) -> dict
     comes, leaves = arriving[half:], left[: last + 1]  # at the driver
     work = area / (4.0 * impedance) * cumulative_trapezoid(comes**2 - leaves**2, dx=step, initial=0.0)
     behind = (comes + leaves) / (2.0 * impedance) - problem.pull_rate_at(at)
-    radiated = np.zeros(last + 1)
-    if not body.is_driven_rigidly:
-        radiated = area * body.driver_impedance * cumulative_trapezoid(behind**2, dx=step, initial=0.0)
+    damping = PLANAR_DRIVERS[problem.driver_kind].damping(problem)
+    radiated = area * damping * cumulative_trapezoid(behind**2, dx=step, initial=0.0)
     stored, kinetic = stored - stored[0], kinetic - kinetic[0]
     return {"work": work, "kinetic": kinetic, "elastic": stored - kinetic, "radiated": radiated}
 
@@ -88,7 +88,7 @@ def _uneven_motion(slab: PlanarSlab, slips: Iterator[Floats], here: tuple[slice,
     """Return kinetic and elastic energy in the slab, and the energy beyond the driver, of wavenumbers above 0, after each step."""
     body = slab.body
     zero = np.zeros(slab.shape)
-    driver = math.inf if body.is_driven_rigidly else body.driver_impedance
+    driver = PLANAR_DRIVERS[slab.problem.driver_kind].impedance(slab.problem)
     medium = PlanarMedium(body.density, body.wave_speed, body.thickness, slab.extent, slab.values.load, driver_impedance=driver)
     moved, found = list(slips), []
     run = Volume(medium, steps, len(moved) * body.two_way_time / steps)

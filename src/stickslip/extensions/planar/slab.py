@@ -17,8 +17,8 @@ from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
-from stickslip.problem import Problem, check_problem
-from stickslip.problem.bodies import MACHINE, ElasticSlab, has_dashpot
+from stickslip.problem import Problem, check_problem, features
+from stickslip.problem.bodies import ElasticSlab, has_dashpot
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution
@@ -27,6 +27,20 @@ Profile = ArrayLike | Callable[..., Any]
 """Values at the nodes: an array, or a function of y, or of y and z (m), that returns one."""
 FEWEST_NODES = 8
 """Smallest number of nodes along an axis of the contact."""
+OTHER_BODIES = {
+    "rigid": "a block has no waves",
+    "uniform": "a string is a line",
+    "layered": "layers are followed in 1D only",
+}
+"""Why a contact has no other body than a slab, by the structure of that body."""
+NOT_FOLLOWED = {
+    features.DRIVEN_BY_MACHINE: "is followed in 1D only",
+    features.NORMAL_LOAD_THAT_VARIES: "is not followed along a contact",
+    features.DRIVER_THAT_CHANGES: "is followed in 1D only",
+    features.ONE_WAY: "is followed at one place only",
+    features.MOVING_GROUND: "is followed at one place only",
+}
+"""What a problem may not have along a contact, and why."""
 COUNTS = ("nodes", "width_nodes")
 """The fields that count nodes."""
 MOST_STEPS = 1e12
@@ -108,25 +122,14 @@ class PlanarSlab(CheckedArguments):
     def _check_problem(self) -> None:
         problem, law = self.problem, self.problem.friction
         if not isinstance(problem.body, ElasticSlab):
-            of_layers = "layers are followed in 1D only" if not problem.body.is_uniform else "a string is a line"
-            why = of_layers if problem.body.has_waves else "a block has no waves"
+            why = OTHER_BODIES.get(problem.body.structure, "other bodies are followed in 1D only")
             raise InputError(f"PlanarSlab: body must be an ElasticSlab, got {shown(problem.body)}: {why}")
         if problem.body.contact_mass != 0.0:
             raise InputError("PlanarSlab: contact_mass must be 0: the contact equation is solved without inertia")
         if has_dashpot(problem.body):
             name = type(problem.body).__name__
             raise InputError(f"PlanarSlab: the damping of this {name} is not its impedance, which the solver takes it for")
-        if problem.body.has_machine:
-            raise InputError(f"PlanarSlab: {MACHINE} is followed in 1D only: set driver_inertia and driver_integral_gain to 0")
-        if problem.normal_varies:
-            raise InputError(
-                "PlanarSlab: a normal_load that varies is not followed along a contact: leave it out, or simulate the Problem"
-            )
-        if problem.driver_changes:
-            raise InputError("PlanarSlab: a driver that changes is followed in 1D only: leave driver_reflection out")
-        if problem.ground is not None or problem.one_way:
-            what = "one_way" if problem.one_way else "ground that moves"
-            raise InputError(f"PlanarSlab: {what} is followed at one place only: leave it out")
+        features.refuse("PlanarSlab", problem, NOT_FOLLOWED)
         if law.reverses:
             raise InputError(
                 f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow"

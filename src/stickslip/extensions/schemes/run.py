@@ -20,8 +20,8 @@ from stickslip.extensions.schemes.sbp import SummationByParts
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.problem import Problem
-from stickslip.problem.bodies import MACHINE, ElasticSlab, as_slab, has_dashpot
+from stickslip.problem import Problem, features
+from stickslip.problem.bodies import ElasticSlab, as_slab, has_dashpot
 
 _ALL: tuple[Scheme, ...] = (
     Characteristics(),
@@ -166,9 +166,7 @@ FEWEST_CELLS = 12
 
 def _slab_of(problem: Problem) -> ElasticSlab:
     """Return the slab of a problem. Raises InputError for any other body."""
-    body = problem.body
-    name = type(body).__name__ if body.has_waves else "block"
-    return as_slab(body, f"schemes: a {name} has no grid: they are of an ElasticSlab")
+    return as_slab(problem.body, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
 
 
 def check_suitable(problem: Problem) -> None:
@@ -178,30 +176,27 @@ def check_suitable(problem: Problem) -> None:
         raise InputError(f"schemes: a contact_mass of {slab.contact_mass:g} kg/m^2 is not in the schemes: set it to 0")
     if has_dashpot(slab):
         raise InputError(f"schemes: the damping of this {type(slab).__name__} is not its impedance, which the schemes take it for")
-    if slab.has_machine:
-        raise InputError(f"schemes: {MACHINE} is not in the schemes: set driver_inertia and driver_integral_gain to 0")
-    if problem.driver_changes:
-        raise InputError("schemes: a driver that changes is not in the schemes: leave driver_reflection out")
+    missing = "is not in the schemes"
+    features.refuse("schemes", problem, {features.DRIVEN_BY_MACHINE: missing, features.DRIVER_THAT_CHANGES: missing})
     if problem.varies:
         raise InputError(
             "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones"
             + ", and ground at rest" * (problem.ground is not None)
         )
-    if problem.one_way:
-        raise InputError("schemes: one_way is not in the schemes: leave it out")
+    features.refuse("schemes", problem, {features.ONE_WAY: missing})
     GridContact(problem)
 
 
 def _far_rate(problem: Problem) -> float:
-    """Return the rate of change of the far stress (Pa/s) that the driver lets through: 0 if it is rigid."""
-    return 0.0 if problem.is_driven_rigidly else problem.far_stress_rate
+    """Return the rate of change of the far stress (Pa/s), as far as it is felt."""
+    return 0.0 if "far_stress_rate" in features.unfelt(problem) else problem.far_stress_rate
 
 
 def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Grid:
     """Return the grid of a run of some duration (s). Raises InputError if it has too few or too many cells."""
     check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
     slab = _slab_of(problem)
-    given = None if problem.is_driven_rigidly else problem.far_stress  # a rigid driver does not feel it
+    given = None if "far_stress" in features.unfelt(problem) else problem.far_stress
     far = problem.load if given is None else float(given)  # type: ignore[arg-type] # constant here
     return Grid(
         cells=cells,

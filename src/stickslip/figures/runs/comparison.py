@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, panels, zero_line
+from stickslip.figures.runs.asked import DRAWN_KINDS
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, nearly_flat, quantity, shown, styled, unit_shown
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
@@ -39,8 +40,8 @@ def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str
             time, values = solution.curve(row, 0.0, end)
             contents[f"{name}_{row}"] = curve_quantity(along, values, row, solution.problem.load_unit)
         contents[along] = curve_quantity(along, time, "time")
-        if body.has_waves:
-            contents[f"{name}_two_way_time"] = quantity((), body.round_trip_time, "two-way travel time 2h/c", "R", "s")
+        for echo in DRAWN_KINDS[body.structure].echoes_after(body):
+            contents[f"{name}_two_way_time"] = quantity((), echo, "two-way travel time 2h/c", "R", "s")
     shown_as = [(titles or {}).get(name, name) for name in solutions]
     return xr.Dataset(contents, attrs={"title": "Runs side by side", "systems": list(solutions), "system_titles": shown_as})
 

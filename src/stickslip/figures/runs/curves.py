@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 
 from stickslip.engine import SlipEvents, shock_columns
 from stickslip.figures.panels import add_legend, finish, set_log_ticks, zero_line
+from stickslip.figures.runs.asked import DRAWN_KINDS
 from stickslip.figures.runs.packed import draw_line
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import (
@@ -123,7 +124,8 @@ def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
     """
     if not readings.problem.friction.creeps or span[0] > 0.0 or "event_slip" in readings.curves:
         return np.ones(time.shape, bool)
-    lasts = 0.0 if readings.problem.body.has_waves else readings.problem.body.round_trip_time
+    body = readings.problem.body
+    lasts = DRAWN_KINDS[body.structure].accelerates_for(body)
     if lasts > BRIEF * (span[1] - span[0]):
         lasts = 0.0
     # Of the two limits at the start of a slab, the first is the state at rest.

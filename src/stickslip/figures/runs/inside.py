@@ -18,6 +18,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
+from stickslip.figures.runs.asked import DRAWN_KINDS
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import (
     GREEN,
@@ -40,7 +41,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
-from stickslip.problem.bodies import OfLayers, as_waves
 from stickslip.solution import choose_interval, fronts_of
 from stickslip.solution.observables import extent_of
 
@@ -53,8 +53,6 @@ DISPLACEMENT_ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""
 TIMES, CELLS = 900, 300
 """Numbers of cells of the images, in time and across the slab."""
-COARSER = 2
-"""Layers have fewer cells by this factor, because their waves are replayed, which takes longer."""
 COUNT, PLACES = 6, 1500
 """Default number of times, and number of points across the slab, enough for fronts to look sharp."""
 MOST_CROSSINGS = 200
@@ -69,7 +67,7 @@ def space_time_data(readings: Readings, start: float | None = None, end: float |
     """
     readings, start, end = choose_interval(readings, start, end)
     highest = extent_of(readings.problem).highest
-    coarser = 1 if readings.problem.body.is_uniform else COARSER
+    coarser = DRAWN_KINDS[readings.problem.body.structure].coarser
     contents = means(readings, np.linspace(start, end, TIMES // coarser + 1), places(readings, CELLS // coarser + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
     lines = fronts_of(readings, start, end)
@@ -214,9 +212,9 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
     # Displacements are computed as differences from the slab sheared under its strength, and inherit the rounding of that shear.
     sheared = readings.problem.strength / body.stiffness
     velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)
-    stress, of_stress = middle.stress, ""
-    if not isinstance(body, OfLayers):
-        modulus, of_stress = as_waves(body).modulus, ", mean over a step of x"
+    stress, of_stress, modulus = middle.stress, "", DRAWN_KINDS[body.structure].stress_per_strain(body)
+    if modulus is not None:
+        of_stress = ", mean over a step of x"
         stress = modulus * _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, stress / modulus, sheared)
     unit = readings.problem.load_unit
     return axes_variables(when, where) | {

@@ -77,8 +77,6 @@ class BodyOnCharacteristics(Body, Protocol):
     """What sentences call the time after which slip acts on the contact again: "round trip" or "period"."""
     driver_may_change: ClassVar[bool]
     """True if the driver may be one that changes in time."""
-    noun_with_driver: ClassVar[str]
-    """What sentences call the body, or the like of it, whose driver may give way: "slab" or "string"."""
     what_is_heavy: ClassVar[str]
     """What sentences call what has the mass that slips: "contact mass" or "block"."""
     has_waves: ClassVar[bool]
@@ -135,8 +133,13 @@ class BodyOnCharacteristics(Body, Protocol):
         """Return the rigid body on a spring to which this one is equivalent in slow motion. Raises InputError if there is none."""
         ...
 
-    def as_uniform(self, refusal: str) -> BodyOnCharacteristics:
-        """Return the body if it is a uniform one with waves: see `as_waves`."""
+    @property
+    def noun_with_driver(self) -> str:
+        """What sentences call the body, or the like of it, whose driver may give way: "slab" or "string"."""
+        ...
+
+    def check_uniform(self, refusal: str) -> None:
+        """Raise InputError unless the body is a uniform one with waves: see `as_waves`."""
         ...
 
     def turn_time(self, longest: float) -> float:
@@ -146,6 +149,11 @@ class BodyOnCharacteristics(Body, Protocol):
     @property
     def longest_way(self) -> float:
         """The time (s) of a wave to the driver and back, through all layers; of a block its period."""
+        ...
+
+    @property
+    def time_to_driver(self) -> float:
+        """The time (s) of a wave from the contact to the (first) driver; 0 of a block."""
         ...
 
     def grows_in_a_trip(self, rate: Any) -> Any:
@@ -265,7 +273,8 @@ class BodyWithWaves(BodyOnCharacteristics, Protocol):
 
 def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with waves") -> BodyWithWaves:
     """Return a uniform body that must carry waves. Raises InputError, with the text `refusal` for a rigid one."""
-    return cast(BodyWithWaves, body.as_uniform(refusal))
+    body.check_uniform(refusal)
+    return cast(BodyWithWaves, body)
 
 
 class WithNormalLoad:

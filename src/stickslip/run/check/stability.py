@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 
-from stickslip.contact import first_rate, growth_on_layers, resolved
-from stickslip.foundation.names import si_unit
+from stickslip.contact import first_rate, resolved
 from stickslip.foundation.show import exactly
 from stickslip.friction import RateAndState
 from stickslip.problem import Problem, loading_rate
-from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers, as_waves
+from stickslip.run.check.asked import CHECK_KINDS
 from stickslip.run.reference.rate_and_state import SteadySliding
-from stickslip.run.reference.slab import growth_rate
 
 
 def start_of(problem: Problem) -> str:
@@ -54,19 +51,8 @@ def _why_it_slides(problem: Problem) -> str:
 
 
 def other_start(problem: Problem) -> str:
-    """Return a sentence if a slab or a string would start otherwise with a mass at the contact than without, else "".
-
-    A contact without mass takes the slip rate that load and state determine at 0+, and the slab moves as if it had rested before.
-    That is so under a law that never sticks.
-    """
-    loaded = problem.initial_load is not None and problem.initial_rate is None
-    if problem.friction.sticks or not problem.body.has_waves or not loaded:
-        return ""
-    body = problem.body
-    return (
-        f"without {body.mass_field} the {body.noun} behind the contact starts from rest, which is another start; "
-        "with [initial] rate = 0 a mass starts from there, too"
-    )
+    """Return a sentence if a slab or a string would start otherwise with a mass at the contact than without, else ""."""
+    return CHECK_KINDS[problem.body.structure].other_start(problem)
 
 
 def wait_of(problem: Problem) -> float:
@@ -91,36 +77,7 @@ def stability_of(problem: Problem) -> str:
     if law.states:
         return ""
     by_slip, by_rate = law.slopes(problem.law_slip).tolist()
-    if not body.has_waves:
-        return _block_stability(body, by_slip, by_rate)
-    number = -problem.normal * by_slip / body.stiffness
-    if by_slip >= 0:
-        return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
-    if not body.is_driven_rigidly:
-        return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
-    if number < 1:
-        return (
-            f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the {body.noun} unloads: it creeps"
-        )
-    if isinstance(body, OfLayers):
-        rate = growth_on_layers(body, -problem.normal * by_slip)
-    else:
-        rate = growth_rate(as_waves(body), -by_slip)
-    return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
-
-
-def _block_stability(body: BodyOnCharacteristics, by_slip: float, by_rate: float) -> str:
-    spring, dash = body.stiffness + body.normal_load * by_slip, body.damping + body.normal_load * by_rate
-    swings = cmath.sqrt(dash * dash - 4 * body.inertia * spring)
-    fastest = max((-dash + sign * swings for sign in (1, -1)), key=lambda root: root.real)
-    growth = fastest / (2 * body.inertia)
-    stiffness, impedance = si_unit("stiffness", body.load_unit), si_unit("impedance", body.load_unit)
-    values = f"K + S mu'(u) = {spring:.6g} {stiffness}, damping + S mu'(v) = {dash:.6g} {impedance}"
-    if spring < 0 or (growth.real > 0 and growth.imag == 0):
-        return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
-    if growth.real > 0:
-        return f"oscillates with growing amplitude: {values}; growth {growth.real:.6g} /s"
-    return f"statically stable: {values}"
+    return CHECK_KINDS[body.structure].stability(problem, by_slip, by_rate)
 
 
 def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
@@ -131,11 +88,8 @@ def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     under = ", under the first normal load" if problem.normal_varies else ""
     unit = problem.unit_of("stiffness")
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
-    if not body.has_waves:
-        critical, text = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K"
-    elif body.is_driven_rigidly and not body.has_inertia:
-        of = f" {as_waves(body).modulus_name.symbol}/h" if body.is_uniform else ""
-        critical, text = sliding.critical_stiffness(), f"stiffness{of}"
-    else:
+    found = CHECK_KINDS[body.structure].critical_stiffness(body, sliding)
+    if found is None:
         return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} {unit}{under}"
+    text, critical = found
     return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}{under}"

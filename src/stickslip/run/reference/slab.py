@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.problem.bodies import MACHINE, BodyWithWaves, ElasticSlab
+from stickslip.problem import features
+from stickslip.problem.bodies import BodyWithWaves, ElasticSlab
 
 
 @dataclass(frozen=True)
@@ -159,8 +160,7 @@ class StuckSlab:
     far_stress_rate: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.body.has_machine:
-            raise InputError(f"{type(self).__name__}: {MACHINE} is not in it: set driver_inertia and driver_integral_gain to 0")
+        features.refuse(type(self).__name__, self, {features.DRIVEN_BY_MACHINE: "is not in it"})
 
     @property
     def loading_rate(self) -> float:

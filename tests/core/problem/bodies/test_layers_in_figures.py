@@ -15,7 +15,7 @@ from tests.core.problem.bodies.layers import CASES, DENSITY, NORMAL, SPEED, THIC
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(inside, "TIMES", 60)
     monkeypatch.setattr(inside, "CELLS", 20)
-    monkeypatch.setattr(inside, "COARSER", 1)
+    monkeypatch.setattr("stickslip.figures.runs.kinds.layered.ANSWERS.coarser", 1)
 
 
 def pair(case: str) -> tuple[ss.Solution, ss.Solution]:

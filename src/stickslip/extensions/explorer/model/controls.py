@@ -18,7 +18,7 @@ from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.problem import HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, names
+from stickslip.problem import HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, features, names
 from stickslip.problem.bodies import BODIES
 from stickslip.problem.scenarios import (
     ONE_WAY,
@@ -50,8 +50,6 @@ PARTS_OF_PATCH = {"y[0]": "from y", "y[1]": "to y", "taper": "taper"}
 """Names of the numbers of a patch."""
 RARE_IN_CONTACT = ("frames", "courant", "taper")
 """Numbers of a contact and its patches that are seldom changed."""
-FINITE_DRIVER = ("loading.far_stress", "loading.far_stress_rate", "body.driver_inertia", "body.driver_integral_gain")
-"""Numbers that a rigid driver does not have."""
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
 """Numbers that are seldom changed: a page may hide them at first."""
 TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
@@ -291,7 +289,7 @@ class _Tables:
 
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
-        if path in FINITE_DRIVER and self.problem.is_driven_rigidly:
+        if path.removeprefix("loading.").removeprefix("body.") in features.unfelt(self.problem):
             return False
         if path.removeprefix("loading.") in HISTORIES_ONLY:
             return False

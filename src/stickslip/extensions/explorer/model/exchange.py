@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-import math
-import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import fields, replace
-from typing import Any, cast
+from typing import Any
 
+from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
 from stickslip.extensions.explorer.model.controls import CONSTANT, bodies_beside
 from stickslip.extensions.explorer.model.setting import Setting
-from stickslip.extensions.explorer.model.solve import slab_of_figure
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import HISTORIES, STEADY, written_out
-from stickslip.problem.bodies import BODIES, BodyWithWaves
-from stickslip.problem.scenarios import KINDS, Source, entries_in, example_of, kind_of, library, read_part, to_table
-
-RIGID_DRIVER = {
-    "driver_impedance": math.inf,
-    "other_driver_impedance": math.inf,
-    "driver_inertia": 0.0,
-    "driver_integral_gain": 0.0,
-}
-"""Numbers of a driver that does not give way: the block equivalent to a body needs one."""
+from stickslip.problem.bodies import BODIES
+from stickslip.problem.scenarios import KINDS, Source, entries_in, example_of, kind_of, library, read_part
 
 
 def with_kind(setting: Setting, table: str, kind: str) -> Setting:
@@ -115,14 +103,7 @@ def _with_body(setting: Setting, kind: str) -> Setting:
         return setting
     if kind not in bodies_beside(own.kind):
         raise InputError(f"{setting.name}: {own.kind} cannot be exchanged for {kind}: one slides, the other turns")
-    if not BODIES[kind].has_waves:
-        known = {one.name for one in fields(own)}
-        whole = replace(own, **{name: value for name, value in RIGID_DRIVER.items() if name in known})
-        body = to_table(cast(BodyWithWaves, whole).equivalent_block())
-    else:
-        starter = kind if kind in library.STARTERS else "string" if own.load_unit == TURNS else "slab"  # of layers, or uniform
-        slab_name = (slab_of_figure(setting.name) if starter == "slab" else None) or library.STARTERS[starter].example
-        body = dict(tomllib.loads(library.text(slab_name))["body"])
+    body = SHOWN_KINDS[BODIES[kind].structure].in_place_of(own, kind, setting.name)
     made = {"kind": kind} | _began(setting, "body", kind, body)
     # a far stress acts on a driver that gives way, no ground is under sides that are apart, another driver changes otherwise
     missing = (

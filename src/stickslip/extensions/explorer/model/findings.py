@@ -12,6 +12,7 @@ import pandas as pd
 from stickslip.contact import Uniqueness
 from stickslip.engine import largest_of
 from stickslip.extensions.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
+from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
 from stickslip.extensions.explorer.model.words import DIGITS, several, short
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem
@@ -168,7 +169,7 @@ def sentence(found: Findings, contact: Uniqueness, influence: RuleInfluence) -> 
 
 def _regime(problem: Problem, contact: Uniqueness, influence: RuleInfluence) -> str:
     if problem.body.has_inertia:
-        return f"regular: {'the contact' if problem.body.has_waves else 'the block'} has a mass, so its slip rate cannot jump"
+        return f"regular: {SHOWN_KINDS[problem.body.structure].has_the_mass} has a mass, so its slip rate cannot jump"
     if problem.friction.states:
         return "regular: friction has a state, and one slip rate at every load"
     meanings = {

@@ -10,14 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.contact import Uniqueness
 from stickslip.engine import History, Positions
 from stickslip.extensions.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
-from stickslip.extensions.explorer.model.layered import is_short
+from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import si_unit
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem
-from stickslip.problem.bodies import OfLayers
 from stickslip.solution import Solution, Window, fronts_of
 from stickslip.solution.observables import FULL, energies, heat, shaken, speed
 
@@ -208,9 +207,6 @@ def _slip(waves: SampledWaves, time: ArrayLike) -> Floats:
     return readings.event_slip(time) if isinstance(readings, Window) else readings.slip(time)
 
 
-SLAB_TIMES = 160
-"""Number of times for a slab; for a block there are `BLOCK_TIMES`."""
-BLOCK_TIMES = 400
 LONG_HISTORY, FEW_NODES = 1_000, 4
 """In a history with at least LONG_HISTORY pieces, energies are integrated with FEW_NODES nodes on each: with all nodes that would
 take longer than the run, and a picture shows no difference.
@@ -223,11 +219,11 @@ def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPi
     """Return the parts of the energy; none where the waves in a slab are not known because the run leaped over creep."""
     body = shown.readings.problem.body
     unit = si_unit("energy", body.load_unit)
-    time = np.linspace(shown.start, shown.end, SLAB_TIMES if body.has_waves else BLOCK_TIMES)
-    of_layers = isinstance(body, OfLayers) and is_short(shown)
-    if body.has_waves and waves is None and not of_layers:
+    of_kind = SHOWN_KINDS[body.structure]
+    time = np.linspace(shown.start, shown.end, of_kind.times)
+    found = of_kind.energies(shown, waves, time)
+    if found is None:
         return EnergyPicture(time + shown.begin, {}, unit)
-    found = _exactly(shown, time) if waves is None else _of_slab(waves, time)
     elastic = found["stored"] - found["kinetic"]
     parts = {"elastic": elastic - elastic.min(), "kinetic": found["kinetic"]}
     parts |= {name: found[name] - found[name][0] for name in ("heat", "radiated", "damped")}
@@ -236,7 +232,8 @@ def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPi
     return EnergyPicture(time + shown.begin, drawn | {"total": total}, unit)
 
 
-def _exactly(shown: ShownInterval, time: Floats) -> dict[str, Floats]:
+def exact_energies(shown: ShownInterval, time: Floats) -> dict[str, Floats]:
+    """Return the energies of a body from its history."""
     history = shown.readings.history
     return energies(history, history.find(time, "right"), _nodes(history))
 
@@ -245,7 +242,7 @@ def _nodes(history: History) -> int:
     return FEW_NODES if len(history) > LONG_HISTORY else FULL
 
 
-def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
+def energies_of_waves(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
     """Return the energies of a slab: what is stored from its waves, the heat from the law, so that they need not balance."""
     at = waves.history.find(time, "right")
     contact = 0.5 * waves.body.inertia * speed(waves.history, at) ** 2

@@ -10,15 +10,14 @@ from typing import Any
 
 from stickslip.contact import Uniqueness, uniqueness_of
 from stickslip.extensions.explorer.model.answer import Answer, BodyCurves, RecordBehind, StateCurve, measured_of
+from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
 from stickslip.extensions.explorer.model.findings import Findings, key_numbers, marks_of, sentence
-from stickslip.extensions.explorer.model.layered import picture_of_layers
-from stickslip.extensions.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
-from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
+from stickslip.extensions.explorer.model.pictures import contact_picture, energy_picture, law_picture
+from stickslip.extensions.explorer.model.sampled_waves import ShownInterval
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem import Problem, block_for, in_given_units
-from stickslip.problem.bodies import ElasticSlab, OfLayers
-from stickslip.problem.scenarios import Scenario, load_scenario
+from stickslip.problem import Problem, in_given_units
+from stickslip.problem.scenarios import Scenario
 from stickslip.run.check import warnings_of
 from stickslip.run.simulate import simulate
 from stickslip.solution import Solution
@@ -37,8 +36,6 @@ def silent(_: str) -> None:
 
 MOST_PIECES = 100_000
 """Largest number of pieces of a history: some 45 MB, so that several pages fit into memory."""
-SLABS = {"fig5-block": "fig5-slab-printed", "fig6-block": "fig6-slab", "fig7-block": "fig7-slab-critical"}
-"""Bundled slab that the paper shows beside a bundled block, by the beginning of the block's name."""
 
 
 def run(scenario: Scenario, told: Told) -> Solution:
@@ -56,22 +53,9 @@ def companion_of(scenario: Scenario) -> Scenario | None:
     block of the paper it is the slab of the same figure, under the law, the loading and the rule of the block.
     """
     try:
-        if scenario.problem.body.has_waves:
-            return replace(scenario, problem=block_for(scenario.problem), creep_rtol=None, shortest_event=None)
-        slab = slab_of_figure(scenario.name)
-        return None if slab is None else replace(scenario, problem=_slab_beside(scenario.problem, load_scenario(slab).problem))
+        return SHOWN_KINDS[scenario.problem.body.structure].companion(scenario)
     except InputError:  # such as a driver that is not rigid
         return None
-
-
-def slab_of_figure(name: str) -> str | None:
-    """Return the name of the bundled slab that the paper shows beside a bundled block, or None for another name."""
-    return next((slab for start, slab in SLABS.items() if name.startswith(start)), None)
-
-
-def _slab_beside(block: Problem, slab: Problem) -> Problem:
-    assert isinstance(slab.body, ElasticSlab)
-    return replace(slab, friction=block.friction, pull_rate=block.pull_rate, selection=block.selection)
 
 
 def run_companion(scenario: Scenario, told: Told) -> Solution | None:
@@ -85,7 +69,7 @@ def run_companion(scenario: Scenario, told: Told) -> Solution | None:
 
 def _beside_name(problem: Problem) -> str:
     """Return what the legend calls the companion of a body."""
-    return problem.body.noun if problem.body.has_waves else f"equivalent {problem.body.noun}"
+    return f"{SHOWN_KINDS[problem.body.structure].beside}{problem.body.noun}"
 
 
 LONG = 5_000
@@ -131,8 +115,9 @@ def answer_of(
     own, influence, shown = motion(solution), solution.rule_influence, ShownInterval.of(solution)
     beside = _beside(companion)
     told("the run is finished; working out the inside of the body")
-    waves, of_layers = _waves(shown), isinstance(shown.readings.problem.body, OfLayers)
-    slab = picture_of_layers(shown) if of_layers else None if waves is None else slab_picture(waves)
+    of_kind = SHOWN_KINDS[shown.readings.problem.body.structure]
+    waves = of_kind.waves(shown)
+    slab = of_kind.inside(shown, waves)
     told("the run is finished; working out the energy")
     energy = energy_picture(shown, waves)
     told("the run is finished; finding its words")
@@ -151,17 +136,6 @@ def answer_of(
         numbers=key_numbers(found, contact, own),
         notes=notes_of(scenario, solution, contact),
     )
-
-
-def _waves(shown: ShownInterval) -> SampledWaves | None:
-    """Return the waves in a uniform slab; None for other bodies, and where they are not known because of a leap over creep."""
-    body = shown.readings.problem.body
-    if not (body.has_waves and body.is_uniform):
-        return None
-    try:
-        return SampledWaves(shown)
-    except InputError:
-        return None
 
 
 def _beside(companion: Solution | None) -> tuple[BodyCurves, ...]:

@@ -7,10 +7,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from stickslip.extensions.inference.record.record import Record
-from stickslip.foundation.names import TURNS
 from stickslip.foundation.show import brief
-from stickslip.problem import Problem
+from stickslip.problem import LoadingHistory, Problem
 
+MANY_RATES = 40
+"""A load point with more rates than this raises a doubt, unless it speeds up and slows down in turn so seldom as a ramp does."""
+MOST_TURNS = 2
+"""Largest number of times that a ramp turns from speeding up to slowing down, or back."""
+FAR = 100.0
+"""A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
 LONG, LEVEL = 2.0, 0.1
 """A torque is level if it spreads by less than this share of its median over so many two-way travel times (both 1)."""
 OTHER = 0.2
@@ -33,8 +38,6 @@ def is_level_at_first(record: Record, problem: Problem) -> bool:
 def about_drive(problem: Problem, record: Record, sensor: str, start: str | None, begins: str) -> Iterator[str]:
     """Yield sentences on what a record says of the drive of a body with waves that turns."""
     body = problem.body
-    if problem.load_unit != TURNS or not body.has_waves:
-        return
     if record.shear == "surface_torque" or (sensor == "drive" and record.shear is not None):
         yield "the torque is that at the drive, which waves from the bit reach later"
         if start is None and begins == "steady":
@@ -56,3 +59,19 @@ def about_drive(problem: Problem, record: Record, sensor: str, start: str | None
         if abs(usual - weight) > OTHER * weight:
             both = f"{brief(usual, 'N', 4)} in the median of the record, and {brief(weight, 'N', 4)} in the problem"
             yield f"the weight on the bit is {both}"
+
+
+def doubts_of_rate(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
+    """Yield sentences on a load point that hardly moves like a machine."""
+    segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
+    ways = np.sign(np.diff(segments))
+    ways = ways[ways != 0.0]
+    if len(segments) > MANY_RATES and np.count_nonzero(ways[1:] != ways[:-1]) > MOST_TURNS:
+        cure = "if the column is slip, call it slip and give the load rate"
+        yield f"the rate of the load point changes in {len(segments) - 1} places, as slip does and a driven machine hardly: {cure}"
+    moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)
+    usual = float(moving[0]) if len(moving) else 0.0
+    if assumed > 0.0 and usual > 0.0 and not assumed / FAR < usual < assumed * FAR:
+        unit = problem.unit_of("slip_rate")
+        speeds = f"{brief(usual, unit, 3)}, and at {brief(assumed, unit, 3)} in the problem"
+        yield f"the load point moves at {speeds}: are the units of time and load point in their headings?"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -230,3 +230,15 @@ def shortened(parts: Sequence[Part], share: float) -> list[Part]:
     if len(record) < LEAST:
         raise InputError(f"infer: held_out leaves {len(record)} samples to be fitted")
     return [replace(part, record=record)]
+
+
+class StickSlip(NamedTuple):
+    """Friction before and after slip events, the rise between them per displacement of the machine, and the duration of a fall.
+
+    `rise` is in N/m (block) or Pa/m (slab), `duration` in s; each is NaN if the record does not show it.
+    """
+
+    peak: float
+    rest: float
+    rise: float
+    duration: float

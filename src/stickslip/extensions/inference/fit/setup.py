@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from stickslip.extensions.inference.fit.asides import rounded, with_asides
-from stickslip.extensions.inference.fit.at_drive import about_drive, is_level_at_first
+from stickslip.extensions.inference.fit.asked import FITTED_KINDS
+from stickslip.extensions.inference.fit.at_drive import is_level_at_first
 from stickslip.extensions.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
-from stickslip.extensions.inference.fit.model import Model, is_at_driver
+from stickslip.extensions.inference.fit.model import Model
 from stickslip.extensions.inference.fit.part import Part
 from stickslip.extensions.inference.record.features import arrests_in
 from stickslip.extensions.inference.record.loading import loading_of, normal_of
@@ -23,19 +24,14 @@ from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
-from stickslip.problem import LoadingHistory, PiecewiseLinear, Problem
-from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.problem import PiecewiseLinear, Problem, features
 
+NOT_FITTED = (features.DRIVER_THAT_CHANGES, features.ONE_WAY, features.MOVING_GROUND)
+"""What a problem may not have that is fitted to a record."""
 STARTS = ("steady", "record", "problem")
 """How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""
 SENSORS = ("contact", "spring", "drive")
 """Where shear is measured: at the contact, behind the spring of a block, or at the driver, as the torque of a top drive."""
-MANY_RATES = 40
-"""A load point with more rates than this raises a doubt, unless it speeds up and slows down in turn so seldom as a ramp does."""
-MOST_TURNS = 2
-"""Largest number of times that a ramp turns from speeding up to slowing down, or back."""
-FAR = 100.0
-"""A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
 UNEVEN = 0.03
 """A measured normal load that changes by more than this share (1) is told if the run takes it as constant."""
 LEAST = 8
@@ -53,15 +49,9 @@ def parts_of(
     """
     if sensor not in SENSORS:
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
-    if sensor == "spring" and problem.body.has_waves:
-        noun = problem.body.noun
-        own = f"a {noun} has none; sensor 'drive' is one at its driver"
-        raise InputError(f"infer: sensor 'spring' is the load cell behind the spring of a block: {own}")
-    if problem.driver_changes:
-        raise InputError("infer: a driver that changes is not fitted: leave driver_reflection out")
-    if problem.ground is not None or problem.one_way:
-        what = "one_way" if problem.one_way else "ground that moves"
-        raise InputError(f"infer: {what} is not fitted: leave it out")
+    of_kind = FITTED_KINDS[problem.body.structure]
+    of_kind.check_sensor(problem.body, sensor)
+    features.refuse("infer", problem, dict.fromkeys(NOT_FITTED, "is not fitted"))
     if start is not None and start not in STARTS:
         raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
     found, notes = list[Part](), []
@@ -70,7 +60,7 @@ def parts_of(
         record = record.driven_as_measured() if "drive_rate" in _split(observe) else record
         loading = loading_of(record)
         observed = _observed(record, observe, problem, sensor)
-        away = problem.body.has_waves and record.shear is not None and is_at_driver(record.shear, sensor)
+        away = of_kind.is_away(record, sensor)
         begins = start or ("steady" if problem.friction.states and not problem.friction.sticks else "record")
         if start is None and begins == "record" and (record.shear is None or away):
             begins = "steady" if away and is_level_at_first(record, problem) else "problem"
@@ -83,8 +73,8 @@ def parts_of(
         before = f"{record.name}: " if len(records) > 1 else ""
         said = [*record.notes, *told, *(() if loading is None else loading.notes)]
         rate = found[-1].loading  # a servo that rounds the corners is none of its turns
-        said += () if rate is None else _doubts(problem, rate)
-        said += about_drive(problem, record, sensor, start, begins)
+        said += () if rate is None else of_kind.doubts_of_rate(problem, rate)
+        said += of_kind.about_drive(problem, record, sensor, start, begins)
         if loading is None:
             said.append("the record has no load point: the loading is that of the problem")
         notes += [before + one for one in said]
@@ -117,24 +107,6 @@ def _uneven(problem: Problem, record: Record) -> Iterator[str]:
     if high - low > UNEVEN * abs(usual):
         change = f"{record.normal_name} changes by {(high - low) / abs(usual):.0%} but is taken as constant in the run"
         yield f"{change}: normal='record' takes it as it was measured"
-
-
-def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
-    """Yield sentences on a load point that hardly moves like a machine."""
-    if problem.body.has_waves and problem.unit_of("slip") == "rad":  # a drive that gives way swings
-        return
-    segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
-    ways = np.sign(np.diff(segments))
-    ways = ways[ways != 0.0]
-    if len(segments) > MANY_RATES and np.count_nonzero(ways[1:] != ways[:-1]) > MOST_TURNS:
-        cure = "if the column is slip, call it slip and give the load rate"
-        yield f"the rate of the load point changes in {len(segments) - 1} places, as slip does and a driven machine hardly: {cure}"
-    moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)
-    usual = float(moving[0]) if len(moving) else 0.0
-    if assumed > 0.0 and usual > 0.0 and not assumed / FAR < usual < assumed * FAR:
-        unit = problem.unit_of("slip_rate")
-        speeds = f"{brief(usual, unit, 3)}, and at {brief(assumed, unit, 3)} in the problem"
-        yield f"the load point moves at {speeds}: are the units of time and load point in their headings?"
 
 
 def _check_force(record: Record, name: str, problem: Problem) -> None:
@@ -202,28 +174,6 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
     times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
     return {**times, TREND: 0.1 / reach, DRIFT: 0.1 / part.duration, "initial.slip": 0.1 * reach, "body.damping": 1.0}
-
-
-def rounded_times(body: BodyOnCharacteristics, names: Sequence[str]) -> list[str]:
-    """Return a note if a travel time of layers is free. Raises InputError if several are: cells keep the ratios of the times.
-
-    Between two values at which the cells change, the times of all layers grow alike: one time is told, and not its layer.
-    """
-    if not isinstance(body, OfLayers):
-        return []
-    times = [name for name in names if any(f"{timed}[" in name for timed in body.timed)]
-    if not times:
-        return []
-    if len(times) > 1:
-        raise InputError(
-            f"infer: free: {' and '.join(times)} change travel times, which are rounded to cells:"
-            f" free one of them, or {body.untimed}"
-        )
-    error = body.travel_time_error
-    return [
-        f"{times[0]} is fitted with travel times rounded to cells: its interval is that of the travel time of all"
-        f" {body.part}s together, and it may be {error:.2g} of itself further off, travel_time_error"
-    ]
 
 
 def at_rests(part: Part) -> list[Part]:

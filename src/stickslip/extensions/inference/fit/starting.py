@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from stickslip.extensions.inference.fit.asked import FITTED_KINDS
 from stickslip.extensions.inference.fit.by_features import events_of
 from stickslip.extensions.inference.fit.free import DRIFT, TREND, Free
-from stickslip.extensions.inference.fit.part import Part, changed
+from stickslip.extensions.inference.fit.part import Part, StickSlip, changed
 from stickslip.extensions.inference.fit.plateaus import PlateauDrift, drift_of, plateaus_of, transients_of
 from stickslip.extensions.inference.record.features import arrests_in
 from stickslip.extensions.inference.record.noise import noise_of
@@ -19,27 +20,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.show import brief
 from stickslip.problem import LoadingHistory, Problem
-from stickslip.problem.bodies import ElasticSlab
 
-COSINE = math.sqrt(math.pi**2 - 8.0)
-"""Twice the standard deviation, in time, of the fall of a spring force along half a cosine of angular frequency 1."""
 FALLING = 0.2
 """Shear falls in slip events if it falls during less than this share of the time."""
-CREEPS, STIFFER = 0.8, 1.1
-"""If the slope of shear between events is outside this range, relative to the stiffness of the problem, the stiffness is doubted.
-The range reaches farther down, because creep makes the slope smaller."""
-
-
-class StickSlip(NamedTuple):
-    """Friction before and after slip events, the rise between them per displacement of the machine, and the duration of a fall.
-
-    `rise` is in N/m (block) or Pa/m (slab), `duration` in s; each is NaN if the record does not show it.
-    """
-
-    peak: float
-    rest: float
-    rise: float
-    duration: float
 
 
 def with_starts(
@@ -69,7 +52,9 @@ def with_starts(
     told = [one for one in wanted if one.name in values and one.name != untold]
     texts = [f"{one.name} {brief(values[one.name], one.declared.unit, 3)}" for one in told]
     notes = [f"the search begins with what the record shows: {', '.join(texts)}; also with the values given"] if texts else []
-    return tuple(found), [*notes, *dict.fromkeys(note for part in parts for note in _doubts(problem, part, free))]
+    of_kind = FITTED_KINDS[problem.body.structure]
+    doubts = dict.fromkeys(note for part in parts for note in of_kind.doubts_of_stiffness(problem, part, free))
+    return tuple(found), [*notes, *doubts]
 
 
 def _allowed(problem: Problem, values: Mapping[str, float]) -> bool:
@@ -84,11 +69,11 @@ def _shown(problem: Problem, part: Part, drift: PlateauDrift | None, names: set[
     """Yield names and values (SI) of the numbers that a part of a record shows."""
     if part.record.shear is None:
         return
-    friction, stepped = _friction(problem, part), _is_stepped(problem, part)
+    friction, stepped = friction_of(problem, part), _is_stepped(problem, part)
     cycles = None if stepped else stick_slip(problem, part)  # friction falls after a step of rate, too
     if cycles is not None:
         yield from _of_law(problem, cycles, names)
-        yield from (_of_block(problem, part, cycles, names) if not problem.body.has_waves else _of_slab(problem, cycles, names))
+        yield from FITTED_KINDS[problem.body.structure].shown(problem, part, cycles, names)
     elif not stepped and len(arrests_in(friction)):
         yield "friction.static", float(np.nanmax(np.abs(friction)))
     else:
@@ -105,10 +90,10 @@ def slides(problem: Problem, part: Part) -> bool:
     """Return True if the contact of a part of a record slides all the time, as far as shear shows: without slip events."""
     if part.record.shear is None or part.record.shear not in part.observed:
         return False
-    return _is_stepped(problem, part) or not _has_events(_friction(problem, part))
+    return _is_stepped(problem, part) or not has_events(friction_of(problem, part))
 
 
-def _has_events(friction: Floats) -> bool:
+def has_events(friction: Floats) -> bool:
     """Return True if shear falls as in slip events, much faster than it rises, and not as where it drifts."""
     known = friction[np.isfinite(friction)]
     bottoms = [0, *arrests_in(known).tolist()]
@@ -122,10 +107,10 @@ def shown_drift(problem: Problem, parts: Sequence[Part], *, with_slip: bool | No
     It is one with slip or with time if that is asked for, and else what the plateaus look like.
     """
     sliding = [part for part in parts if slides(problem, part)]
-    return drift_of([plateaus_of(problem, part, _friction(problem, part)) for part in sliding], with_slip)
+    return drift_of([plateaus_of(problem, part, friction_of(problem, part)) for part in sliding], with_slip)
 
 
-def _friction(problem: Problem, part: Part) -> Floats:
+def friction_of(problem: Problem, part: Part) -> Floats:
     """Return the measured friction of a part."""
     name = part.record.shear
     assert name is not None
@@ -154,52 +139,19 @@ def stick_slip(problem: Problem, part: Part) -> StickSlip | None:
 
 def _of_law(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
     """Yield static and dynamic friction: slip overshoots, so that friction in slip lies between its peak and the rest."""
-    law, swing = problem.friction, 1.0  # a slab under a rigid driver, and a block without damping, fall as far below as above
+    law = problem.friction
     if hasattr(law, "static") and hasattr(law, "dynamic"):
-        if not problem.body.has_waves and "body.stiffness" not in names and math.isfinite(cycles.rise):
-            body: Any = problem.body
-            ratio = min(body.damping / (2.0 * math.sqrt(body.inertia * cycles.rise)), 0.99)
-            swing = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
+        swing = FITTED_KINDS[problem.body.structure].swing(problem.body, cycles, names)
         yield "friction.static", cycles.peak
         yield "friction.dynamic", (cycles.rest + swing * cycles.peak) / (1.0 + swing)
     elif hasattr(law, "reference"):
         yield "friction.reference", 0.5 * (cycles.peak + cycles.rest)
 
 
-def _of_block(problem: Problem, part: Part, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
-    """Yield stiffness and mass of a block: the rise between events, and the time of half a swing."""
-    body: Any = problem.body
-    stiffness = body.stiffness
-    if "body.stiffness" in names and math.isfinite(cycles.rise):
-        stiffness = cycles.rise
-        yield "body.stiffness", stiffness
-    if math.isfinite(cycles.duration):
-        yield f"body.{body.mass_field}", stiffness * (cycles.duration / (COSINE if part.sensor == "spring" else math.pi)) ** 2
-
-
-def _of_slab(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
-    """Yield thickness, wave speed or density of a slab: slip lasts for a round trip, and G/h is the rise between events."""
-    body: Any = problem.body
-    if not isinstance(body, ElasticSlab):
-        return
-    thickness, speed = float(np.sum(body.thickness)), float(np.mean(body.wave_speed))
-    if np.ndim(body.thickness) or np.ndim(body.wave_speed):
-        return
-    lasts = math.isfinite(cycles.duration)
-    if "body.thickness" in names:
-        thickness = 0.5 * speed * cycles.duration if lasts else body.density * speed**2 / cycles.rise
-        yield "body.thickness", thickness
-    elif "body.wave_speed" in names:
-        speed = 2.0 * thickness / cycles.duration if lasts else math.sqrt(cycles.rise * thickness / body.density)
-        yield "body.wave_speed", speed
-    if "body.density" in names and (lasts or not {"body.thickness", "body.wave_speed"} & names):
-        yield "body.density", cycles.rise * thickness / speed**2
-
-
 def _of_steps(problem: Problem, part: Part, drift: PlateauDrift | None, names: set[str]) -> Iterator[tuple[str, float]]:
     """Yield reference friction, a, b and slip distance of a rate-and-state law from steady sliding at several rates."""
     law: Any = problem.friction
-    friction = _friction(problem, part)
+    friction = friction_of(problem, part)
     plateaus = [one.without(drift) for one in plateaus_of(problem, part, friction)]
     if not plateaus or not all(hasattr(law, name) for name in ("reference", "a", "b", "distance", "rate")):
         return
@@ -218,19 +170,3 @@ def _of_steps(problem: Problem, part: Part, drift: PlateauDrift | None, names: s
         if math.isfinite(distance):
             yield "friction.distance", distance
     yield "friction.reference", float(np.mean(levels - slope * logs))
-
-
-def _doubts(problem: Problem, part: Part, free: Sequence[Free]) -> Iterator[str]:
-    """Yield a question if a fixed stiffness differs from that of the record."""
-    if problem.body.has_waves or part.record.shear is None or any(one.name == "body.stiffness" for one in free):
-        return
-    if not _has_events(_friction(problem, part)):
-        return
-    cycles, body = stick_slip(problem, part), problem.body
-    stiffness = float(getattr(body, "stiffness", math.nan))
-    if cycles is not None and not (CREEPS < cycles.rise / stiffness < STIFFER or math.isnan(cycles.rise / stiffness)):
-        rises, has = (brief(one, problem.unit_of("stiffness"), 3) for one in (cycles.rise, stiffness))
-        yield (
-            f"between slip events of {part.record.name} shear rises by {rises} of load point, and the stiffness of the problem is "
-            f"{has}: should it be free?"
-        )

@@ -31,8 +31,7 @@ def felt(problem: Problem, duration: float, step: float) -> Floats:
     """Return the times (s) when the contact feels that drive or normal load change, ascending; samples are `step` (s) apart."""
     found = [np.zeros(0)]
     if isinstance(problem.pull_rate, LoadingHistory):
-        way = 0.5 * problem.body.round_trip_time if problem.body.has_waves else 0.0
-        found.append(changes_of(problem.pull_rate, duration) + way)
+        found.append(changes_of(problem.pull_rate, duration) + problem.body.time_to_driver)
     if isinstance(problem.normal_load, LoadingHistory):
         times = np.array([one.start for one in problem.normal_load.segments])
         before = problem.normal_load.at(np.maximum(np.nextafter(times, -np.inf), 0.0))

@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, cast
 
 from stickslip.foundation.conversion import Number, OptionalNumbers
 from stickslip.foundation.errors import InputError
@@ -109,6 +109,11 @@ class OfLayers(WithWaves, ABC):
         """The time (s) of a wave to the driver and back, through all layers."""
         return self.two_way_time
 
+    @property
+    def time_to_driver(self) -> float:
+        """The time (s) of a wave through all layers to the (first) driver."""
+        return sum(self.stacks[0].counts) * self.stacks[0].time
+
     def grows_in_a_trip(self, rate: Any) -> Any:
         """Return the growth of the load (Pa) at rest in one `round_trip_time`, under rigid drivers at a rate (m/s)."""
         return self.stiffness * rate * self.round_trip_time
@@ -123,7 +128,7 @@ class OfLayers(WithWaves, ABC):
         """True unless two sides slip on each other: each is then the ground of the other."""
         return self.sides_together.has_ground
 
-    def as_uniform(self, refusal: str) -> Self:
+    def check_uniform(self, refusal: str) -> None:
         """Refuse: it has layers."""
         raise InputError(f"needs a uniform body with waves: a {type(self).__name__} has layers")
 

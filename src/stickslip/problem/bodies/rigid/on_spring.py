@@ -20,7 +20,7 @@ class OnSpring(WithNormalLoad):
     structure: ClassVar[str] = "rigid"
     noun: ClassVar[str] = "block"
     driver_may_change: ClassVar[bool] = False
-    noun_with_driver: ClassVar[str] = "slab"
+    noun_with_driver: str = "slab"
     turn: ClassVar[str] = "period"
     what_is_heavy: ClassVar[str] = "block"
     drivers: int = 1
@@ -40,6 +40,7 @@ class OnSpring(WithNormalLoad):
     driver_integral_gain: ClassVar[float] = 0.0
     reflection: ClassVar[float] = 0.0
     inflow_delay: ClassVar[float] = 0.0
+    time_to_driver: ClassVar[float] = 0.0
     fastest_rate: ClassVar[float] = math.inf
 
     @property
@@ -70,7 +71,7 @@ class OnSpring(WithNormalLoad):
         """Return the stress that drag takes between contact and driver: none."""
         return [0.0]
 
-    def as_uniform(self, refusal: str) -> BodyOnCharacteristics:
+    def check_uniform(self, refusal: str) -> None:
         """Refuse: a rigid body has no waves."""
         raise InputError(refusal)
 

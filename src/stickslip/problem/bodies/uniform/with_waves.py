@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -46,6 +46,11 @@ class WithWaves(WithNormalLoad):
         return self.two_way_time
 
     @property
+    def time_to_driver(self: BodyWithWaves) -> float:
+        """The travel time h / c (s)."""
+        return self.distance / self.wave_speed
+
+    @property
     def driver_kind(self: BodyWithWaves) -> str:
         """The kind of driver: "rigid", "machine", or "lossy" if it is neither."""
         if self.is_driven_rigidly:
@@ -64,9 +69,8 @@ class WithWaves(WithNormalLoad):
         """Return the stress (Pa) that drag takes between contact and driver: none."""
         return [0.0]
 
-    def as_uniform(self, refusal: str) -> Self:
-        """Return the body, which is a uniform one with waves."""
-        return self
+    def check_uniform(self, refusal: str) -> None:
+        """Do nothing: it is a uniform body with waves."""
 
     @property
     def noun_with_driver(self: BodyWithWaves) -> str:

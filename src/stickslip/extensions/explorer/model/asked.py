@@ -1,0 +1,47 @@
+"""List what the explorer asks of each kind of body."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+from stickslip.extensions.explorer.model.answer import SlabPicture
+from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.by_kind import ByKind
+from stickslip.problem.bodies import BodyOnCharacteristics
+from stickslip.problem.scenarios import Scenario
+
+
+class ShownKind(ABC):
+    """What is asked of a kind of body."""
+
+    has_the_mass: ClassVar[str]
+    """What sentences call what has a mass, if the slip rate cannot jump."""
+    beside: ClassVar[str]
+    """A word before the noun of a body that runs beside another one, with a space behind it."""
+    times: ClassVar[int]
+    """Number of times of the picture of the energy."""
+
+    @abstractmethod
+    def companion(self, scenario: Scenario) -> Scenario | None:
+        """Return the scenario of the body that runs beside one of this kind, or None. Raises InputError if it has none."""
+
+    @abstractmethod
+    def in_place_of(self, own: BodyOnCharacteristics, kind: str, name: str) -> dict[str, Any]:
+        """Return the table of a body `kind`, of this kind, which takes the place of another one in the scenario `name`."""
+
+    @abstractmethod
+    def waves(self, shown: ShownInterval) -> SampledWaves | None:
+        """Return the waves inside, if they are sampled; None where they are not known because of a leap over creep."""
+
+    @abstractmethod
+    def inside(self, shown: ShownInterval, waves: SampledWaves | None) -> SlabPicture | None:
+        """Return the picture of the inside; None if there is none, or if it would take too long."""
+
+    @abstractmethod
+    def energies(self, shown: ShownInterval, waves: SampledWaves | None, time: Floats) -> dict[str, Floats] | None:
+        """Return the energies at times (s) by name; None where they are not known."""
+
+
+SHOWN_KINDS: ByKind[ShownKind] = ByKind("stickslip.extensions.explorer.model.kinds")

@@ -1,0 +1,1 @@
+"""What the explorer shows of each kind of body: a module for each, whose `ANSWERS` answer `ShownKind`."""

@@ -1,0 +1,1 @@
+"""What a fit asks of each kind of body: a module for each, whose `ANSWERS` answer `FittedKind`."""

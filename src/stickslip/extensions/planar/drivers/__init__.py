@@ -1,0 +1,1 @@
+"""The drivers of planar slabs: a module for each kind, whose `ANSWERS` answer `PlanarDriver`."""

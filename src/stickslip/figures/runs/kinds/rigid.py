@@ -1,0 +1,17 @@
+"""How rigid bodies are drawn: a block has no inside."""
+
+from __future__ import annotations
+
+from stickslip.figures.runs.asked import DrawnKind
+from stickslip.problem.bodies import BodyOnCharacteristics
+
+
+class _DrawnRigid(DrawnKind):
+    def accelerates_for(self, body: BodyOnCharacteristics) -> float:
+        return body.round_trip_time
+
+    def echoes_after(self, body: BodyOnCharacteristics) -> tuple[float, ...]:
+        return ()
+
+
+ANSWERS = _DrawnRigid()

@@ -1,0 +1,1 @@
+"""What `check` says of each kind of driver: a module for each, whose `ANSWERS` answer `CheckOfDriver`."""
