@@ -10,7 +10,6 @@ import numpy as np
 from typing_extensions import override
 
 from stickslip.engine import SPARE, Checkpoint, Session
-from stickslip.foundation.constants import RIGID
 from stickslip.problem import (
     ENOUGH_EVENTS,
     FULL_HISTORY,
