@@ -18,6 +18,7 @@ from stickslip.problem.drivers.driver import (
     tone_of,  # Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground.
 )
 from stickslip.problem.drivers.machine import (
+    pace_of,  # Return how fast (1/s) the motion of a machine may change by its own size: see `engine.waves.driver`.
     pull_of,  # Return the pull rate (m/s) of a machine, as it arrives at the contact.
     # Return the rate (m/s) that a machine tends to while the contact rests, under the loading that has arrived at times (s).
     settled_rate,
@@ -232,6 +233,7 @@ __all__ = [
     "lumps_by_itself",
     "names",
     "normal_name",
+    "pace_of",
     "pressed_body",
     "pressing_of",
     "pull_of",
