@@ -49,8 +49,9 @@ from stickslip.problem.inflow import (
     breaks_of,  # Return the round trips and offsets (s) of times (s); an edge between two is offset 0 of the later.
 )
 from stickslip.problem.kinds import (
-    BODY_KINDS,  # Each kind of body (`Body.structure`), with the one that it is like where it has no answers of its own.
-    DRIVER_KINDS,  # Each kind of driver (`Problem.driver_kind`), with the one that it is like.
+    BODY_KINDS,  # Each kind of body (`Body.structure`).
+    DRIVER_KINDS,  # Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, or one of waves.
+    DRIVERS_OF_WAVES,  # Each kind of driver of a body with waves.
 )
 from stickslip.problem.limits import (
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
@@ -160,6 +161,7 @@ __all__ = [
     "CHECKPOINT_INTERVAL",
     "CREEP_RTOL",
     "DRIVERS",
+    "DRIVERS_OF_WAVES",
     "DRIVER_KINDS",
     "DURATION",
     "EDGE",

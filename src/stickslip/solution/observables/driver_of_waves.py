@@ -15,7 +15,7 @@ import numpy as np
 from stickslip.engine import Epoch, Floats, History, Integers
 from stickslip.foundation.by_kind import ByKind
 from stickslip.foundation.constants import RIGID
-from stickslip.problem import DRIVER_KINDS, Inflow, Problem, inflow_of
+from stickslip.problem import DRIVERS_OF_WAVES, Inflow, Problem, inflow_of
 from stickslip.problem.bodies import BodyWithWaves, OfLayers
 from stickslip.solution.observables.given_load import sent_at, share_at
 
@@ -153,7 +153,7 @@ class DriverBehind(NamedTuple):
     """The first driver behind layers."""
 
 
-BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DRIVER_KINDS)
+BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DRIVERS_OF_WAVES)
 
 
 def driver_behind(problem: Problem) -> DriverBehind:
