@@ -51,6 +51,10 @@ class Machine(LossyDriver):
         found = super().inflow(problem)
         return replace(found, reflection=np.full(len(found.start), RIGID))
 
+    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+        """Return all of the force: it is where the machine is found, whatever is before it."""
+        return self.sent_steadily(problem)
+
     def at_first(self, problem: Problem) -> tuple[float, float]:
         """Return its rate (m/s) when the first wave of the run leaves it, and the force of its integral gain (Pa).
 

@@ -34,7 +34,7 @@ class Spring(Driver):
         """Return 1/0: it does not give way."""
         return DriverImpedance(np.ones(1), np.zeros(1))
 
-    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+    def sent_steadily(self, problem: Problem) -> tuple[float, float]:
         """Return the growth of the load (N/s), K V, which does not grow."""
         return problem.body.stiffness * problem.first_pull_rate, 0.0
 
