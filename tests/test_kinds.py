@@ -156,7 +156,7 @@ def test_a_kind_that_does_not_answer_is_refused_when_it_is_first_asked() -> None
 def test_a_kind_without_answers_of_its_own_gives_those_that_it_is_like() -> None:
     table: ByKind[Any] = ByKind("stickslip.problem.leaps", {**BODY_KINDS, "beam": "uniform", "string-of-pearls": "beam"})
     assert table["string-of-pearls"] is table["uniform"]
-    table.add("beam", "answers of beams")
+    table["beam"] = "answers of beams"
     assert table["beam"] == "answers of beams"
     with pytest.raises(KeyError):
         table["cloud"]
