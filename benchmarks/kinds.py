@@ -45,14 +45,14 @@ def asked_in(test: ast.expr) -> str | None:
 
 
 def conditions(tree: ast.AST) -> Iterator[ast.expr]:
-    """Yield the conditions in a function, those of comprehensions and of short cuts (`a and b`) outside conditions among them."""
+    """Yield the conditions in a function, those of comprehensions among them; the subject of a match counts as compared."""
     for node in ast.walk(tree):
         if isinstance(node, ast.If | ast.IfExp | ast.While | ast.Assert):
             yield node.test
         elif isinstance(node, ast.comprehension):
             yield from node.ifs
         elif isinstance(node, ast.Match):
-            yield node.subject
+            yield ast.copy_location(ast.Compare(node.subject, [], []), node.subject)
 
 
 def functions_that_ask(trees: Mapping[str, ast.Module]) -> dict[tuple[str, str], list[tuple[int, str]]]:

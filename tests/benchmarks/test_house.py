@@ -29,6 +29,8 @@ BOUNDS = """[most]
 "lines of the core" = 5
 "names that cross rooms" = 4
 "files entered from outside" = 3
+"functions that ask a kind" = 0
+"conditions that ask a kind" = 0
 "imports of extensions by the core" = 0
 "imports between extensions" = 0
 """

@@ -24,6 +24,7 @@ from stickslip.engine.series.polynomial import copy, fill, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import ramp_of_machine
+from stickslip.engine.waves.interface import cross
 from stickslip.engine.waves.ladder_rows import (
     AIR,
     ASIDE,
@@ -121,9 +122,7 @@ def meet(run: Run, first: int, past: int, parity: int) -> None:
             continue
         back = wave_in(run, AIR, cell + 1)
         for k in range(TERMS):
-            outward, inward = away[k], back[k]
-            away[k] = share * outward + (1.0 + share) * inward
-            back[k] = (1.0 + beyond) * outward + beyond * inward
+            away[k], back[k] = cross(share, beyond, away[k], back[k])
 
 
 @kernel

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.engine.waves.interface import cross
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.kernels.kernels import entry, kernel
@@ -195,9 +196,7 @@ def meet(reflection: Floats, beyond: Floats, wave: Floats, first: int, last: int
     for cell in range(first, last, 2):
         share, back = reflection[cell], beyond[cell]
         for u in range(wave.shape[1]):
-            outward, inward = wave[cell, u], wave[cell + 1, u]
-            wave[cell, u] = share * outward + (1.0 + share) * inward
-            wave[cell + 1, u] = (1.0 + back) * outward + back * inward
+            wave[cell, u], wave[cell + 1, u] = cross(share, back, wave[cell, u], wave[cell + 1, u])
 
 
 @kernel

@@ -17,6 +17,7 @@ import numpy as np
 
 from stickslip.engine import Floats, History, Integers, LadderCell, Positions
 from stickslip.engine.input import ladder_of, sides_of
+from stickslip.engine.waves.interface import crossed
 from stickslip.foundation.constants import RIGID
 from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
@@ -228,9 +229,8 @@ class LayerWaves:
         found, sent = np.empty_like(rows), self.sent(trip + 1, phase)
         for side, last in enumerate(self.last):
             near = np.arange(self.starts[side], last, 2)
-            away, back, share, beyond = rows[..., near], rows[..., near + 1], self.ladder.reflection[near], self.ladder.beyond[near]
-            found[..., near] = share * away + (1.0 + share) * back
-            found[..., near + 1] = (1.0 + beyond) * away + beyond * back
+            share, beyond = self.ladder.reflection[near], self.ladder.beyond[near]
+            found[..., near], found[..., near + 1] = crossed(share, beyond, rows[..., near], rows[..., near + 1])
             if (last - self.starts[side]) % 2 == 0:
                 found[..., last] = sent[side, SHARE][:, None] * rows[..., last] + sent[side, : rows.shape[1]].T
                 if side == 0 and rows.shape[1] > TOTAL and len(self.driver.turned[0]):
