@@ -18,11 +18,12 @@ class _CheckOfRigid(CheckOfKind):
         """Return period, impedance and rate of loading."""
         body, first = problem.body, ", at first" if problem.loading_varies else ""
         size = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
+        loads = "K V + c dV/dt" if problem.loading_varies and as_on_spring(body).driver_damping else "K V"
         rate, unit = loading_rate(problem), problem.unit_of("load_rate")
         return [
             Fact("period", body.round_trip_time, "s", "period 2 pi sqrt(m/K) of free oscillation"),
             Fact("sqrt(K m)", size, problem.unit_of("impedance"), f"impedance of the {body.noun}, in place of Z"),
-            Fact("K V", rate, unit, f"rate of loading while stuck{first}"),
+            Fact(loads, rate, unit, f"rate of loading while stuck{first}"),
             *CHECK_DRIVERS[problem.driver_kind].facts(problem, ""),
         ]
 

@@ -1,0 +1,372 @@
+"""A block driven by a spring and a dashpot side by side: closed forms, an own integrator, energy, rest, ground, files and sweeps.
+
+The equation is m dv/dt + damping v + tau = K (D0 + D - u) + driver_damping (V - v), with V the pull rate and D its integral.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import stickslip as ss
+from stickslip.contact import steady_slidings
+from stickslip.problem.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.run.reference.rate_and_state import SteadySliding
+
+MASS, STIFFNESS, FORCE, GROUND, DASHPOT = 2.0, 50.0, 10.0, 0.3, 4.0
+"""kg, N/m, N, N s/m, N s/m."""
+STATIC, DYNAMIC = 0.6, 0.5
+BLOCK = ss.SpringBlock(MASS, STIFFNESS, FORCE, damping=GROUND, driver_damping=DASHPOT)
+LAW = ss.friction.Coulomb(static=STATIC, dynamic=DYNAMIC)
+KNOTS = [0.0, 1.0, 3.0, 7.0]
+PULLS: dict[str, LoadingHistory] = {
+    "steps": Steps(KNOTS, [0.1, 0.5, 0.02, 0.3]),
+    "ramps": PiecewiseLinear(KNOTS, [0.1, 0.5, 0.02, 0.3]),
+    "sine": Sinusoidal(0.1, 0.3, 1.7, 0.4),
+}
+IN_SLIP: dict[str, LoadingHistory] = {
+    "steps": Steps(KNOTS, [1.0, 1.3, 0.9, 1.1]),
+    "ramps": PiecewiseLinear(KNOTS, [1.0, 1.3, 0.9, 1.1]),
+    "sine": Sinusoidal(1.0, 0.2, 1.7, 0.4),
+}
+"""Pulls (m/s) under which a block that has begun to slide slides on."""
+LOADED = 7.0
+"""Load (N) that sets the block off at once."""
+
+
+# ---- closed forms and an own integrator -------------------------------------------------------------------------------------
+
+
+def free(u: float, v: float, since: float) -> tuple[float, float]:
+    """Return slip and rate of m u'' + (damping + driver_damping) u' + K u = 0 after a time (s) from their values."""
+    half = 0.5 * (GROUND + DASHPOT) / MASS
+    swing = math.sqrt(STIFFNESS / MASS - half * half)
+    fades, cos, sin = math.exp(-half * since), math.cos(swing * since), math.sin(swing * since)
+    other = (v + half * u) / swing
+    return fades * (u * cos + other * sin), fades * (v * cos - (half * other + swing * u) * sin)
+
+
+def driven(pull: LoadingHistory, pushed: float) -> list[tuple[float, Callable[[float], tuple[float, float]]]]:
+    """Return from when on (s) which slip and rate solve the equation without the free swings, under a constant force (N).
+
+    On a straight part V = a + b t they are a parabola; under a sine they are the real part of a phasor. `pushed` is the initial load
+    less dynamic friction and less c V(0).
+    """
+    total = GROUND + DASHPOT
+    if isinstance(pull, Sinusoidal):
+        frequency = 2.0 * math.pi / pull.period
+        sine = pull.amplitude * np.exp(1j * pull.phase)  # V = mean + Im(sine exp(i w t))
+        moved = sine / (1j * frequency)
+        answer = (STIFFNESS * moved + DASHPOT * sine) / (STIFFNESS - MASS * frequency**2 + 1j * frequency * total)
+        begun = (moved).imag  # the integral of the sine begins at 0
+
+        def sinusoidal(t: float) -> tuple[float, float]:
+            phasor = answer * np.exp(1j * frequency * t)
+            steady = (pushed + DASHPOT * pull.mean - STIFFNESS * begun - total * pull.mean) / STIFFNESS + pull.mean * t
+            return steady + phasor.imag, pull.mean + (1j * frequency * phasor).imag
+
+        return [(0.0, sinusoidal)]
+    found: list[tuple[float, Callable[[float], tuple[float, float]]]] = []
+    way = 0.0
+    for n, (start, a, b) in enumerate(pull.segments):
+
+        def straight(t: float, start: float = start, a: float = a, b: float = b, way: float = way) -> tuple[float, float]:
+            curve, since = 0.5 * b, t - start
+            line = a - GROUND * b / STIFFNESS
+            level = (pushed + STIFFNESS * way + DASHPOT * a - MASS * b - total * line) / STIFFNESS
+            return level + since * (line + curve * since), line + 2.0 * curve * since
+
+        found.append((start, straight))
+        lasting = pull.segments[n + 1].start - start if n + 1 < len(pull.segments) else 0.0
+        way += lasting * (a + 0.5 * b * lasting)
+    return found
+
+
+def in_slip(pull: LoadingHistory, load: float, times: np.ndarray) -> np.ndarray:
+    """Return slip and rate (rows) at times (s) of a block that slides from 0 s on, by closed forms joined at the breaks."""
+    parts = driven(pull, load - DYNAMIC * FORCE - DASHPOT * pull.first)
+    u, v, found = 0.0, 0.0, np.full((2, len(times)), math.nan)
+    for n, (start, forced) in enumerate(parts):
+        end = parts[n + 1][0] if n + 1 < len(parts) else math.inf
+        away = np.subtract((u, v), forced(start))
+        for k in np.flatnonzero((times >= start) & (times < end)):
+            found[:, k] = np.add(free(*away, times[k] - start), forced(times[k]))
+        if end < math.inf:
+            u, v = np.add(free(*away, end - start), forced(end)).tolist()
+    return found
+
+
+def integrated(
+    problem: ss.Problem, end: float, pushing: Callable[[float], float] = lambda t: 0.0
+) -> tuple[np.ndarray, list[float]]:
+    """Return slip, rate, pulled way, work, damped energy and heat at the end, and the starts of events, by DOP853 (rtol 1e-12).
+
+    Slip is forwards only. `pushing` is the acceleration of the ground (m/s^2).
+    """
+    body: Any = problem.body
+    k, c, d, m = body.stiffness, body.driver_damping, body.damping, body.inertia
+    strength, dynamic = STATIC * problem.normal, DYNAMIC * problem.normal
+    held = problem.load - c * problem.first_pull_rate
+    pull = problem.pull_rate
+    breaks = [one.start for one in pull.segments if 0.0 < one.start < end] if isinstance(pull, LoadingHistory) else []
+    time, y, slips, starts = 0.0, np.zeros(6), False, list[float]()
+    for stop in [*breaks, end]:
+        inside = 0.5 * (time + stop)
+
+        def pulled(t: float, inside: float = inside) -> float:
+            if not isinstance(pull, LoadingHistory):
+                return pull
+            n = int(np.searchsorted([one.start for one in pull.segments], inside, side="right")) - 1
+            amplitude, frequency, phase = pull.tone
+            return pull.segments[n].at(t) + amplitude * math.sin(frequency * t + phase)
+
+        def right(t: float, y: np.ndarray, slips: bool) -> list[float]:
+            u, v, way, *_ = y
+            rate = pulled(t)
+            stretched = held + k * (way - u)
+            force = stretched + c * (rate - v)
+            grows = (force - d * v - dynamic) / m - pushing(t) if slips else 0.0
+            work = force * rate - m * pushing(t) * v
+            return [v, grows, rate, work, d * v * v + c * (rate - v) ** 2, dynamic * v]
+
+        def exceeds(t: float, y: np.ndarray, slips: bool) -> float:
+            return held + k * (y[2] - y[0]) + c * pulled(t) - m * pushing(t) - strength
+
+        def arrests(t: float, y: np.ndarray, slips: bool) -> float:
+            return y[1] if t > starts[-1] + 1e-9 else 1.0
+
+        exceeds.terminal, exceeds.direction = True, 1.0  # type: ignore[attr-defined]
+        arrests.terminal, arrests.direction = True, -1.0  # type: ignore[attr-defined]
+        while time < stop:
+            if not slips and exceeds(time, y, slips) > 0.0:
+                slips = True
+                starts.append(time)
+            event = arrests if slips else exceeds
+            found = solve_ivp(
+                right, (time, stop), y, method="DOP853", rtol=1e-12, atol=1e-14, events=event, args=(slips,), max_step=0.05
+            )
+            time, y = found.t[-1], found.y[:, -1]
+            if found.status == 1:
+                slips = not slips
+                y[1] = 0.0
+                if slips:
+                    starts.append(time)
+    return y, starts
+
+
+@pytest.mark.parametrize("kind", IN_SLIP)
+def test_sliding_under_a_pull_that_varies_is_the_closed_form(kind: str) -> None:
+    """Slip and rate to 1e-12 of their sizes; with the same damping against the ground they are off by 1e-2."""
+    times = np.linspace(0.0, 9.0, 61)
+    problem = ss.Problem(BLOCK, LAW, pull_rate=IN_SLIP[kind], initial_load=LOADED)
+    slip, rate = in_slip(IN_SLIP[kind], LOADED, times)
+    run = ss.simulate(problem, 9.0, rtol=1e-12)
+    assert rate[1:].min() > 0.0
+    assert run.slip(times) == pytest.approx(slip, rel=1e-12, abs=1e-12)
+    assert run.slip_rate(times) == pytest.approx(rate, rel=1e-11, abs=1e-12)
+    other = ss.simulate(replace(problem, body=replace(BLOCK, damping=GROUND + DASHPOT, driver_damping=0.0)), 9.0)
+    assert np.abs(other.slip(times) - slip).max() > 1e-2
+
+
+@pytest.mark.parametrize("turns", [False, True])
+@pytest.mark.parametrize("kind", PULLS)
+def test_stick_and_slip_are_those_of_an_own_integrator(kind: str, turns: bool) -> None:
+    """Slip, rate, work, damped energy and heat after several events to 1e-9, and when each begins to 1e-9 s."""
+    body = ss.RotatingBlock(MASS, STIFFNESS, FORCE, GROUND, DASHPOT) if turns else BLOCK
+    problem = ss.Problem(body, LAW, pull_rate=PULLS[kind], initial_load=4.0)
+    run = ss.simulate(problem, 20.0, rtol=1e-12)
+    (slip, rate, _, work, damped, heat), starts = integrated(problem, 20.0)
+    assert float(run.slip(20.0)) == pytest.approx(slip, rel=1e-9)
+    assert float(run.slip_rate(20.0)) == pytest.approx(rate, rel=1e-8, abs=1e-9)
+    assert run.events.start.to_numpy() == pytest.approx(np.array(starts), abs=1e-9)
+    energies = run.energy([20.0])
+    assert [float(energies[one][0]) for one in ("work", "damped", "heat")] == pytest.approx([work, damped, heat], rel=1e-9)
+    assert run.proven.load < 1e-12
+    assert run.proven.compared == run.proven.pieces
+
+
+@pytest.mark.parametrize("kind", PULLS)
+def test_work_is_stored_dissipated_or_heat_at_any_time(kind: str) -> None:
+    """The balance is below 1e-12 of the work, 1e-4 of which the dashpot takes at least; that of each event is, too."""
+    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=PULLS[kind], initial_load=4.0), 40.0)
+    energies = run.energy(np.linspace(0.0, 40.0, 301))
+    work = float(energies.work[-1])
+    assert np.abs(energies.balance).max() < 1e-12 * work
+    assert float(energies.damped[-1]) > 1e-4 * work
+    whole = run.energetics()
+    assert np.abs(whole.balance[:-1]).max() < 1e-12 * work
+
+
+# ---- a constant pull --------------------------------------------------------------------------------------------------------
+
+
+def test_a_constant_pull_moves_the_block_as_if_the_ground_had_the_dashpot() -> None:
+    """Its load has c V in it, whatever moves: the motion is the same to the bit, and the driver pulls with c V less."""
+    problem = ss.Problem(BLOCK, LAW, pull_rate=0.1, initial_load=5.0)
+    of_ground = replace(problem, body=replace(BLOCK, damping=GROUND + DASHPOT, driver_damping=0.0))
+    run, other = ss.simulate(problem, 60.0), ss.simulate(of_ground, 60.0)
+    assert np.array_equal(run.history.store.rate, other.history.store.rate)
+    times = np.linspace(0.0, 60.0, 200)
+    lacks = DASHPOT * run.slip_rate(times)
+    assert run.drive_traction(times) == pytest.approx(other.drive_traction(times) - lacks, rel=1e-13)
+    damped, takes = run.energy([60.0]).damped, other.energy([60.0]).damped
+    slip = float(run.slip(60.0))
+    less = DASHPOT * (0.1 * 0.1 * 60.0 - 2.0 * 0.1 * slip)  # of c (V - v)^2 less c v^2
+    assert float(damped[0] - takes[0]) == pytest.approx(less, rel=1e-9)
+
+
+def test_the_driver_feels_friction_and_the_ground_alone_in_steady_sliding() -> None:
+    """The load is S mu + (damping + driver_damping) V, and the spring bears the traction of the driver, S mu + damping V."""
+    law = ss.friction.VelocityStrengthening(0.6, 0.01, 1e-6)
+    problem = ss.Problem(BLOCK, law, pull_rate=0.2, initial_rate="steady")
+    friction = FORCE * float(law.coefficient(0.0, 0.2))
+    assert problem.load == pytest.approx(friction + (GROUND + DASHPOT) * 0.2, rel=1e-14)
+    run = ss.simulate(problem, 20.0)
+    assert run.slip_rate([0.0, 5.0, 20.0]) == pytest.approx(0.2, rel=1e-12)
+    assert run.drive_traction([0.0, 20.0]) == pytest.approx(friction + GROUND * 0.2, rel=1e-12)
+    assert float(run.energy([20.0]).damped[0]) == pytest.approx(GROUND * 0.04 * 20.0, rel=1e-12)
+
+
+def test_rest_that_is_leapt_over_costs_the_work_of_the_dashpot() -> None:
+    """A block at rest under a slow pull: c V^2 t is damped, (F + c V) V t the work, to 1e-12."""
+    held, pull, lasting = 1.0, 1e-6, 9e4
+    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=held + DASHPOT * pull), lasting)
+    assert len(run.history) < 10
+    energies = run.energy([0.3 * lasting, lasting])
+    times = np.array([0.3, 1.0]) * lasting
+    assert energies.damped.to_numpy() == pytest.approx(DASHPOT * pull**2 * times, rel=1e-12)
+    stored = held * pull * times + 0.5 * STIFFNESS * (pull * times) ** 2
+    assert energies.elastic.to_numpy() == pytest.approx(stored, rel=1e-9)
+    assert np.abs(energies.balance).max() < 1e-12 * float(energies.work[-1])
+
+
+@pytest.mark.parametrize("pull", [Sinusoidal(1e-9, 3e-5, 3600.0, 0.7), PiecewiseLinear([0.0, 4e4, 9e4], [0.0, 3e-7, -2e-7])])
+def test_rest_under_a_pull_that_varies_dissipates_its_square(pull: LoadingHistory) -> None:
+    """What is damped at rest is c times the integral of V^2, by quadrature (1e-10), and the load keeps K D + c V to 1e-12."""
+    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=2.0), 1e5)
+    assert len(run.events) == 0
+    taken = [
+        quad(lambda t: float(pull.at(t)) ** 2, low, low + 500.0, epsabs=0.0, epsrel=1e-12)[0] for low in range(0, 100_000, 500)
+    ]
+    assert float(run.energy([1e5]).damped[0]) == pytest.approx(DASHPOT * math.fsum(taken), rel=1e-10)
+    way = math.fsum(
+        quad(lambda t: float(pull.at(t)), low, low + 500.0, epsabs=1e-18, epsrel=1e-12)[0] for low in range(0, 100_000, 500)
+    )
+    gained = STIFFNESS * way + DASHPOT * (float(pull.at(1e5)) - pull.first)
+    assert float(run.load(1e5)) == pytest.approx(2.0 + gained, rel=1e-12)
+    assert abs(float(run.energy([1e5]).balance[0])) < 1e-12 * (DASHPOT * math.fsum(taken) + abs(way))
+
+
+# ---- jumps ------------------------------------------------------------------------------------------------------------------
+
+
+def test_a_step_of_the_pull_is_a_step_of_the_load_by_the_dashpot() -> None:
+    pull = Steps([0.0, 2.0], [0.0, 0.25])
+    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=4.5), 4.0)
+    assert float(run.load(2.0, "left")) == pytest.approx(4.5, rel=1e-15)
+    assert float(run.load(2.0)) == pytest.approx(4.5 + DASHPOT * 0.25, rel=1e-15)
+    reached = 2.0 + (STATIC * FORCE - 5.5) / (STIFFNESS * 0.25)
+    assert run.events.start.iloc[0] == pytest.approx(reached, rel=1e-12)
+
+
+def test_a_step_beyond_the_strength_sets_the_block_off_at_once() -> None:
+    """Its acceleration is then (load + c dV - dynamic friction) / m, to 1e-6 after 1e-6 s."""
+    pull = Steps([0.0, 2.0], [0.0, 0.5])
+    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=5.5), 4.0)
+    assert run.events.start.iloc[0] == 2.0
+    assert float(run.slip_rate(2.0 + 1e-6)) / 1e-6 == pytest.approx((5.5 + 2.0 - DYNAMIC * FORCE) / MASS, rel=1e-5)
+
+
+def test_the_ground_may_shake_beside_it() -> None:
+    """A ramp of the pull and a sine of the ground's acceleration, then steps of both, against an own integrator to 1e-9."""
+    shaken, frequency = Sinusoidal(0.0, 1.1, 2.3, 0.6), 2.0 * math.pi / 2.3
+    problem = ss.Problem(BLOCK, LAW, pull_rate=PULLS["steps"], initial_load=2.0, ground_acceleration=shaken)
+    run = ss.simulate(problem, 12.0, rtol=1e-12)
+    (slip, rate, _, work, damped, _), starts = integrated(problem, 12.0, lambda t: 1.1 * math.sin(frequency * t + 0.6))
+    assert run.slip_rate(np.linspace(0.0, 12.0, 999)).min() >= 0.0
+    assert float(run.slip(12.0)) == pytest.approx(slip, rel=1e-9)
+    assert float(run.slip_rate(12.0)) == pytest.approx(rate, rel=1e-8, abs=1e-9)
+    assert run.events.start.to_numpy() == pytest.approx(np.array(starts), abs=1e-9)
+    energies = run.energy([12.0])
+    assert [float(energies[one][0]) for one in ("work", "damped")] == pytest.approx([work, damped], rel=1e-9)
+    assert abs(float(energies.balance[0])) < 1e-12 * work
+
+
+# ---- stability --------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("damping", [0.0, 3.0, 30.0])
+def test_steady_sliding_is_as_stable_as_both_dampings_make_it(damping: float) -> None:
+    """The growth rate is that of Rice & Ruina's cubic with damping + driver_damping, to 1e-9 of its size."""
+    law = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=1e-3, rate=1e-2)
+    body = ss.SpringBlock(1.0, 30.0, 100.0, damping=1.0, driver_damping=damping)
+    sliding = steady_slidings(ss.Problem(body, law, pull_rate=1e-2, initial_rate="steady")).slidings[0]
+    known = SteadySliding(100.0, 0.01, 0.015, 1e-3, 1e-2)
+    growth = known.block_growth(30.0, 1.0, 1.0 + damping)
+    assert sliding.growth == pytest.approx(growth.real, rel=1e-9)
+    assert sliding.stable is bool(30.0 > known.critical_stiffness(1.0, 1.0 + damping))
+
+
+# ---- files, commands, sweeps ------------------------------------------------------------------------------------------------
+
+TEXT = """
+title = "A head on a soft mount"
+[body]
+kind = "spring-block"
+mass = "2 kg"
+stiffness = "50 N/m"
+normal_force = "10 N"
+driver_damping = "4 N s/m"
+[friction]
+kind = "coulomb"
+static = 0.6
+dynamic = 0.5
+[loading.pull_rate]
+kind = "steps"
+times = ["0 s", "1 s", "3 s"]
+values = ["0.1 m/s", "0.5 m/s", "0.02 m/s"]
+[initial]
+load = "4 N"
+[run]
+duration = "20 s"
+"""
+
+
+def test_a_run_from_a_file_is_kept_and_resumed_to_the_bit(tmp_path: Path) -> None:
+    path = tmp_path / "mount.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    scenario = ss.load_scenario(str(path))
+    assert scenario.problem.body == ss.SpringBlock(2.0, 50.0, 10.0, driver_damping=4.0)
+    whole = ss.simulate(scenario)
+    opened = ss.open_solution(whole.to_netcdf(tmp_path / "run.nc"))
+    assert opened.problem == scenario.problem
+    assert np.array_equal(opened.energy([20.0]).damped, whole.energy([20.0]).damped)
+    for stop in (0.7, 1.0, 2.2):
+        ss.simulate(scenario, stop, checkpoint=tmp_path / "part.nc")
+        assert np.array_equal(ss.resume(tmp_path / "part.nc", 20.0).history.store.rate, whole.history.store.rate)
+
+
+@pytest.mark.parametrize("pull", [0.1, PULLS["sine"]], ids=["batch", "one by one"])
+def test_members_of_a_sweep_over_it_are_single_runs(pull: LoadingHistory | float) -> None:
+    problem = ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=4.0)
+    dampings = [0.0, 1.0, 7.0]
+    found = ss.sweep(problem, {"body.driver_damping": dampings}, duration=12.0, quantities=["slip", "peak_rate"])
+    runs = [ss.simulate(replace(problem, body=replace(BLOCK, driver_damping=c)), 12.0) for c in dampings]
+    slips = np.array([float(run.slip(12.0)) for run in runs])
+    assert np.ptp(slips) > 1e-3
+    assert found["slip"].to_numpy() == pytest.approx(slips, rel=1e-9)
+
+
+def test_bad_numbers_are_refused_in_one_line() -> None:
+    with pytest.raises(ss.InputError, match=r"^SpringBlock: driver_damping must be at least 0 N s/m, got -1") as told:
+        replace(BLOCK, driver_damping=-1.0)
+    assert "\n" not in str(told.value)
+    with pytest.raises(ss.InputError, match="driver_damping must be a number in N m s"):
+        ss.RotatingBlock(1.0, 1.0, 1.0, driver_damping="3 kg")
