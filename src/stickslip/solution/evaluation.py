@@ -129,7 +129,8 @@ class Readings(NamesAttributes):
     def drive_traction(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the load at the (first) driver (Pa, N or N m) at times t, as a sensor there measures it.
 
-        It is positive if the driver pulls forwards: the stress at the far face of a slab, the force of a block's spring, and of a dashpot beside it.
+        It is positive if the driver pulls forwards: the stress at the far face of a slab, the force of a block's spring and of a
+        dashpot beside it.
         """
         found, shape = self._at_driver(t, side)
         return found.load.reshape(shape)
