@@ -136,10 +136,10 @@ def test_rest_that_is_leapt_over_costs_the_work_of_the_dashpot() -> None:
     assert np.abs(energies.balance).max() < 1e-12 * float(energies.work[-1])
 
 
-@pytest.mark.parametrize("pull", [Sinusoidal(1e-9, 3e-5, 3600.0, 0.7), PiecewiseLinear([0.0, 4e4, 9e4], [0.0, 3e-7, -2e-7])])
+@pytest.mark.parametrize("pull", [Sinusoidal(5e-7, 3e-5, 3600.0, 0.3), PiecewiseLinear([0.0, 4e4, 9e4], [0.0, 3e-7, -2e-7])])
 def test_rest_under_a_pull_that_varies_dissipates_its_square(pull: LoadingHistory) -> None:
     """What is damped at rest is c times the integral of V^2, by quadrature (1e-10), and the load keeps K D + c V to 1e-12."""
-    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=2.0), 1e5)
+    run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=pull, initial_load=1.0), 1e5)
     assert len(run.events) == 0
     taken = [
         quad(lambda t: float(pull.at(t)) ** 2, low, low + 500.0, epsabs=0.0, epsrel=1e-12)[0] for low in range(0, 100_000, 500)
@@ -149,7 +149,7 @@ def test_rest_under_a_pull_that_varies_dissipates_its_square(pull: LoadingHistor
         quad(lambda t: float(pull.at(t)), low, low + 500.0, epsabs=1e-18, epsrel=1e-12)[0] for low in range(0, 100_000, 500)
     )
     gained = STIFFNESS * way + DASHPOT * (float(pull.at(1e5)) - pull.first)
-    assert float(run.load(1e5)) == pytest.approx(2.0 + gained, rel=1e-12)
+    assert float(run.load(1e5)) == pytest.approx(1.0 + gained, rel=1e-12)
     assert abs(float(run.energy([1e5]).balance[0])) < 1e-12 * (DASHPOT * math.fsum(taken) + abs(way))
 
 
