@@ -115,7 +115,7 @@ NAMED = (
     ),
     Named(
         "no-kinetic-energy-of-the-block",
-        "solution/observables/energy/balance.py",
+        "solution/observables/kinds/rigid.py",
         '"stored": spring + 0.5 * body.inertia * rate**2',
         '"stored": spring + 0.0 * body.inertia * rate**2',
     ),

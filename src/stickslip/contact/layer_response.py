@@ -98,7 +98,7 @@ def _of_side(layers: Layers, s: Complex) -> Quotient:
     return Quotient(found.above * layers.impedances[0], found.below)
 
 
-class Sides:
+class SidesJoined:
     """How the sides of a contact resist and drive it together: those that move as one, or one alone, side by side."""
 
     def together(self, one: Quotient, other: Quotient) -> Quotient:
@@ -117,7 +117,7 @@ class Sides:
         return SteadyDrive(sum(resists), sum(drivers), (1.0,) * len(drivers))
 
 
-class SidesApart(Sides):
+class SidesApart(SidesJoined):
     """Two sides that slip on each other, the first one pulled, the other one held: they resist in series."""
 
     def together(self, one: Quotient, other: Quotient) -> Quotient:
@@ -140,9 +140,9 @@ class SidesApart(Sides):
         return SteadyDrive(whole, whole * held, tuple(whole / one for one in resists))
 
 
-def sides_of(body: OfLayers) -> Sides:
+def sides_of(body: OfLayers) -> SidesJoined:
     """Return how the sides of a body act together."""
-    return Sides() if body.has_ground else SidesApart()
+    return SidesJoined() if body.has_ground else SidesApart()
 
 
 def driven_steadily(body: OfLayers) -> SteadyDrive:

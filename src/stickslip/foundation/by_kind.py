@@ -10,30 +10,25 @@ from typing import Generic, TypeVar
 Answers = TypeVar("Answers")
 
 
-class ByKind(Generic[Answers]):
+class ByKind(dict[str, Answers], Generic[Answers]):
     """The answers of every kind to the questions of one part of the program; `TABLE[name]` are those of one.
 
     A folder has a module for each kind, whose `ANSWERS` answers all questions. It is imported when the first of its kind is asked
-    about. A kind without a module there answers as the one that it is like. A kind of somebody else is added by its name, with
-    `TABLE.add("beam", AnswersOfBeams())`.
+    about. A kind without a module there answers as the one that it is like. Somebody else's kind is put in by its name:
+    `TABLE["beam"] = AnswersOfBeams()`.
     """
 
     def __init__(self, home: str, kinds: Mapping[str, str]) -> None:
         """Take the folder with the modules, as a package, and all kinds, each with the one that it is like ("" for none)."""
+        super().__init__()
         self.home, self.kinds = home, kinds
-        self._known: dict[str, Answers] = {}
 
-    def __getitem__(self, kind: str) -> Answers:
-        found = self._known.get(kind)
-        if found is None:
-            found = self._known[kind] = import_module(f"{self.home}.{self._answering(kind)}").ANSWERS
+    def __missing__(self, kind: str) -> Answers:
+        found: Answers = import_module(f"{self.home}.{self._answering(kind)}").ANSWERS
+        self[kind] = found
         return found
 
     def _answering(self, kind: str) -> str:
         """Return the kind whose module answers for one."""
         like = self.kinds[kind]
         return kind if not like or find_spec(f"{self.home}.{kind}") is not None else self._answering(like)
-
-    def add(self, kind: str, answers: Answers) -> None:
-        """Add a kind, or put other answers in place of its own."""
-        self._known[kind] = answers

@@ -18,6 +18,7 @@ from stickslip.problem.drivers.driver import (
     tone_of,  # Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground.
 )
 from stickslip.problem.drivers.machine import (
+    pace_of,  # Return how fast (1/s) the motion of a machine may change by its own size: see `engine.waves.driver`.
     pull_of,  # Return the pull rate (m/s) of a machine, as it arrives at the contact.
     # Return the rate (m/s) that a machine tends to while the contact rests, under the loading that has arrived at times (s).
     settled_rate,
@@ -48,8 +49,9 @@ from stickslip.problem.inflow import (
     breaks_of,  # Return the round trips and offsets (s) of times (s); an edge between two is offset 0 of the later.
 )
 from stickslip.problem.kinds import (
-    BODY_KINDS,  # Each kind of body (`Body.structure`), with the one that it is like where it has no answers of its own.
-    DRIVER_KINDS,  # Each kind of driver (`Problem.driver_kind`), with the one that it is like.
+    BODY_KINDS,  # Each kind of body (`Body.structure`).
+    DRIVER_KINDS,  # Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, or one of waves.
+    DRIVERS_OF_WAVES,  # Each kind of driver of a body with waves.
 )
 from stickslip.problem.limits import (
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
@@ -159,6 +161,7 @@ __all__ = [
     "CHECKPOINT_INTERVAL",
     "CREEP_RTOL",
     "DRIVERS",
+    "DRIVERS_OF_WAVES",
     "DRIVER_KINDS",
     "DURATION",
     "EDGE",
@@ -232,6 +235,7 @@ __all__ = [
     "lumps_by_itself",
     "names",
     "normal_name",
+    "pace_of",
     "pressed_body",
     "pressing_of",
     "pull_of",

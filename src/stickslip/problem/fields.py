@@ -301,7 +301,7 @@ class ProblemFields(CheckedArguments):
         """True if the driver of a slab changes in time: it is set free, stops, or takes up another share of the waves."""
         return self.driver_reflection is not None and len(self.driver_steps) > 1
 
-    @property
+    @cached_property
     def driver_kind(self) -> str:
         """The kind of driver that holds throughout the run, by which `stickslip.problem.drivers` answers."""
         return "changing" if self.driver_changes else self.body.driver_kind

@@ -1,8 +1,13 @@
-"""The kinds of bodies and of drivers. All code that depends on a kind is in modules with its name (`foundation.by_kind`)."""
+"""The kinds of bodies and of drivers. All code that depends on a kind is in modules with its name (`foundation.by_kind`).
+
+Each stands here with the kind that it is like, whose answers are its own wherever it has no module.
+"""
 
 from __future__ import annotations
 
 BODY_KINDS = {"rigid": "", "uniform": "", "layered": ""}
-"""Each kind of body (`Body.structure`), with the one that it is like where it has no answers of its own."""
-DRIVER_KINDS = {"spring": "", "rigid": "", "lossy": "", "spring_and_dashpot": "spring", "machine": "lossy", "changing": "lossy"}
-"""Each kind of driver (`Problem.driver_kind`), with the one that it is like where it has no answers of its own."""
+"""Each kind of body (`Body.structure`)."""
+DRIVERS_OF_WAVES = {"rigid": "", "lossy": "", "machine": "lossy", "changing": "lossy"}
+"""Each kind of driver of a body with waves."""
+DRIVER_KINDS = {"spring": "", "spring_and_dashpot": "spring", **DRIVERS_OF_WAVES}
+"""Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, or one of waves."""

@@ -214,7 +214,7 @@ class Readings(NamesAttributes):
     @property
     def at_drive(self) -> tuple[Curve, ...]:
         """The names of the quantities that the drive of a string measures, far from the contact; none for other bodies."""
-        is_far = self._observables.ways(self.problem)[0] > 0.0
+        is_far = self.problem.body.time_to_driver > 0.0
         return ("drive_rate", "surface_torque") if self.problem.load_unit == TURNS and is_far else ()
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:

@@ -14,12 +14,13 @@ import stickslip as ss
 from stickslip.extensions.inference.certainty.bends import rough_words
 from stickslip.extensions.inference.certainty.unresolved import unresolved
 from stickslip.extensions.inference.fit.asides import moved
+from stickslip.extensions.inference.fit.at_drive import MANY_RATES
 from stickslip.extensions.inference.fit.free import read_free
 from stickslip.extensions.inference.fit.loosened import loosened
 from stickslip.extensions.inference.fit.memory import Memory
 from stickslip.extensions.inference.fit.model import Model
 from stickslip.extensions.inference.fit.part import Part, first_sizes
-from stickslip.extensions.inference.fit.setup import MANY_RATES, parts_of
+from stickslip.extensions.inference.fit.setup import parts_of
 from stickslip.extensions.inference.fit.turns import changes_of, felt, moving
 from stickslip.extensions.inference.record.corners import Corners, corners_of, jumps_of
 from stickslip.extensions.inference.record.loading import loading_of

@@ -14,6 +14,7 @@ from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.layer_count import MOST_PIECES
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.layer_response import driven_steadily, response_of, taken_by_layers
+from stickslip.problem import driver_impedance
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 
 PATIENT = 1 << 20
@@ -36,7 +37,8 @@ class ContactOfLayers(ContactOfKind[BodyOnCharacteristics, LayerModes]):
 
     def not_sought(self, body: BodyOnCharacteristics) -> str:
         """Return that it is not sought behind a machine."""
-        return "not sought for layers behind a driver with a mass or an integral gain" if body.has_machine else ""
+        is_sought = driver_impedance(body).is_constant
+        return "" if is_sought else "not sought for layers behind a driver with a mass or an integral gain"
 
     def withstood(self, body: BodyOnCharacteristics, normal: float) -> Withstood:
         """Return what a dashpot takes behind rigid drivers, and otherwise what is found that drivers and drag take, too."""

@@ -21,7 +21,7 @@ from stickslip.engine.state.layout import TERMS, Store
 from stickslip.foundation.arrays import Floats, Floats1, Floats2, Floats3
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import entry
-from stickslip.problem import EDGE, Inflow, Problem, driver_of, inflow_of, pull_of, settled_rate, wave_before
+from stickslip.problem import EDGE, Inflow, Problem, driver_of, inflow_of, pace_of, pull_of, settled_rate, wave_before
 
 FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
@@ -31,7 +31,7 @@ NODES, WEIGHTS = (values / 2.0 for values in np.polynomial.legendre.leggauss(TER
 """Places and weights of the Gauss-Legendre rule, exact for products of two polynomials of a part; places count from its middle."""
 
 
-class Machine(NamedTuple):
+class MachineNumbers(NamedTuple):
     """Hold the numbers of a machine."""
 
     weight: float  # kg/m^2
@@ -40,7 +40,7 @@ class Machine(NamedTuple):
 
 
 @entry
-def walk(series: Floats3, pace: Floats2, machine: Machine, start: Floats1) -> None:
+def walk(series: Floats3, pace: Floats2, machine: MachineNumbers, start: Floats1) -> None:
     """Write the series of rate and push of a machine along parts of its time, each of which begins where the last one ended.
 
     `series` holds force, pull rate, rate and push (4, parts, TERMS): the first two are given, the others found. A row of `pace`
@@ -136,8 +136,8 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     If the run has forgotten its first pieces, it is known from the first kept piece on whose source is kept, too.
     """
     body, trip_time = problem.body, problem.round_trip_time
-    machine = Machine(body.driver_inertia, body.driver_impedance + body.impedance, body.driver_integral_gain)
-    parts = _parts_of(problem, store, machine)
+    machine = MachineNumbers(body.driver_inertia, body.driver_impedance + body.impedance, body.driver_integral_gain)
+    parts = _parts_of(problem, store)
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
     rests = np.flatnonzero(gap > 1e-9 * trip_time)
     parts = parts.with_rests(rests, gap[rests])
@@ -163,7 +163,7 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     return MachineMotion(parts.left + 0.5 * trip_time, parts.speed, parts.bend, rate, drive, pull, problem)
 
 
-def _start_in(problem: Problem, store: Store, machine: Machine) -> tuple[Floats, float]:
+def _start_in(problem: Problem, store: Store, machine: MachineNumbers) -> tuple[Floats, float]:
     """Return rate and push of the machine (m/s, Pa) where the motion begins, and when the wave that it meets left the contact (s).
 
     The load of a piece and the wave whose echo it is give the rate and how fast it changes, and the equation of motion the push.
@@ -217,7 +217,7 @@ class _Parts(NamedTuple):
         return kept
 
 
-def _parts_of(problem: Problem, store: Store, machine: Machine) -> _Parts:
+def _parts_of(problem: Problem, store: Store) -> _Parts:
     """Return the waves that left the contact, from h/c before the start on, cut where the loading breaks, and into short parts."""
     body, trip_time = problem.body, problem.round_trip_time
     half = 0.5 * trip_time
@@ -227,11 +227,8 @@ def _parts_of(problem: Problem, store: Store, machine: Machine) -> _Parts:
     left = np.append(-half, store.trip * trip_time + store.phase_from)
     speed, bend = np.append(half, store.speed), np.append(0.0, store.bend)
     wave = np.concatenate([first, 2.0 * body.impedance * store.rate - store.load])
-    fastest = machine.gain / machine.resists
-    if machine.weight > 0.0:
-        fastest = machine.resists / machine.weight + math.sqrt(machine.gain / machine.weight)
     tone = inflow_of(problem).tone
-    fastest = max(fastest, tone.frequency if tone.amplitude != 0.0 else 0.0)
+    fastest = max(pace_of(body), tone.frequency if tone.amplitude != 0.0 else 0.0)
     cuts = np.ceil(fastest * (np.abs(speed) + 2.0 * np.abs(bend)) / FINEST).astype(int).clip(1)
     which = np.repeat(np.arange(len(left)), cuts)
     begin = np.concatenate([np.arange(count) / count for count in cuts])

@@ -15,7 +15,7 @@ NO_LADDER = LadderCell.table(0)
 """Table `Setup.ladder` of a body without layers."""
 
 
-class Cells(NamedTuple):
+class CellCounts(NamedTuple):
     """The cells of a body of layers, as `state.layout.Counts` has them."""
 
     cells: int = 0
@@ -54,9 +54,9 @@ class InputOfBody(ABC):
         """Return the table of `LadderCell`: that of a body without layers is empty."""
         return NO_LADDER
 
-    def cells(self, problem: Problem) -> Cells:
+    def cells(self, problem: Problem) -> CellCounts:
         """Return how many cells it has: a body without layers has none."""
-        return Cells()
+        return CellCounts()
 
 
 INPUTS: ByKind[InputOfBody] = ByKind("stickslip.engine.input.kinds", BODY_KINDS)

@@ -58,7 +58,6 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
     """Yield the sides of the contact as they are at the start."""
     stress, growth = far_excess(problem), problem.far_stress_rate
     given = problem.far_stress
-    assert problem.varies or problem.is_driven_rigidly or not isinstance(given, LoadingHistory)
     far = None if given is None or isinstance(given, LoadingHistory) else given - problem.strength
     rates = body.rates_at_start(problem.rate, problem.initial_shear)
     for layers, (contact, driver), share, moved in zip(body.stacks, rates, body.shares, body.is_pulled, strict=True):

@@ -24,7 +24,7 @@ from stickslip.problem import MOST_PIECES, PATIENCE, Problem, check_round_trips,
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
     """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
-    if creep_rtol is None and problem.body.is_uniform and leaps_but_for_pull(problem):
+    if creep_rtol is None and leaps_but_for_pull(problem):
         count.creep_in = PATIENCE
 
 

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import DRIVER_KINDS, Problem
+from stickslip.problem import Problem
 
 
 class PlanarDriver(ABC):
@@ -29,4 +29,6 @@ class PlanarDriver(ABC):
         """Return the impedance (Pa s/m) with which it takes up energy where it moves otherwise than pulled."""
 
 
-PLANAR_DRIVERS: ByKind[PlanarDriver] = ByKind("stickslip.extensions.planar.drivers", DRIVER_KINDS)
+FOLLOWED = {"rigid": "", "lossy": ""}
+"""The kinds of driver that planar slabs have; all others are refused (`PlanarSlab`)."""
+PLANAR_DRIVERS: ByKind[PlanarDriver] = ByKind("stickslip.extensions.planar.drivers", FOLLOWED)

@@ -166,6 +166,10 @@ class BodyOnCharacteristics(Body, Protocol):
         """Return the growth of the load (Pa) of a contact at rest in one `round_trip_time` under a rigid driver at a rate (m/s)."""
         ...
 
+    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
+        """Return what the engine adds at the contact of what a driver sends, and of its growth: nothing if layers bring it."""
+        ...
+
     def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
         """Return the velocities (m/s, towards forward slip) of the contact and of the driver on each side of it.
 

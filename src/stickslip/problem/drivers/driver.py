@@ -26,6 +26,8 @@ class Driver(ABC):
 
     moves: ClassVar[bool] = False
     """True if it has a motion of its own, which the engine follows."""
+    missing_for_creep: ClassVar[str] = ""
+    """What a body with waves lacks for creep that is alike from round trip to round trip: echoes that come back whole."""
     missing_for_leaps: ClassVar[str] = ""
     """What a run behind it lacks for leaps, in words; empty if it lacks nothing."""
 
@@ -38,8 +40,12 @@ class Driver(ABC):
         """Return how it resists a motion exp(s t) of its end, which decides how disturbances of steady sliding grow."""
 
     @abstractmethod
+    def sent_steadily(self, problem: Problem) -> tuple[float, float]:
+        """Return what it sends under a loading that does not vary: its value at 0 s and its growth per second (Pa, or N/s)."""
+
     def steady_inflow(self, problem: Problem) -> tuple[float, float]:
-        """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second. Slab: Pa; block: N/s."""
+        """Return what of this is added at the contact."""
+        return problem.body.added_at_contact(self.sent_steadily(problem))
 
     @abstractmethod
     def varying_inflow(self, problem: Problem) -> Inflow:
@@ -135,9 +141,5 @@ def tone_of(problem: Problem) -> Tone:
 
 
 def steady_inflow(problem: Problem) -> tuple[float, float]:
-    """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second. Slab: Pa; block: N/s.
-
-    What drivers at rest send through layers is brought by these (`engine.input.kinds.layered`).
-    """
-    driver = driver_of(problem)
-    return driver.steady_inflow(problem) if problem.body.is_uniform or driver.moves else (0.0, 0.0)
+    """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second (Pa, or N/s)."""
+    return driver_of(problem).steady_inflow(problem)

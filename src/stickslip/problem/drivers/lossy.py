@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from stickslip.problem.problem import Problem
 class LossyDriver(Driver):
     """What a driver of finite impedance Zd answers: it sends (1 + r) (Zd V + far stress)."""
 
+    missing_for_creep: ClassVar[str] = "a rigid driver (no driver_impedance)"
+
     def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:
         """Return Zd."""
         return DriverImpedance(np.array([body.driver_impedance]), np.ones(1))
@@ -28,7 +30,7 @@ class LossyDriver(Driver):
         """Return the share (1) of its stress that it sends to the contact."""
         return 1.0 + body.reflection
 
-    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+    def sent_steadily(self, problem: Problem) -> tuple[float, float]:
         """Return the inflow at 0 s and its growth, that of the far stress."""
         body, far = problem.body, problem.far_stress
         gain = self.gain(body)

@@ -51,6 +51,10 @@ class Machine(LossyDriver):
         found = super().inflow(problem)
         return replace(found, reflection=np.full(len(found.start), RIGID))
 
+    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+        """Return all of the force: it is where the machine is found, whatever is before it."""
+        return self.sent_steadily(problem)
+
     def at_first(self, problem: Problem) -> tuple[float, float]:
         """Return its rate (m/s) when the first wave of the run leaves it, and the force of its integral gain (Pa).
 
@@ -97,15 +101,19 @@ class Machine(LossyDriver):
 
     def changes_within(self, problem: Problem) -> float:
         """Return the time (s) in which its mass, or its gain without a mass, answers a change of the force on it."""
-        body = problem.body
-        resists = body.driver_impedance + body.last_impedance
-        changes = body.driver_integral_gain / resists
-        if body.driver_inertia > 0.0:
-            changes = resists / body.driver_inertia + math.sqrt(body.driver_integral_gain / body.driver_inertia)
-        return 1.0 / changes if changes > 0.0 else math.inf
+        pace = pace_of(problem.body)
+        return 1.0 / pace if pace > 0.0 else math.inf
 
 
 ANSWERS = Machine()
+
+
+def pace_of(body: BodyOnCharacteristics) -> float:
+    """Return how fast (1/s) the motion of a machine may change by its own size: see `engine.waves.driver`."""
+    resists = body.driver_impedance + body.last_impedance
+    if body.driver_inertia == 0.0:
+        return body.driver_integral_gain / resists
+    return resists / body.driver_inertia + math.sqrt(body.driver_integral_gain / body.driver_inertia)
 
 
 def pull_of(problem: Problem) -> Inflow:

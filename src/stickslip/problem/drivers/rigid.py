@@ -19,7 +19,7 @@ class RigidDriver(Driver):
         """Return 1/0: it does not give way."""
         return DriverImpedance(np.ones(1), np.zeros(1))
 
-    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+    def sent_steadily(self, problem: Problem) -> tuple[float, float]:
         """Return the inflow 2 Z V, which does not grow."""
         return 2.0 * problem.body.impedance * problem.first_pull_rate, 0.0
 

@@ -34,7 +34,7 @@ class Spring(Driver):
         """Return 1/0: it does not give way."""
         return DriverImpedance(np.ones(1), np.zeros(1))
 
-    def steady_inflow(self, problem: Problem) -> tuple[float, float]:
+    def sent_steadily(self, problem: Problem) -> tuple[float, float]:
         """Return the growth of the load (N/s), K V, which does not grow."""
         return problem.body.stiffness * problem.first_pull_rate, 0.0
 
@@ -59,7 +59,8 @@ def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:
     value = pulled.value[of_pull] + pulled.slope[of_pull] * (start - pulled.start[of_pull]) - mass * ground.jerk[of_ground]
     amplitude, frequency, phase = ground.tone
     tone = Tone(mass * amplitude * frequency * frequency, frequency, phase) if amplitude != 0.0 else pulled.tone
-    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone)
+    none, all_of_it = np.zeros(len(start)), np.ones(len(start))
+    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone, reflection=none, gain=all_of_it)
 
 
 ANSWERS = Spring()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from stickslip.problem.bodies import has_dashpot
+from stickslip.problem.drivers.driver import DRIVERS
 from stickslip.problem.leaps.asked import LeapsOfBody, Over, what_changes
 from stickslip.problem.problem import Problem
 
@@ -17,8 +18,8 @@ class LeapsOfUniform(LeapsOfBody):
     def missing_for_creep(self, problem: Problem) -> str:
         """Return what a slab or a string lacks for leaps over creep, besides a pull rate; empty if it lacks nothing."""
         body, law = problem.body, problem.friction
-        if not body.is_driven_rigidly:
-            return "a rigid driver (no driver_impedance)"
+        if missing := DRIVERS[body.driver_kind].missing_for_creep:
+            return missing
         if body.has_inertia:
             return f"a contact without mass (no {body.mass_field})"
         if has_dashpot(body):
@@ -37,8 +38,7 @@ class LeapsOfUniform(LeapsOfBody):
 
     def why_not_lumped(self, problem: Problem) -> str:
         """Return whether the driver gives way or the loading varies."""
-        body = problem.body
-        if not body.is_driven_rigidly:
+        if DRIVERS[problem.body.driver_kind].missing_for_creep:
             return "only with waves and a rigid driver do echoes get ever shorter"
         return "events are lumped under a constant pull and normal load only" if problem.varies else ""
 

@@ -99,9 +99,9 @@ class ObservablesOfKind(ABC):
     def at_driver(self, history: History, time: Floats, side: Side) -> AtDriver:
         """Return rate and load at the (first) driver at times (s since the epoch) in the run; at a jump on the given side."""
 
-    @abstractmethod
     def ways(self, problem: Problem) -> list[float]:
-        """Return the time (s) that a wave takes from each driver to the contact, the first driver first."""
+        """Return the time (s) that a wave takes from each driver to the contact."""
+        return [problem.body.time_to_driver]
 
     def fronts_drawn(self, fronts: Floats) -> Floats:
         """Return those of the times (s) of fronts at the driver on both sides of which a curve is drawn: all, unless it is dear."""

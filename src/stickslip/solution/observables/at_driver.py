@@ -11,7 +11,6 @@ import numpy as np
 
 from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.observables.asked import observables_of
 
 
 def fronts_at_driver(history: History) -> Floats:
@@ -20,5 +19,5 @@ def fronts_at_driver(history: History) -> Floats:
     In layers these are the fronts that come straight from the contact.
     """
     begin, end = history.span
-    fronts = history.breaks + observables_of(history.problem).ways(history.problem)[0]
+    fronts = history.breaks + history.problem.body.time_to_driver
     return np.concatenate([[begin], fronts[(fronts > begin) & (fronts < end)], [end]])

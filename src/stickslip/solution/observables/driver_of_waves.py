@@ -7,13 +7,15 @@ machine has a motion of its own, which knows more.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.engine import Epoch, Floats, History, Integers
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import DRIVER_KINDS, Inflow, Problem, inflow_of
+from stickslip.foundation.constants import RIGID
+from stickslip.problem import DRIVERS_OF_WAVES, Inflow, Problem, inflow_of
 from stickslip.problem.bodies import BodyWithWaves, OfLayers
 from stickslip.solution.observables.given_load import sent_at, share_at
 
@@ -47,8 +49,8 @@ class FromMachine:
         return np.asarray(start[(start > low) & (start < high)])
 
 
-class DriverOfWaves:
-    """A passive driver behind a uniform body, of finite impedance. Times are in s since the start of the run."""
+class BehindSlab:
+    """A driver behind a uniform body; here a passive one of finite impedance. Times are in s since the start of the run."""
 
     by_storing = False
     """True if its work over round trips at rest is found from what the slab stores."""
@@ -56,22 +58,17 @@ class DriverOfWaves:
     """What it adds to the echo."""
 
     def __init__(self, history: History, body: BodyWithWaves) -> None:
-        self.problem, self.body = history.problem, body
-        self.adds, self.share = self.inflow, body.reflection
-
-    @property
-    def inflow(self) -> Inflow:
-        """The inflow of its loading."""
-        return inflow_of(self.problem)
+        self.history, self.problem, self.body = history, history.problem, body
+        self.adds = inflow_of(self.problem)
 
     @property
     def steps(self) -> tuple[tuple[float, float], ...]:
         """The times from which it sends back a share of the waves that come to it, the first 0, and these shares."""
-        return ((0.0, self.share),)
+        return self.problem.driver_steps
 
-    def share_at(self, time: Floats) -> Floats | float:
+    def share_at(self, time: Floats) -> Floats:
         """Return the share (1) of a wave that it has sent back of what arrives at the contact at times."""
-        return self.share
+        return inflow_of(self.problem).reflection_at(time)
 
     def impedance_at(self, time: Floats) -> Floats | float:
         """Return its impedance (Pa s/m) when it sent what arrives at the contact at times; 0 for one that is rigid."""
@@ -79,7 +76,9 @@ class DriverOfWaves:
 
     def shears_at(self, time: float) -> float:
         """Return the rate (m/s) at which it shears the slab in the state without waves: its pull rate while it is rigid, else 0."""
-        return 0.0
+        trip = self.body.two_way_time
+        rigid = self.share_at(np.array(time - 0.5 * trip) + trip) == RIGID
+        return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 
     def kinetic(self, time: float) -> float:
         """Return its kinetic energy (J/m^2)."""
@@ -102,8 +101,8 @@ class DriverOfWaves:
         return share_at(self.problem, inside - delay) * leaving + sent_at(self.problem, time - delay, inside - delay)
 
 
-class DriverOfLayers:
-    """A passive driver, the first one behind a body of layers."""
+class BehindLayers:
+    """The first driver behind a body of layers; here one that is passive. Times are in s since the start of the run."""
 
     gain = 0.0
     """The proportional gain of a machine (Pa s/m)."""
@@ -111,14 +110,18 @@ class DriverOfLayers:
     def __init__(self, history: History, body: OfLayers) -> None:
         self.history, self.problem, self.body, self.round = history, history.problem, body, body.round_trip_time
 
-    def share_at(self, time: Floats) -> Floats | float:
-        """Return the share (1) of a wave that it sends back at times (s), counted where waves are followed."""
-        return self.body.reflection
+    def share_at(self, time: Floats) -> Floats:
+        """Return the share (1) of a wave that it sends back at times, counted where waves are followed."""
+        return inflow_of(self.problem).reflection_at(time)
 
-    @property
+    @cached_property
     def turned(self) -> tuple[Integers, Floats, Floats]:
         """Its changes in order: round trips and phases (s) of its new waves, and the share before less that after."""
-        return np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
+        inflow = inflow_of(self.problem)
+        trips, phases = np.array(inflow.breaks()).reshape(-1, 2).T
+        by = -np.diff(inflow.reflection, prepend=inflow.reflection[0])
+        changes = by != 0.0
+        return trips[changes].astype(np.int64), phases[changes], by[changes]
 
     def sent(self, trip: Integers, phase: Floats, loaded: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         """Return what it sends beside the echo (Pa), and the integral of that in the round trip (Pa s): what it is loaded with."""
@@ -129,27 +132,28 @@ class DriverOfLayers:
         return np.full(len(trip), self.history.ramp)
 
     def shears_at(self, time: float) -> float:
-        """Return the rate (m/s) at which it shears the body in the state without waves, at a time (s): see `DriverOfWaves`."""
-        return 0.0
+        """Return the rate (m/s) at which it shears the body in the state without waves: 0 unless all drivers are rigid."""
+        rigid = self.body.is_driven_rigidly & (self.share_at(np.array(time + self.body.inflow_delay)) == RIGID)
+        return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 
     def kinetic(self, now: Epoch) -> float:
         """Return its kinetic energy (J/m^2)."""
         return 0.0
 
     def missed(self, last: Floats, trip: Integers, phase: Floats) -> Floats:
-        """Return by how much (Pa) it misses an equation of motion, `last` being the wave in the last cell."""
+        """Return by how much (Pa) it misses an equation of motion, `last` being the wave in the last cell: there is none."""
         return np.zeros(len(last))
 
 
 class DriverBehind(NamedTuple):
     """What a kind of driver is behind each kind of body with waves."""
 
-    a_slab: type[DriverOfWaves]
-    layers: type[DriverOfLayers]
+    a_slab: type[BehindSlab]
+    layers: type[BehindLayers]
     """The first driver behind layers."""
 
 
-BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DRIVER_KINDS)
+BEHIND: ByKind[DriverBehind] = ByKind("stickslip.solution.observables.drivers", DRIVERS_OF_WAVES)
 
 
 def driver_behind(problem: Problem) -> DriverBehind:

@@ -85,7 +85,7 @@ class LayerWaves:
         self._inflow = np.array([cells.inflow[self.last], cells.inflow_rate[self.last]], float)
         self._before = np.array(cells.inflow_before[self.last], float)
         self._pulled = np.array(cells.pulled[self.last], float)
-        self._is_pulled = np.array([1.0] + [float(body.is_joined)] * (len(sides) - 1))
+        self._is_pulled = np.array(body.is_pulled, float)
         trips = np.unique(self.contact.trip)
         self._steps = np.union1d(trips, trips + 1)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from stickslip.engine.input.asked import Cells, InputOfBody
+from stickslip.engine.input.asked import CellCounts, InputOfBody
 from stickslip.engine.input.kinds.uniform import smallest_jump, steady_numbers
 from stickslip.engine.input.ladder import first_pieces, ladder_of, layers_of
 from stickslip.engine.input.shaking import GroundUnderLayers, Shaken
@@ -39,11 +39,11 @@ class InputOfLayered(InputOfBody):
         """Return its cells."""
         return ladder_of(problem)
 
-    def cells(self, problem: Problem) -> Cells:
+    def cells(self, problem: Problem) -> CellCounts:
         """Return how many cells it has on both sides."""
         body = layers_of(problem)
         cells = [sum(one.counts) for one in body.stacks]
-        return Cells(sum(cells), cells[0], body.is_joined, sum(cells) + driver_of(problem).moves)
+        return CellCounts(sum(cells), cells[0], body.is_joined, sum(cells) + driver_of(problem).moves)
 
 
 ANSWERS = InputOfLayered()

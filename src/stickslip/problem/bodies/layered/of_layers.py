@@ -188,6 +188,10 @@ class OfLayers(WithWaves, ABC):
         """The reflection coefficient of the (first) driver for waves in the last layer."""
         return self.stacks[0].reflection
 
+    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
+        """Return nothing: each driver behind layers has its own inflow, in the ladder."""
+        return 0.0, 0.0
+
     def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
         """Return the velocities (m/s, towards forward slip) of the contact and of the driver on each side.
 

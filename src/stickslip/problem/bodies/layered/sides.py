@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
+
+from numpy.typing import NDArray
 
 
 class Sides(ABC):
@@ -24,6 +26,10 @@ class Sides(ABC):
     @abstractmethod
     def slipping(self, stiffness: Sequence[float]) -> list[float]:
         """Return the share (1) of slow slip that each side takes."""
+
+    @abstractmethod
+    def alike(self, starts: NDArray[Any]) -> NDArray[Any]:
+        """Return the starts of rows of cells that bear the same stress, from those of the cells of each side."""
 
     @abstractmethod
     def is_pulled(self, count: int) -> list[bool]:
@@ -51,6 +57,10 @@ class Joined(Sides):
         """Return 1 for each: both slip."""
         return [1.0] * len(stiffness)
 
+    def alike(self, starts: NDArray[Any]) -> NDArray[Any]:
+        """Return those of each side."""
+        return starts
+
     def is_pulled(self, count: int) -> list[bool]:
         """Return True for each."""
         return [True] * count
@@ -77,6 +87,10 @@ class Apart(Sides):
         """Return shares in proportion to the compliance."""
         whole = self.together(stiffness)
         return [whole / one for one in stiffness]
+
+    def alike(self, starts: NDArray[Any]) -> NDArray[Any]:
+        """Return one row: the stress is the same on both."""
+        return starts[[0, -1]]
 
     def is_pulled(self, count: int) -> list[bool]:
         """Return True for the first side, and False for the other, whose driver is held."""

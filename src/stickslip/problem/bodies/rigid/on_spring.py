@@ -84,6 +84,10 @@ class OnSpring(WithNormalLoad):
         """Return the growth of the load (N) in one period while the spring is pulled at a rate (m/s) and the block rests."""
         return self.stiffness * rate * self.round_trip_time
 
+    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
+        """Return all of what the driver sends, and its growth."""
+        return sent
+
     def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
         """Return the velocities (m/s) of the block, which slips at `rate`, and of the driver, which is by `shear` faster."""
         return [(rate, rate + shear)]

@@ -66,6 +66,10 @@ class WithWaves(WithNormalLoad):
         """Return the growth of the load (Pa) at rest in one round trip, under a rigid driver at a rate (m/s): 2 Z V."""
         return 2.0 * self.impedance * rate
 
+    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
+        """Return all of what the driver sends, and its growth."""
+        return sent
+
     def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
         """Return the velocities (m/s) of the contact, which slips at `rate`, and of the driver, which is by `shear` faster."""
         return [(rate, rate + shear)]

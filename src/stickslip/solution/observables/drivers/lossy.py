@@ -1,7 +1,5 @@
-"""A driver of finite impedance, which neither changes nor has a motion of its own: what all passive drivers do holds for it."""
+"""A driver of finite impedance, which neither changes nor has a motion of its own."""
 
-from __future__ import annotations
+from stickslip.solution.observables.driver_of_waves import BehindLayers, BehindSlab, DriverBehind
 
-from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves
-
-ANSWERS = DriverBehind(DriverOfWaves, DriverOfLayers)
+ANSWERS = DriverBehind(BehindSlab, BehindLayers)

@@ -16,19 +16,28 @@ from stickslip.engine import Epoch, Floats, History, Integers
 from stickslip.foundation.constants import RIGID
 from stickslip.problem import driver_of, settled_rate
 from stickslip.problem.bodies import BodyWithWaves, OfLayers
-from stickslip.solution.observables.driver_of_waves import DriverBehind, DriverOfLayers, DriverOfWaves, FromMachine, SumOfPower
+from stickslip.solution.observables.driver_of_waves import BehindLayers, BehindSlab, DriverBehind, FromMachine, SumOfPower
 from stickslip.solution.observables.given_load import far_excess_at, pulled, value_at
 
 BEYOND = 1.0 + 1e-9
 """Factor (1) that keeps a phase at the end of a round trip below that of the start of the next one."""
 
 
-class MachineDriver(DriverOfWaves):
+class MachineBehindSlab(BehindSlab):
     """A machine behind a uniform body: it sends back what a rigid driver would, and what its own motion adds."""
 
     def __init__(self, history: History, body: BodyWithWaves) -> None:
         super().__init__(history, body)
-        self.history, self.adds, self.share = history, FromMachine(history), RIGID
+        self.adds = FromMachine(history)
+
+    @property
+    def steps(self) -> tuple[tuple[float, float], ...]:
+        """The share of a rigid driver at all times."""
+        return ((0.0, RIGID),)
+
+    def shears_at(self, time: float) -> float:
+        """Return 0."""
+        return 0.0
 
     def kinetic(self, time: float) -> float:
         """Return that of its mass."""
@@ -51,7 +60,7 @@ class MachineDriver(DriverOfWaves):
         return self.adds.at(time) - leaving
 
 
-class LayerMachine(DriverOfLayers):
+class MachineBehindLayers(BehindLayers):
     """The rate of a machine at round trips and phases; where the contact rests and nothing was kept, it has settled."""
 
     def __init__(self, history: History, body: OfLayers) -> None:
@@ -129,10 +138,6 @@ class LayerMachine(DriverOfLayers):
         rate, _ = self.motion(np.array([now.trip]), np.array([now.offset]))
         return 0.5 * self.problem.body.driver_inertia * float(rate[0]) ** 2
 
-    def share_at(self, time: Floats) -> float:
-        """Return that of a rigid driver: all else that it sends comes from its motion."""
-        return RIGID
-
     def sent(self, trip: Integers, phase: Floats, loaded: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         """Return what its motion sends, whatever it is loaded with."""
         rate, way = self.motion(trip, phase)
@@ -141,7 +146,7 @@ class LayerMachine(DriverOfLayers):
 
     def ramp(self, trip: Integers) -> Floats:
         """Return the growth of the load while the machine has settled."""
-        return np.asarray(self.problem.body.grows_in_a_trip(1.0) * self._settled(trip))
+        return np.asarray(self.body.grows_in_a_trip(1.0) * self._settled(trip))
 
     def missed(self, last: Floats, trip: Integers, phase: Floats) -> Floats:
         """Return by how much (Pa) it misses M dVd/dt = kp (V0 - Vd) + q + s - Z Vd + w, `last` being the wave that it sends.
@@ -157,4 +162,4 @@ class LayerMachine(DriverOfLayers):
         return np.asarray(body.driver_inertia * faster - force - push + (body.driver_impedance + body.last_impedance) * rate - met)
 
 
-ANSWERS = DriverBehind(MachineDriver, LayerMachine)
+ANSWERS = DriverBehind(MachineBehindSlab, MachineBehindLayers)

@@ -111,7 +111,7 @@ class LayerEnergy:
 
     def _mean(self, strain: Floats) -> Floats:
         """Return the mean stress minus the reference (Pa) in each cell, from integrals of that stress over Z (m)."""
-        starts = self.waves.starts if self.body.is_joined else self.waves.starts[[0, -1]]
+        starts = self.body.sides_together.alike(self.waves.starts)
         compliance = np.add.reduceat(self.waves.time / self.waves.ladder.impedance, starts[:-1])
         return np.repeat(np.add.reduceat(strain, starts[:-1]) / compliance, np.diff(starts))
 

@@ -59,7 +59,8 @@ class ObservablesOfLayered(ObservablesOfKind):
     def trapped(self, history: History) -> float | None:
         """Return the energy of the waves at the end; None if they would be replayed through more than `MOST_REPLAYED` cells."""
         body = of_layers(history.problem)
-        if len(history) * sum(body.cells.counts) > MOST_REPLAYED:
+        cells = sum(body.cells.counts)
+        if len(history) * cells > MOST_REPLAYED:
             return None
         end = epochs(history, Positions.inside(len(history) - 1, 1.0))
         return float(LayerEnergy(history, body).inside(end).trapped[0])

@@ -74,10 +74,6 @@ class ObservablesOfRigid(ObservablesOfKind):
         rate = history.problem.pull_rate_at(np.maximum(begun + time - slack, 0.0))
         return AtDriver(np.asarray(rate, float), history.problem.strength + driver_force(history, history.find(time, side)))
 
-    def ways(self, problem: Problem) -> list[float]:
-        """Return 0: the spring acts at once."""
-        return [0.0]
-
     def field(self, history: History, at_contact: AtContact, place: Floats, time: Floats, side: Side) -> Field:
         """Raise InputError: there is nothing inside."""
         raise InputError(NO_INSIDE)

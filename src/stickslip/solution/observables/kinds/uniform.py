@@ -96,10 +96,6 @@ class ObservablesOfUniform(ObservablesOfKind):
         rate = (leaving + sent_back) / (2.0 * waves.body.impedance)
         return AtDriver(rate, waves.reference + 0.5 * (sent_back - leaving))
 
-    def ways(self, problem: Problem) -> list[float]:
-        """Return the travel time h / c."""
-        return [problem.body.inflow_delay]
-
     def field(self, history: History, at_contact: AtContact, place: Floats, time: Floats, side: Side) -> Field:
         """Return it from both waves at each place."""
         return field_of_slab(history, at_contact, place, time, side)
