@@ -9,5 +9,5 @@ BODY_KINDS = {"rigid": "", "uniform": "", "layered": ""}
 """Each kind of body (`Body.structure`)."""
 DRIVERS_OF_WAVES = {"rigid": "", "lossy": "", "machine": "lossy", "changing": "lossy"}
 """Each kind of driver of a body with waves."""
-DRIVER_KINDS = {"spring": "", **DRIVERS_OF_WAVES}
+DRIVER_KINDS = {"spring": "", "spring_and_dashpot": "spring", **DRIVERS_OF_WAVES}
 """Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, or one of waves."""

@@ -328,7 +328,7 @@ def check_problem(who: str, problem: Any, wanted: str = "a Problem") -> None:
 def resistance_slope(problem: Problem) -> float:
     """Return how damping v + S mu grows with the slip rate at the start (Pa s/m or N s/m)."""
     slopes = problem.friction.slopes(problem.law_slip, abs(problem.rate), one_argument(problem.states))
-    return problem.body.damping + problem.normal * float(slopes[1])
+    return problem.body.total_damping + problem.normal * float(slopes[1])
 
 
 def written_out(problem: Problem) -> Problem:

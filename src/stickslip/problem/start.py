@@ -61,7 +61,7 @@ def _steady_rate(problem: ProblemFields) -> float:
     drive = (far.first if isinstance(far, LoadingHistory) else far) + driver * pull
 
     def short(rate: float) -> bool:
-        return driver * rate + _steady(problem, rate).load - problem.body.damping * rate < abs(drive)
+        return driver * rate + _steady(problem, rate).load - problem.body.total_damping * rate < abs(drive)
 
     rates = np.geomspace(SLOWEST, FASTEST, AT_ONCE).tolist()
     high = next((k for k in range(AT_ONCE - 1, 0, -1) if short(rates[k - 1])), 0)
@@ -97,7 +97,7 @@ def _steady(problem: ProblemFields, rate: float) -> Start:
 
 def _resistance(problem: ProblemFields, states: tuple[float, ...]) -> Callable[[Any], Floats]:
     """Return the load (Pa or N) that slip rates v >= 0 (m/s) take: damping v + S mu."""
-    law, slip, damping, normal = problem.friction, problem.law_slip, problem.body.damping, problem.normal
+    law, slip, damping, normal = problem.friction, problem.law_slip, problem.body.total_damping, problem.normal
     return lambda rate: np.asarray(damping * rate + normal * law.coefficient(slip, rate, one_argument(states)))
 
 

@@ -111,7 +111,10 @@ class Readings(NamesAttributes):
         return (self.problem.strength + self.history.friction(at)).reshape(shape)
 
     def load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
-        """Return the load on the contact at times t: beta of eqs (12)-(13) of a slab (Pa), the spring's force of a block (N)."""
+        """Return the load on the contact at times t: beta of eqs (12)-(13) of a slab (Pa), the spring's force of a block (N).
+
+        A dashpot beside the spring adds c V to it, at the pull rate V: what it gives while the block rests.
+        """
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
@@ -126,7 +129,8 @@ class Readings(NamesAttributes):
     def drive_traction(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:
         """Return the load at the (first) driver (Pa, N or N m) at times t, as a sensor there measures it.
 
-        It is positive if the driver pulls forwards: the stress at the far face of a slab, the force of a block's spring.
+        It is positive if the driver pulls forwards: the stress at the far face of a slab, the force of a block's spring and of a
+        dashpot beside it.
         """
         found, shape = self._at_driver(t, side)
         return found.load.reshape(shape)

@@ -88,7 +88,7 @@ class ContactOfRigid(ContactOfKind[BodyOnCharacteristics, ModesOfBlock]):
     def modes(self, body: BodyOnCharacteristics, normal: float, response: Response, *, patient: bool = False) -> ModesOfBlock:
         """Return the roots of m s + D + K/s + S Phi(s)."""
         above, below = response
-        spring = np.array([body.stiffness, body.damping, body.inertia])
+        spring = np.array([body.stiffness, body.total_damping, body.inertia])
         return ModesOfBlock(poly.polyadd(poly.polymul(spring, below), poly.polymulx(normal * above)))
 
     def steady_drive(self, body: BodyOnCharacteristics) -> SteadyDrive:
@@ -97,7 +97,7 @@ class ContactOfRigid(ContactOfKind[BodyOnCharacteristics, ModesOfBlock]):
 
     def withstood(self, body: BodyOnCharacteristics, normal: float) -> Withstood:
         """Return the damping."""
-        return Withstood(body.damping, is_known=True)
+        return Withstood(body.total_damping, is_known=True)
 
     def judge(self, body: BodyOnCharacteristics, normal: float, many: int) -> Judge | None:
         """Return the proof for a block on a spring under a law with one or two states."""
@@ -125,7 +125,7 @@ def _conditions(many: int) -> tuple[Expression, ...]:
 
 def _proven(body: BodyOnCharacteristics, normal: float, many: int, slopes: Discs) -> tuple[Floats, Floats]:
     """Return for each cell whether sliding is proven to be stable, and whether it is proven to be unstable."""
-    numbers = {"m": body.inertia, "D": body.damping, "K": body.stiffness, "S": normal}
+    numbers = {"m": body.inertia, "D": body.total_damping, "K": body.stiffness, "S": normal}
     found = [on_discs(one, numbers, slopes) for one in _conditions(many)]
     stable = reduce(np.logical_and, (one.centre > one.radius for one in found))
     return stable, reduce(np.logical_or, (one.centre < -one.radius for one in found))

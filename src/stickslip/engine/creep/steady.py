@@ -170,8 +170,8 @@ def _slidings(problem: Problem) -> tuple[Sliding, ...]:
 def _load(problem: Problem, sliding: Sliding) -> float:
     """Return the load of steady sliding minus the reference strength, with its sign."""
     if problem.friction.states:
-        return problem.body.damping * sliding.rate + sliding.traction - problem.strength
-    resistance = Resistance(problem.friction, problem.body.damping, problem.normal, problem.law_slip)
+        return problem.body.total_damping * sliding.rate + sliding.traction - problem.strength
+    resistance = Resistance(problem.friction, problem.body.total_damping, problem.normal, problem.law_slip)
     excess = float(resistance.excess(abs(sliding.rate)))
     return excess if math.copysign(1.0, sliding.rate) > 0.0 else -excess - 2.0 * problem.strength
 

@@ -171,7 +171,7 @@ class SwingLeaps:
         speed, body = abs(problem.first_pull_rate), problem.body
         strength = Strength(problem, float(run.state.law_slip), sign, speed * problem.round_trip_time)
         seen = load if direction > 0 else -load - 2.0 * problem.strength
-        return SwingingBlock(strength, body.inertia, body.stiffness, body.damping, speed, seen)
+        return SwingingBlock(strength, body.inertia, body.stiffness, body.total_damping, speed, seen)
 
     def _allowed(self, slip: float) -> float:
         return self.tolerance * (self.slipped + abs(slip))

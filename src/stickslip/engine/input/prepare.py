@@ -114,7 +114,7 @@ def parameters_of(problem: Problem) -> Params:
         "healed_piece": int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1,
         "can_be_negative": 1.0 if law.can_be_negative else 0.0,
         "largest_drop": at_least(0.0, problem.strength - problem.normal * lowest),
-        "damping": body.damping,
+        "damping": body.total_damping,
         "impedance": body.impedance,
         "reflection": body.reflection,
         "inertia": body.inertia,
@@ -207,6 +207,9 @@ def loading_of(problem: Problem) -> at.Floats:
     segments.tone_phase = inflow.tone.phase
     segments.jump[1:] = np.diff(segments.reflection) != 0.0
     ground.put(segments, start)
+    for time, step in driver_of(problem).steps(problem):
+        segments.step[start == time] += step
+        segments.jump[start == time] = 1.0
     pulls = driver_of(problem).pulls(problem)
     columns = [("pressing", "pressing_rate"), *[("value", "slope")] * len(brought), *[("pull", "pull_slope")] * len(pulls)]
     for one, (value, slope) in zip((*parts, *pulls), columns, strict=True):

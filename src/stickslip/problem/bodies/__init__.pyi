@@ -5,6 +5,7 @@ from stickslip.problem.bodies.layered.slabs import LayeredSlab, TwoSlabs
 from stickslip.problem.bodies.layered.string import SectionedString
 from stickslip.problem.bodies.register import BODIES
 from stickslip.problem.bodies.rigid.blocks import RotatingBlock, SpringBlock, as_block
+from stickslip.problem.bodies.rigid.on_spring import as_on_spring
 from stickslip.problem.bodies.uniform.slab import ElasticSlab, as_slab
 from stickslip.problem.bodies.uniform.string import TorsionalString
 
@@ -23,6 +24,7 @@ __all__ = [
     "TorsionalString",
     "TwoSlabs",
     "as_block",
+    "as_on_spring",
     "as_slab",
     "as_waves",
     "has_dashpot",

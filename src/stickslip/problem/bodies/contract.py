@@ -51,7 +51,12 @@ class Body(Protocol):
 
     @property
     def damping(self) -> float:
-        """The load per slip rate by which the body resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        """The load per slip rate by which the body itself resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        ...
+
+    @property
+    def total_damping(self) -> float:
+        """The load per slip rate of all that resists slip (Pa s/m): `damping`, and a dashpot beside the spring of a block."""
         ...
 
     @property
@@ -93,9 +98,10 @@ class BodyOnCharacteristics(Body, Protocol):
 
     @property
     def driver_kind(self) -> str:
-        """The kind of driver (`stickslip.problem.drivers`): "spring" of a rigid body; of others "rigid", "lossy" or "machine".
+        """The kind of driver (`stickslip.problem.drivers`).
 
-        Of several drivers it is "rigid" only if all are.
+        It is "spring" or "spring_and_dashpot" of a rigid body; of others "rigid", "lossy" or "machine". Of several drivers it is
+        "rigid" only if all are.
         """
         ...
 

@@ -97,6 +97,10 @@ class Driver(ABC):
         """
         return inflow_of(problem).gathered(trip, offset, trips)
 
+    def steps(self, problem: Problem) -> list[tuple[float, float]]:
+        """Return the times (s) after the start at which the load of a rigid body jumps with the pull, and by how much (N)."""
+        return []
+
     def changes_within(self, problem: Problem) -> float:
         """Return the shortest time (s) in which a driver that moves changes by itself; inf for any other."""
         return math.inf

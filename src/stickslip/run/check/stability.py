@@ -21,7 +21,7 @@ def start_of(problem: Problem) -> str:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
-    rate = resolved(rate, problem.load, problem.body.damping)
+    rate = resolved(rate, problem.load, problem.body.total_damping)
     jump = f"; the slip rate jumps to {exactly(rate, slip_rate)}" if rate > 0.0 else ""
     if problem.load < -problem.strength:
         beyond = exactly(-problem.load - problem.strength, unit, 6)

@@ -6,6 +6,8 @@ stands in them.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
@@ -39,6 +41,30 @@ def pulled(problem: Problem, time: Floats) -> Floats:
     since = time - start[n]
     swung = 2.0 * amplitude / frequency * np.sin(0.5 * frequency * time) * np.sin(0.5 * frequency * time + phase)
     return np.asarray(whole[n] + since * (value[n] + 0.5 * slope[n] * since) + swung)
+
+
+def squared_pull(problem: Problem, time: Floats) -> Floats:
+    """Return the integral (m^2/s) of the square of the pull rate from the start to times (s >= 0)."""
+    if not isinstance(problem.pull_rate, LoadingHistory):
+        return np.asarray(problem.pull_rate * problem.pull_rate * time)
+    start, value, slope = np.array(problem.pull_rate.segments).T
+    amplitude, frequency, phase = problem.pull_rate.tone
+
+    def within(n: Any, since: Floats) -> Floats:
+        """Return the integral over the first `since` (s) of segments, with cos and sin at the start and at the end of that."""
+        line = value[n] + slope[n] * since
+        straight = since * (value[n] * line + slope[n] * slope[n] * since * since / 3.0)
+        begun = frequency * start[n] + phase
+        ended = begun + frequency * since
+        mixed = (
+            value[n] * np.cos(begun) - line * np.cos(ended) + slope[n] * (np.sin(ended) - np.sin(begun)) / frequency
+        ) / frequency
+        swung = 0.5 * since - 0.25 * (np.sin(2.0 * ended) - np.sin(2.0 * begun)) / frequency
+        return np.asarray(straight + amplitude * (2.0 * mixed + amplitude * swung))
+
+    whole = np.append(0.0, np.cumsum(within(np.arange(len(start) - 1), np.diff(start))))
+    n = np.maximum(np.searchsorted(start, time, side="right") - 1, 0)
+    return np.asarray(whole[n] + within(n, time - start[n]))
 
 
 def far_excess_at(problem: Problem, time: Floats, inside: Floats) -> Floats:

@@ -144,7 +144,9 @@ def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
     if history.problem.normal_load is not None and len(chosen) < len(moving):
         others = np.setdiff1d(moving, chosen)
         motion = MotionOnDiscs.of(history, others)  # friction is no larger than all that it balances
-        size = sum(np.abs(one).sum(axis=1) for one in (motion.load, history.problem.body.damping * motion.rate, motion.thrust))
+        size = sum(
+            np.abs(one).sum(axis=1) for one in (motion.load, history.problem.body.total_damping * motion.rate, motion.thrust)
+        )
         bound[others] += missed_growth(history, others) * size
     for some in np.array_split(chosen, len(chosen) // AT_ONCE + 1):
         seen, hidden, found = _bounds(history, some)
@@ -176,7 +178,7 @@ def _degree(store: Any, n: Places) -> Places:
 def _rounding_of_terms(history: History) -> Floats:
     """Return the rounding (Pa or N) of the terms of the contact equation, for each piece of a history."""
     store, problem = history.store, history.problem
-    size = problem.strength + np.abs(store.load).sum(axis=1) + problem.body.damping * np.abs(store.rate).sum(axis=1)
+    size = problem.strength + np.abs(store.load).sum(axis=1) + problem.body.total_damping * np.abs(store.rate).sum(axis=1)
     return np.asarray(POLYNOMIAL * np.where(store.mode != 0, size, 0.0))
 
 
@@ -287,7 +289,7 @@ def _with_duration(lacking: Disc, thrust: Disc, unsure: Floats) -> Disc:
 
 def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
     """Return g = Z v + S mu + m dv/dt - load (Pa or N) where the motion is in discs, by the formula of a piece of the law."""
-    law, damping, (slip, rate, load, thrust, states) = problem.contact_law, problem.body.damping, motion
+    law, damping, (slip, rate, load, thrust, states) = problem.contact_law, problem.body.total_damping, motion
     variables: dict[Expression, Disc] = dict(zip(VARIABLES, (slip, rate, *states), strict=False))
     mu = on_discs(law.trees()[piece], law.numbers(piece), variables)
     centre = damping * rate.centre + problem.normal * mu.centre + thrust.centre - load.centre

@@ -36,7 +36,7 @@ class LeapsOnSpring(SteadyLeaps):
 
     @override
     def least_slope(self, body: BodyOnCharacteristics) -> float:
-        return -body.damping
+        return -body.total_damping
 
     @override
     def last_slip(self, tried: Tried, energy: float) -> tuple[float, float]:
@@ -46,7 +46,7 @@ class LeapsOnSpring(SteadyLeaps):
 def _repeated(tried: Tried) -> Leap | None:
     """Return a leap of a block that swings with its own period, as if friction did not vary with the slip rate."""
     body, rate, turn, deviation = tried.body, tried.rate, tried.turn, tried.deviation
-    if body.damping or turn != body.round_trip_time:
+    if body.total_damping or turn != body.round_trip_time:
         return None
     end = float(deviation.rate[-1].sum())
     swing = math.hypot(end, deviation.end / math.sqrt(body.inertia * body.stiffness))  # of the slip rate

@@ -355,10 +355,8 @@ def measured(run: Solution, name: str, sensor: str, time: Floats, side: Side = "
         return run.slip_rate(time, side)
     if name == "drive_rate":
         return run.drive_rate(time, side)
-    if is_at_driver(name, sensor):
-        force = run.drive_traction(time, side)
-    else:
-        force = run.load(time, side) if sensor == "spring" else run.traction(time, side)
+    behind = is_at_driver(name, sensor) or sensor == "spring"
+    force = run.drive_traction(time, side) if behind else run.traction(time, side)
     return force / run.problem.normal_at(time) if name == "friction" else force
 
 

@@ -140,7 +140,7 @@ def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
     if not law.states or law.sticks or rate == 0.0 or not hasattr(law, "steady_coefficient"):
         unit = problem.unit_of("slip_rate")
         raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} {unit}: start='record'")
-    load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.damping * abs(rate)
+    load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.total_damping * abs(rate)
     none |= {"initial_load": math.copysign(load, rate), "initial_state": "steady"}
     return replace(problem, **rates, **none)
 

@@ -15,10 +15,13 @@ from stickslip.problem.bodies.rigid.on_spring import OnSpring
 
 @dataclass(frozen=True)
 class SpringBlock(Declared, OnSpring):
-    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
+    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N.
+
+    A dashpot beside the spring adds driver_damping (V - v) on the right.
+    """
 
     kind: ClassVar[str] = "spring-block"
-    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); damping and driver_damping are additions"
     load_unit: ClassVar[str] = "N"
     mass_field: ClassVar[str] = "mass"
 
@@ -26,6 +29,9 @@ class SpringBlock(Declared, OnSpring):
     stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
     normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+    driver_damping: Number = quantity(
+        "N s/m", "damping of a dashpot beside the spring, between block and driver", at_least=0, default=0.0
+    )
 
     def __post_init__(self) -> None:
         check_body(self)
@@ -41,7 +47,7 @@ class RotatingBlock(Declared, OnSpring):
     """A rigid body turned through a torsion spring: I dv/dt + damping v + tau = K (D0 + V t - u), with an angle u (rad).
 
     Loads and tractions are torques, in N m. The contact resists with the torque `normal_torque` mu: for a brake or a clutch that is
-    its clamping force times its effective radius.
+    its clamping force times its effective radius. A dashpot beside the spring adds driver_damping (V - v) on the right.
     """
 
     kind: ClassVar[str] = "rotating-block"
@@ -53,6 +59,9 @@ class RotatingBlock(Declared, OnSpring):
     stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)
     normal_torque: Number = quantity("N m", "torque of friction if mu is 1: clamping force times effective radius", above=0)
     damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
+    driver_damping: Number = quantity(
+        "N m s", "damping of a dashpot beside the spring, between body and driver", at_least=0, default=0.0
+    )
 
     def __post_init__(self) -> None:
         check_body(self)

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
 
+from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithNormalLoad
 
 LONGEST_ROUND_TRIP = 1e6
 """Largest number of periods (1) in a block's round trip."""
+
+
+class BodyOnSpring(BodyOnCharacteristics, Protocol):
+    """A rigid body on a spring."""
+
+    @property
+    def driver_damping(self) -> float:
+        """The damping of a dashpot between the body and the pulled end of its spring (N s/m)."""
+        ...
 
 
 class OnSpring(WithNormalLoad):
@@ -26,7 +36,8 @@ class OnSpring(WithNormalLoad):
     drivers: int = 1
     first_share: float = 1.0
     has_ground: bool = True
-    driver_kind: str = "spring"
+    driver_damping: float = 0.0
+    """Of a body that has no dashpot beside its spring."""
     echo_impedance: float = 0.0
     pulled_shares: ClassVar[list[float]] = [1.0]
     has_waves: ClassVar[bool] = False
@@ -42,6 +53,16 @@ class OnSpring(WithNormalLoad):
     inflow_delay: ClassVar[float] = 0.0
     time_to_driver: ClassVar[float] = 0.0
     fastest_rate: ClassVar[float] = math.inf
+
+    @property
+    def driver_kind(self: BodyOnSpring) -> str:
+        """The kind of driver: "spring_and_dashpot" if there is a dashpot beside the spring, else "spring"."""
+        return "spring_and_dashpot" if anywhere(self.driver_damping) else "spring"
+
+    @property
+    def total_damping(self: BodyOnSpring) -> float:
+        """The viscous resistance to slip of the ground and of the driver (N s/m)."""
+        return self.damping + self.driver_damping
 
     @property
     def last_impedance(self: BodyOnCharacteristics) -> float:
@@ -102,3 +123,8 @@ class OnSpring(WithNormalLoad):
         """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
         found: float = np.sqrt(self.stiffness * self.inertia)
         return found
+
+
+def as_on_spring(body: BodyOnCharacteristics) -> BodyOnSpring:
+    """Return a body that must be a rigid one, as one on a spring, with the numbers that only such a body has."""
+    return cast(BodyOnSpring, body)

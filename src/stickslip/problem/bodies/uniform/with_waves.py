@@ -31,6 +31,11 @@ class WithWaves(WithNormalLoad):
         return self.impedance
 
     @property
+    def total_damping(self: BodyWithWaves) -> float:
+        """The damping (Pa s/m): no dashpot leads past the waves to the driver."""
+        return self.damping
+
+    @property
     def two_way_time(self: BodyWithWaves) -> float:
         """The two-way travel time R = 2 h / c (s)."""
         return 2.0 * self.distance / self.wave_speed

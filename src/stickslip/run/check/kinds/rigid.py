@@ -6,9 +6,9 @@ import cmath
 import math
 
 from stickslip.foundation.names import si_unit
-from stickslip.problem import Problem
-from stickslip.problem.bodies import BodyOnCharacteristics
-from stickslip.run.check.asked import CheckOfKind
+from stickslip.problem import Problem, loading_rate
+from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
+from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind
 from stickslip.run.check.facts import Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 
@@ -18,22 +18,25 @@ class _CheckOfRigid(CheckOfKind):
         """Return period, impedance and rate of loading."""
         body, first = problem.body, ", at first" if problem.loading_varies else ""
         size = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
-        rate, unit = body.stiffness * problem.first_pull_rate, problem.unit_of("load_rate")
+        loads = "K V + c dV/dt" if problem.loading_varies and as_on_spring(body).driver_damping else "K V"
+        rate, unit = loading_rate(problem), problem.unit_of("load_rate")
         return [
             Fact("period", body.round_trip_time, "s", "period 2 pi sqrt(m/K) of free oscillation"),
             Fact("sqrt(K m)", size, problem.unit_of("impedance"), f"impedance of the {body.noun}, in place of Z"),
-            Fact("K V", rate, unit, f"rate of loading while stuck{first}"),
+            Fact(loads, rate, unit, f"rate of loading while stuck{first}"),
+            *CHECK_DRIVERS[problem.driver_kind].facts(problem, ""),
         ]
 
     def stability(self, problem: Problem, by_slip: float, by_rate: float) -> str:
         """Return whether spring and friction hold a small swing, and whether damping and friction end it."""
         body = problem.body
-        spring, dash = body.stiffness + body.normal_load * by_slip, body.damping + body.normal_load * by_rate
+        spring, dash = body.stiffness + body.normal_load * by_slip, body.total_damping + body.normal_load * by_rate
         swings = cmath.sqrt(dash * dash - 4 * body.inertia * spring)
         fastest = max((-dash + sign * swings for sign in (1, -1)), key=lambda root: root.real)
         growth = fastest / (2 * body.inertia)
         stiffness, impedance = si_unit("stiffness", body.load_unit), si_unit("impedance", body.load_unit)
-        values = f"K + S mu'(u) = {spring:.6g} {stiffness}, damping + S mu'(v) = {dash:.6g} {impedance}"
+        damping = "damping + driver_damping" if as_on_spring(body).driver_damping else "damping"
+        values = f"K + S mu'(u) = {spring:.6g} {stiffness}, {damping} + S mu'(v) = {dash:.6g} {impedance}"
         if spring < 0 or (growth.real > 0 and growth.imag == 0):
             return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
         if growth.real > 0:
@@ -42,7 +45,7 @@ class _CheckOfRigid(CheckOfKind):
 
     def critical_stiffness(self, body: BodyOnCharacteristics, sliding: SteadySliding) -> tuple[str, float] | None:
         """Return the stiffness of the spring beside the one that mass and damping ask for."""
-        return "stiffness K", sliding.critical_stiffness(body.inertia, body.damping)
+        return "stiffness K", sliding.critical_stiffness(body.inertia, body.total_damping)
 
 
 ANSWERS = _CheckOfRigid()

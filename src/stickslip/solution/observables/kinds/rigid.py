@@ -1,6 +1,13 @@
-"""What a finished run of a rigid body on a spring says: its driver is the end of the spring, and nothing travels inside."""
+"""What a finished run of a rigid body on a spring says: its driver is the end of the spring, and nothing travels inside.
+
+Beside the spring there may be a dashpot, which takes c (V - v) of the force of the driver, with the pull rate V and the slip rate
+v. The load of the engine has c V in it, and c v is with what damps slip.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -8,10 +15,11 @@ from stickslip.engine import History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
+from stickslip.problem.bodies import as_on_spring
 from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Field, FollowedFronts, LoadCompared, ObservablesOfKind
 from stickslip.solution.observables.energy.balance import heat
 from stickslip.solution.observables.field import NO_INSIDE, rounding
-from stickslip.solution.observables.given_load import of_ground, pulled
+from stickslip.solution.observables.given_load import of_ground, pulled, squared_pull, value_at
 from stickslip.solution.observables.proof import Places
 from stickslip.solution.observables.proof_of_load import compared_in_steps, times_in
 from stickslip.solution.observables.quadrature import Integrand, between, up_to
@@ -25,15 +33,15 @@ class ObservablesOfRigid(ObservablesOfKind):
         problem = history.problem
         body = problem.body
         force, rate = spring_force(history, at), history.rate(at)
-        spring = _stretching(history, np.full(len(force), problem.excess), force)
-        slipping = np.flatnonzero(history.store.mode)
+        first = problem.excess - as_on_spring(body).driver_damping * problem.first_pull_rate
+        spring = _stretching(history, np.full(len(force), first), force)
         return {
             "work": up_to(history, at, _pulling(history), nodes=nodes) + _at_rest(history, at),
             "stored": spring + 0.5 * body.inertia * rate**2,
             "elastic": spring,
             "kinetic": 0.5 * body.inertia * rate**2,
             "heat": heat(history, at, nodes),
-            "damped": up_to(history, at, _damping(history), slipping, nodes=nodes) if body.damping else np.zeros(len(force)),
+            "damped": _damped(history, at, nodes),
             "radiated": np.zeros(len(force)),
             "trapped": np.zeros(len(force)),
         }
@@ -60,11 +68,11 @@ class ObservablesOfRigid(ObservablesOfKind):
         """Return None: there are no waves."""
 
     def at_driver(self, history: History, time: Floats, side: Side) -> AtDriver:
-        """Return the rate at which the end of the spring is pulled, and the force of the spring."""
+        """Return the rate at which the end of the spring is pulled, and the force there: that of spring and dashpot."""
         begun = history.epoch.trip * history.round_trip_time + history.epoch.offset
         slack = rounding(time, history.round_trip_time) * (1.0 if side == "left" else -1.0)
         rate = history.problem.pull_rate_at(np.maximum(begun + time - slack, 0.0))
-        return AtDriver(np.asarray(rate, float), history.problem.strength + spring_force(history, history.find(time, side)))
+        return AtDriver(np.asarray(rate, float), history.problem.strength + driver_force(history, history.find(time, side)))
 
     def field(self, history: History, at_contact: AtContact, place: Floats, time: Floats, side: Side) -> Field:
         """Raise InputError: there is nothing inside."""
@@ -84,9 +92,26 @@ class ObservablesOfRigid(ObservablesOfKind):
 
 
 def spring_force(history: History, at: Positions) -> Floats:
-    """Return the force of the spring minus the reference strength (N): the load without the inertia of moving ground."""
+    """Return the force of the spring minus the reference strength (N)."""
+    force, damping = _held(history, at), as_on_spring(history.problem.body).driver_damping
+    return force - damping * _pull_rate(history, at) if damping else force
+
+
+def driver_force(history: History, at: Positions) -> Floats:
+    """Return the force of the driver minus the reference strength (N): that of the spring, and of a dashpot beside it."""
+    force, damping = _held(history, at), as_on_spring(history.problem.body).driver_damping
+    return force - damping * history.rate(at) if damping else force
+
+
+def _held(history: History, at: Positions) -> Floats:
+    """Return the load minus the reference strength (N) without the inertia of moving ground."""
     force = history.excess(at)
     return force if history.problem.ground is None else np.where(at.before, force, force + _pushing(history, at))
+
+
+def _pull_rate(history: History, at: Positions) -> Floats:
+    """Return the pull rate (m/s) at positions, at a jump that of the piece in which they are."""
+    return value_at(history.problem.pull_rate, *history.times_inside(at))
 
 
 def _pushing(history: History, at: Positions) -> Floats:
@@ -101,21 +126,31 @@ def _pulling(history: History) -> Integrand:
 
     def power(at: Positions) -> Floats:
         trip, offset = history.placed(at)
-        pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + spring_force(history, at))
+        pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + driver_force(history, at))
         return np.asarray(pulling if problem.ground is None else pulling - _pushing(history, at) * history.rate(at))
 
     return power
 
 
 def _at_rest(history: History, at: Positions) -> Floats:
-    """Return the work of the driver up to each position in rests that were not recorded, J: the spring has stored it."""
-    trip = history.store.trip
-    before = np.flatnonzero(np.diff(trip) > 1)  # the last pieces before leaps
-    force, left = (spring_force(history, Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
-    whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
-    last = spring_force(history, Positions.inside(at.last, 1.0))
-    part = np.where(at.at_rest, _stretching(history, last, spring_force(history, at)), 0.0)
+    """Return the work of the driver up to each position in rests that were not recorded, J.
+
+    The spring has stored it, but for what a dashpot has taken.
+    """
+    return _in_rests(history, at, partial(_stored, history)) + _damped_at_rest(history, at)
+
+
+def _in_rests(history: History, at: Positions, gained: Callable[[Positions, Positions], Floats]) -> Floats:
+    """Return the sum of what is gained from position to position, up to each position in rests that were not recorded."""
+    before = np.flatnonzero(np.diff(history.store.trip) > 1)  # the last pieces before leaps
+    whole = np.append(0.0, np.cumsum(gained(Positions.inside(before, 1.0), Positions.inside(before + 1, 0.0))))
+    part = np.where(at.at_rest, gained(Positions.inside(at.last, 1.0), at), 0.0)
     return np.asarray(whole[np.searchsorted(before, at.last)] + part)
+
+
+def _stored(history: History, begin: Positions, end: Positions) -> Floats:
+    """Return the energy (J) that the spring gains between pairs of positions."""
+    return _stretching(history, spring_force(history, begin), spring_force(history, end))
 
 
 def _stretching(history: History, force: Floats, later: Floats) -> Floats:
@@ -126,19 +161,43 @@ def _stretching(history: History, force: Floats, later: Floats) -> Floats:
 
 def _damping(history: History) -> Integrand:
     """Return the power that the damping dissipates as a function of positions, W."""
-    damping = history.problem.body.damping
-    return lambda at: damping * history.rate(at) ** 2
+    damping, dashpot = history.problem.body.damping, as_on_spring(history.problem.body).driver_damping
+    if not dashpot:
+        return lambda at: damping * history.rate(at) ** 2
+    return lambda at: damping * history.rate(at) ** 2 + dashpot * (_pull_rate(history, at) - history.rate(at)) ** 2
+
+
+def _damped(history: History, at: Positions, nodes: int) -> Floats:
+    """Return what the damping has dissipated up to each position, J: that against the ground, and a dashpot beside the spring."""
+    body = as_on_spring(history.problem.body)
+    if not body.total_damping:
+        return np.zeros(len(at.piece))
+    pieces = None if body.driver_damping else np.flatnonzero(history.store.mode)
+    return up_to(history, at, _damping(history), pieces, nodes=nodes) + _damped_at_rest(history, at)
+
+
+def _damped_at_rest(history: History, at: Positions) -> Floats:
+    """Return what a dashpot beside the spring has dissipated up to each position in rests that were not recorded, J."""
+    problem, damping = history.problem, as_on_spring(history.problem.body).driver_damping
+    if not damping:
+        return np.zeros(len(at.piece))
+
+    def gained(begin: Positions, end: Positions) -> Floats:
+        low, high = (history.times_inside(one)[0] for one in (begin, end))
+        return np.asarray(damping * (squared_pull(problem, high) - squared_pull(problem, low)))
+
+    return _in_rests(history, at, gained)
 
 
 def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
-    """Return the load minus the reference strength (N): that of the spring, and inertia on moving ground."""
+    """Return the load minus the reference strength (N): that of spring and dashpot, and inertia on moving ground."""
     problem = history.problem
     _, _, time, inside = times_in(history, piece, xi)
     slip = history.slipped(Positions.inside(piece, xi))
     _, acceleration = of_ground(problem, time, inside)
-    return np.asarray(
-        problem.excess + problem.body.stiffness * (pulled(problem, time) - slip) - problem.body.inertia * acceleration
-    )
+    spring = problem.excess + problem.body.stiffness * (pulled(problem, time) - slip)
+    gained = value_at(problem.pull_rate, time, inside) - problem.first_pull_rate
+    return np.asarray(spring + as_on_spring(problem.body).driver_damping * gained - problem.body.inertia * acceleration)
 
 
 ANSWERS = ObservablesOfRigid()

@@ -37,7 +37,7 @@ class _FittedRigid(FittedKind):
         """Return 1 without damping, and less with it, if the record shows the stiffness and that of the problem is not free."""
         if "body.stiffness" in names or not math.isfinite(cycles.rise):
             return 1.0
-        ratio = min(body.damping / (2.0 * math.sqrt(body.inertia * cycles.rise)), 0.99)
+        ratio = min(body.total_damping / (2.0 * math.sqrt(body.inertia * cycles.rise)), 0.99)
         return math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
 
     def shown(self, problem: Problem, part: Part, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:

@@ -1,0 +1,60 @@
+"""A spring and a dashpot side by side (Kelvin-Voigt), whose far end is pulled: a rigid body feels K (D - u) + c (V - v).
+
+Here D is how far the end has been pulled, V = dD/dt, and u and v are slip and slip rate. The load of the engine is K (D - u) + c V,
+and c resists slip with the damping against the ground (`Body.total_damping`). So the load grows by K V + c dV/dt, and jumps by c
+times the jump where V jumps. At the start it is given with c V in it: it is what the contact feels while it rests.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stickslip.problem.bodies.rigid.on_spring import as_on_spring
+from stickslip.problem.drivers.segments import arriving, scaled
+from stickslip.problem.drivers.spring import InflowOfSpring, Spring
+from stickslip.problem.fields import ProblemFields
+from stickslip.problem.inflow import Inflow
+from stickslip.problem.loading import SILENT, LoadingHistory, Segment, Tone
+from stickslip.problem.problem import Problem
+
+SAME = 1e-14
+"""A change of the pull rate below this share of the largest one (1) is rounding and no jump."""
+
+
+class SpringAndDashpot(Spring):
+    """What the far end of a spring with a dashpot beside it answers."""
+
+    def varying_inflow(self, problem: Problem) -> Inflow:
+        """Return the growth of the load (N/s), K V + c dV/dt; the jumps of V are `steps`."""
+        stiffness, damping = problem.body.stiffness, as_on_spring(problem.body).driver_damping
+        pull, tone = scaled(problem.pull_rate, 1.0)
+        segments = [Segment(s.start, stiffness * s.value + damping * s.slope, stiffness * s.slope) for s in pull]
+        if tone is not SILENT:
+            amplitude, frequency, phase = tone
+            by_rate = damping * frequency
+            tone = Tone(amplitude * math.hypot(stiffness, by_rate), frequency, phase + math.atan2(by_rate, stiffness))
+        return arriving(segments, tone, 0.0, problem, InflowOfSpring)
+
+    def loading_rate(self, problem: ProblemFields) -> float:
+        """Return K V + c dV/dt at the start (N/s)."""
+        found, pull = super().loading_rate(problem), problem.pull_rate
+        if not isinstance(pull, LoadingHistory):
+            return found
+        amplitude, frequency, phase = pull.tone
+        grows = pull.segments[0].slope + amplitude * frequency * math.cos(phase)
+        return found + as_on_spring(problem.body).driver_damping * grows
+
+    def steps(self, problem: Problem) -> list[tuple[float, float]]:
+        """Return the times (s) at which V jumps, and c times its jumps (N)."""
+        if not isinstance(problem.pull_rate, LoadingHistory):
+            return []
+        start, value, slope = np.array(problem.pull_rate.segments).T
+        jump = value[1:] - (value[:-1] + slope[:-1] * np.diff(start))
+        jump[np.abs(jump) <= SAME * np.abs(value).max()] = 0.0
+        force = as_on_spring(problem.body).driver_damping * jump
+        return [(time, step) for time, step in zip(start[1:].tolist(), force.tolist(), strict=True) if step != 0.0]
+
+
+ANSWERS = SpringAndDashpot()
