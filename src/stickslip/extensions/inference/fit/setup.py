@@ -173,7 +173,8 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
     if not reach > 0.0:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
     times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
-    return {**times, TREND: 0.1 / reach, DRIFT: 0.1 / part.duration, "initial.slip": 0.1 * reach, "body.damping": 1.0}
+    damping = {"body.damping": 1.0, "body.contact_damping": 0.1 * problem.body.impedance}
+    return {**times, TREND: 0.1 / reach, DRIFT: 0.1 / part.duration, "initial.slip": 0.1 * reach, **damping}
 
 
 def at_rests(part: Part) -> list[Part]:

@@ -28,6 +28,7 @@ class OnSpring(WithNormalLoad):
     has_ground: bool = True
     driver_kind: str = "spring"
     echo_impedance: float = 0.0
+    dashpot: float = 0.0
     pulled_shares: ClassVar[list[float]] = [1.0]
     has_waves: ClassVar[bool] = False
     is_uniform: ClassVar[bool] = True
