@@ -25,13 +25,15 @@ STATE_FALLS = (
     "mass goes on. The selection rule ({rule}) has no effect."
 )
 
+WITH_DASHPOT = " Here Z is that of the waves and the dashpot of the contact together."
+
 
 def summary_of(
     problem: Problem, g: Resistance, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]
 ) -> str:
     """Return a paragraph that summarises the result for the user."""
     law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
-    bound, taken = "", "(Z + D) v, with the dashpot D," if problem.body.dashpot else "Z v"
+    bound = ""
     if critical:
         found = problem.parameters[critical[0]]
         there, here = (brief(value, found.unit, 9) for value in (critical[1], found.value))
@@ -40,7 +42,7 @@ def summary_of(
         reason = "friction does not depend on the slip rate and the impedance Z is positive"
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
     if window is None:
-        reason = f"the resistance {taken} + S mu(v) rises with the slip rate everywhere"
+        reason = "the resistance Z v + S mu(v) rises with the slip rate everywhere"
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
     unit, rate = problem.load_unit, problem.unit_of("slip_rate")
     flat = "; ".join(
