@@ -107,7 +107,7 @@ def test_parameters_are_found_with_name_unit_and_value() -> None:
         ("static", "is ambiguous: give one of friction.slip.static, friction.rate.static"),
         ("alfa", "parameter 'alfa' is unknown; did you mean 'alpha'?"),
         ("friction.alpha", "did you mean 'friction.rate.alpha'?"),
-        ("", "parameter '' is unknown; allowed: body.contact_mass, body.density"),
+        ("", "parameter '' is unknown; allowed: body.contact_damping, body.contact_mass"),
     ],
 )
 def test_names_that_fit_none_or_several_are_refused(name: str, message: str) -> None:

@@ -14,14 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.drive import SteadyDrive
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.bodies import OfLayers
+from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.problem.bodies.layered.layers import Layers
 
 Complex = NDArray[np.complex128]
@@ -179,13 +179,16 @@ def taken_by_layers(body: OfLayers) -> float:
 def growth_on_layers(body: OfLayers, weakening: float) -> float:
     """Return the growth rate (1/s) of a perturbation of layers that rest under friction falling with slip, by -S mu'(u) (Pa/m).
 
-    It is the root of s W(s) + m_c s^2 = -S mu'(u), which grows with s from the stiffness on; 0 if the layers are stiffer.
+    It is the root of s (W(s) + D) + m_c s^2 = -S mu'(u), with the dashpot D, which grows with s from the stiffness on; 0 if the
+    layers are stiffer.
     """
     from scipy.optimize import brentq  # here, because it takes a quarter of a second to import
 
+    dashpot = cast(BodyOnCharacteristics, body).dashpot
+
     def miss(s: float) -> float:
         above, below = response_of(body, np.array([s], complex))
-        return s * float((above[0] / below[0]).real) + body.inertia * s * s - weakening
+        return s * (float((above[0] / below[0]).real) + dashpot) + body.inertia * s * s - weakening
 
     slow, fast = 1e-9 / body.two_way_time, 2.0 * weakening / body.impedance
     while miss(fast) < 0.0:

@@ -22,7 +22,15 @@ from stickslip.contact.regime import Regime, named_regime, proof_of, window_of
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.contact.slopes import FASTEST
-from stickslip.contact.uniqueness_in_words import INERTIA, MOST_SHOWN, STATE, STATE_FALLS, said_of_pressing, summary_of
+from stickslip.contact.uniqueness_in_words import (
+    INERTIA,
+    MOST_SHOWN,
+    STATE,
+    STATE_FALLS,
+    WITH_DASHPOT,
+    said_of_pressing,
+    summary_of,
+)
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -267,7 +275,10 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     return Uniqueness(
         regime=named_regime(g, window),
         rule=problem.rule,
-        summary=summary_of(problem, g, critical, window, jumps) + sentence(g, proof, folds) + said_of_pressing(problem, g),
+        summary=summary_of(problem, g, critical, window, jumps)
+        + sentence(g, proof, folds)
+        + said_of_pressing(problem, g)
+        + WITH_DASHPOT * bool(problem.body.dashpot),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
         critical_unit=problem.parameters[critical[0]].unit if critical else "",

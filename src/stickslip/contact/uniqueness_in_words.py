@@ -25,6 +25,8 @@ STATE_FALLS = (
     "mass goes on. The selection rule ({rule}) has no effect."
 )
 
+WITH_DASHPOT = " Here Z is that of the waves and the dashpot of the contact together."
+
 
 def summary_of(
     problem: Problem, g: Resistance, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]

@@ -262,7 +262,7 @@ ENERGY_NAMES = {
     "elastic": "elastic energy",
     "kinetic": "kinetic energy, with those of a contact mass and of the driver's mass",
     "heat": "friction heat, from the law",
-    "damped": "dissipated by the damping of a block, or the drag of layers",
+    "damped": "dissipated by damping of block or contact, or drag of layers",
     "radiated": "energy radiated through a driver of finite impedance; work is net of it",
     "balance": "work - stored - heat - damped: zero for an exact solution",
     "trapped": "energy of the waves inside the body, beyond a state of uniform stress",

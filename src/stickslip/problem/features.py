@@ -28,6 +28,7 @@ DRIVEN_BY_MACHINE = Feature(MACHINE, "set driver_inertia and driver_integral_gai
 DRIVER_THAT_CHANGES = Feature("a driver that changes", "leave driver_reflection out", "driver_changes")
 NORMAL_LOAD_THAT_VARIES = Feature("a normal_load that varies", "leave it out, or simulate the Problem", "normal_varies")
 MOVING_GROUND = Feature("ground that moves", "leave it out", "ground")
+DASHPOT = Feature("a dashpot at the contact", "set contact_damping to 0", "body.dashpot")
 ONE_WAY = Feature("one_way", "leave it out", "one_way")
 
 

@@ -24,7 +24,7 @@ ROUGH = ss.Problem(SLAB, ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-3), initi
     ("problem", "message"),
     [
         (replace(STILL, body=MACHINE), r".*mass or an integral gain is followed in 1D only"),
-        (replace(STILL, body=DAMPED), r"PlanarSlab: the damping of this SlabWithDashpot is not its impedance"),
+        (replace(STILL, body=DAMPED), r"PlanarSlab: a dashpot at the contact is followed in 1D only: set contact_damping to 0$"),
         (ss.load_scenario("drill-string").problem, r"PlanarSlab: body must be .*: a string is a line$"),
         (FREED, r"PlanarSlab: a driver that changes is followed in 1D only: leave driver_reflection"),
         (SHAKEN, r"PlanarSlab: ground that moves is followed at one place only: leave it out$"),

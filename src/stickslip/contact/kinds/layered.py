@@ -32,8 +32,9 @@ class ContactOfLayers(ContactOfKind[BodyOnCharacteristics, LayerModes]):
         return LayerModes(of_contact(body, normal, response), below, _layers(body), PATIENT if patient else MOST_PIECES)
 
     def steady_drive(self, body: BodyOnCharacteristics) -> SteadyDrive:
-        """Return what drivers and drag do together, while all of a side moves alike."""
-        return driven_steadily(_layers(body))
+        """Return what drivers and drag do together, while all of a side moves alike, and a dashpot at the contact beside them."""
+        drive = driven_steadily(_layers(body))
+        return drive._replace(resists=drive.resists + body.dashpot)
 
     def not_sought(self, body: BodyOnCharacteristics) -> str:
         """Return that it is not sought behind a machine."""
@@ -44,9 +45,9 @@ class ContactOfLayers(ContactOfKind[BodyOnCharacteristics, LayerModes]):
         """Return what a dashpot takes behind rigid drivers, and otherwise what is found that drivers and drag take, too."""
         rigid = body.is_driven_rigidly
         if rigid and not _layers(body).has_drag:
-            fall = body.damping - body.impedance
+            fall = body.dashpot
         elif body.has_inertia:
-            fall = self.largest_fall(body, normal, _surely_falls(_layers(body)))
+            fall = self.largest_fall(body, normal, body.dashpot + _surely_falls(_layers(body)))
         else:
             fall = self._without_mass(body, normal)
         return Withstood(fall, rigid)
@@ -56,7 +57,7 @@ class ContactOfLayers(ContactOfKind[BodyOnCharacteristics, LayerModes]):
 
         A count decides nothing where a root is as good as on the axis, so it is made a little below.
         """
-        found = taken_by_layers(_layers(body))
+        found = body.dashpot + taken_by_layers(_layers(body))
         if found == 0.0 or self.withstands(body, normal, found * (1.0 - BELOW)):
             return found
         return self.largest_fall(body, normal, found)

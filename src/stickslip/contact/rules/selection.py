@@ -171,7 +171,8 @@ def load_bound(problem: Problem, g: Resistance) -> float:
     With r <= 1 the share of a wave that the driver sends back, the load of one round trip follows from that before by
     load' = r (2 Z v - load) + c, with a constant c: see paper eq. (13). Let V be the slip rate without friction, Z V = c / (1 - r).
     Then load' - Z V = r (Z (v - V) - friction), where Z (v - V) + friction = load - Z V, and v has the sign of friction: the
-    distance |load - Z V| does not grow, or is at most |Z V| plus the largest friction, if v lies between 0 and V.
+    distance |load - Z V| does not grow, or is at most |Z V| plus the largest friction, if v lies between 0 and V. A dashpot at the
+    contact adds to friction.
     """
     body, far = problem.body, problem.load if problem.far_stress is None else problem.far_stress
     rigid = problem.is_driven_rigidly
@@ -179,7 +180,7 @@ def load_bound(problem: Problem, g: Resistance) -> float:
         return math.inf
     freely = problem.first_pull_rate + (0.0 if rigid else float(far) / body.driver_impedance)  # type: ignore[arg-type] # constant here
     apart = abs(problem.load) + 3.0 * body.impedance * max(abs(problem.first_pull_rate), abs(freely))
-    return body.impedance * abs(freely) + max(apart, body.impedance * abs(freely) + g.largest_friction)
+    return body.impedance * abs(freely) + max(apart, (body.impedance + body.dashpot) * abs(freely) + g.largest_friction)
 
 
 def table_of(problem: Problem, g: Resistance, stable: Branches) -> SelectionTable:

@@ -18,7 +18,7 @@ from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, wi
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
 from stickslip.problem import Problem, check_problem, features
-from stickslip.problem.bodies import ElasticSlab, has_dashpot
+from stickslip.problem.bodies import ElasticSlab
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solution import PlanarSolution
@@ -34,6 +34,7 @@ OTHER_BODIES = {
 }
 """Why a contact has no other body than a slab, by the structure of that body."""
 NOT_FOLLOWED = {
+    features.DASHPOT: "is followed in 1D only",
     features.DRIVEN_BY_MACHINE: "is followed in 1D only",
     features.NORMAL_LOAD_THAT_VARIES: "is not followed along a contact",
     features.DRIVER_THAT_CHANGES: "is followed in 1D only",
@@ -126,9 +127,6 @@ class PlanarSlab(CheckedArguments):
             raise InputError(f"PlanarSlab: body must be an ElasticSlab, got {shown(problem.body)}: {why}")
         if problem.body.contact_mass != 0.0:
             raise InputError("PlanarSlab: contact_mass must be 0: the contact equation is solved without inertia")
-        if has_dashpot(problem.body):
-            name = type(problem.body).__name__
-            raise InputError(f"PlanarSlab: the damping of this {name} is not its impedance, which the solver takes it for")
         features.refuse("PlanarSlab", problem, NOT_FOLLOWED)
         if law.reverses:
             raise InputError(

@@ -21,7 +21,7 @@ from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem import Problem, features
-from stickslip.problem.bodies import ElasticSlab, as_slab, has_dashpot
+from stickslip.problem.bodies import ElasticSlab, as_slab
 
 _ALL: tuple[Scheme, ...] = (
     Characteristics(),
@@ -174,10 +174,9 @@ def check_suitable(problem: Problem) -> None:
     slab = _slab_of(problem)
     if slab.has_inertia:
         raise InputError(f"schemes: a contact_mass of {slab.contact_mass:g} kg/m^2 is not in the schemes: set it to 0")
-    if has_dashpot(slab):
-        raise InputError(f"schemes: the damping of this {type(slab).__name__} is not its impedance, which the schemes take it for")
     missing = "is not in the schemes"
-    features.refuse("schemes", problem, {features.DRIVEN_BY_MACHINE: missing, features.DRIVER_THAT_CHANGES: missing})
+    first = features.DASHPOT, features.DRIVEN_BY_MACHINE, features.DRIVER_THAT_CHANGES
+    features.refuse("schemes", problem, dict.fromkeys(first, missing))
     if problem.varies:
         raise InputError(
             "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones"

@@ -1,5 +1,5 @@
 # The bodies, and what their kinds share.
-from stickslip.problem.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
+from stickslip.problem.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves
 from stickslip.problem.bodies.layered.of_layers import OfLayers
 from stickslip.problem.bodies.layered.slabs import LayeredSlab, TwoSlabs
 from stickslip.problem.bodies.layered.string import SectionedString
@@ -27,5 +27,4 @@ __all__ = [
     "as_on_spring",
     "as_slab",
     "as_waves",
-    "has_dashpot",
 ]

@@ -51,7 +51,7 @@ class Body(Protocol):
 
     @property
     def damping(self) -> float:
-        """The load per slip rate by which the body itself resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        """The load per slip rate by which the body itself resists slip (Pa s/m): by radiation of waves, by viscosity, or both."""
         ...
 
     @property
@@ -194,6 +194,14 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def dashpot(self) -> float:
+        """The load per slip rate that the contact of a body with waves takes beside friction and its waves (Pa s/m); 0 of others.
+
+        The `damping` of a rigid body stands for what waves would take.
+        """
+        ...
+
+    @property
     def echo_impedance(self) -> float:
         """The impedance (Pa s/m) with which slip comes back as load after a round trip: Z, and 0 of a rigid body."""
         ...
@@ -233,11 +241,6 @@ MACHINE = "a driver with a mass or an integral gain"
 """Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
 
 
-def has_dashpot(body: BodyOnCharacteristics) -> bool:
-    """Return True if the contact of a body with waves resists slip by another damping than its waves, whose damping is Z."""
-    return body.has_waves and body.damping != body.impedance
-
-
 def check_body(body: BodyOnCharacteristics) -> None:
     """Check the fields of a body. Its normal load is one number, whereas a history belongs to the problem."""
     normal = KINDS[body.load_unit].normal
@@ -273,6 +276,11 @@ class BodyWithWaves(BodyOnCharacteristics, Protocol):
     @property
     def two_way_time(self) -> float:
         """The two-way travel time R = 2 h / c (s)."""
+        ...
+
+    @property
+    def contact_damping(self) -> float:
+        """The load per slip rate that a dashpot at the contact takes, beside friction (Pa s/m)."""
         ...
 
     @property

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from stickslip.problem.bodies import has_dashpot
 from stickslip.problem.drivers.driver import DRIVERS
 from stickslip.problem.leaps.asked import LeapsOfBody, Over, what_changes
 from stickslip.problem.problem import Problem
@@ -22,8 +21,8 @@ class LeapsOfUniform(LeapsOfBody):
             return missing
         if body.has_inertia:
             return f"a contact without mass (no {body.mass_field})"
-        if has_dashpot(body):
-            return f"a contact that waves alone damp (the damping of this {type(body).__name__} is not its impedance)"
+        if body.dashpot:
+            return "a contact that waves alone damp (no contact_damping)"
         if law.states or law.depends_on_rate:
             return f"a friction law of slip alone, or one without slip ({type(law).__name__} is neither)"
         if law.memory != "all":
@@ -34,7 +33,7 @@ class LeapsOfUniform(LeapsOfBody):
 
     def averages(self, problem: Problem) -> bool:
         """Return True under a rigid driver, if waves alone damp the contact."""
-        return problem.body.is_driven_rigidly and not has_dashpot(problem.body)
+        return problem.body.is_driven_rigidly and not problem.body.dashpot
 
     def why_not_lumped(self, problem: Problem) -> str:
         """Return whether the driver gives way or the loading varies."""

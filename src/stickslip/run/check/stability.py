@@ -90,6 +90,8 @@ def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     found = CHECK_KINDS[body.structure].critical_stiffness(body, sliding)
     if found is None:
-        return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} {unit}{under}"
+        formula = "(S (b - a) - D V) / Dc" if body.dashpot else "S (b - a) / Dc"
+        critical = sliding.critical_stiffness(damping=body.dashpot)
+        return f"critical stiffness of slow sliding {formula} = {critical:.6g} {unit}{under}"
     text, critical = found
     return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}{under}"

@@ -48,6 +48,11 @@ class CheckOfWaves(CheckOfKind):
         """Return a warning about disturbances that echoes amplify, where it is known by how much."""
         return []
 
+    def resisted(self, problem: Problem) -> list[Fact]:
+        """Return the dashpot that resists slip beside friction and waves, if there is one."""
+        body, unit = problem.body, problem.unit_of("impedance")
+        return [Fact("D", body.dashpot, unit, "dashpot at the contact, beside friction and Z")] if body.dashpot else []
+
     def pulses(self, problem: Problem) -> list[Fact]:
         """Return the period of pulses, if the load carries the contact over the maxima of friction along slip.
 
@@ -107,7 +112,7 @@ class CheckOfWaves(CheckOfKind):
         """Return the stiffness of a body that is held, beside that of slow sliding; with a mass at the contact none is known."""
         if CHECK_DRIVERS[body.driver_kind].not_held or body.has_inertia:
             return None
-        return f"stiffness{self.symbol_of_stiffness(body)}", sliding.critical_stiffness()
+        return f"stiffness{self.symbol_of_stiffness(body)}", sliding.critical_stiffness(damping=body.dashpot)
 
     def warnings(self, scenario: Scenario, contact: Uniqueness) -> list[str]:
         """Return what a user should know of strain, echoes, rest, and of several slip rates at one load."""

@@ -99,6 +99,9 @@ class CoulombSlab:
     dynamic: float
     pull_rate: float = 0.0
 
+    def __post_init__(self) -> None:
+        features.refuse(type(self).__name__, self, {features.DASHPOT: "is not in it"})
+
     @property
     def duration(self) -> float:
         """The time from onset to arrest (s), which is the two-way travel time R = 2 h / c."""
@@ -207,7 +210,7 @@ def growth_rate(slab: BodyWithWaves, weakening: float) -> float:
 
     A perturbation u = exp(lambda t) sinh(lambda (h - x) / c) satisfies the friction law at x = 0 if lambda coth(lambda h / c) =
     c alpha_w with alpha_w = S weakening / G. It grows if and only if alpha_w h > 1. This is for a slab under a rigid driver and
-    without contact mass.
+    without contact mass. A dashpot D at the contact adds lambda D h / G to the left side.
 
     Source: Campillo et al. 1996, section 2, from eqs (7)-(13).
     """
@@ -216,7 +219,8 @@ def growth_rate(slab: BodyWithWaves, weakening: float) -> float:
     target = slab.normal_load * weakening / slab.modulus * slab.distance
     if target <= 1.0:
         return 0.0
-    x: float = brentq(lambda x: _excess(x) - (target - 1.0), 0.0, target + 1.0, xtol=1e-300)
+    share = slab.dashpot / slab.impedance
+    x: float = brentq(lambda x: _excess(x) + share * x - (target - 1.0), 0.0, target + 1.0, xtol=1e-300)
     return x * slab.wave_speed / slab.distance
 
 

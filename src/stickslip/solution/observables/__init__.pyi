@@ -11,6 +11,7 @@ from stickslip.solution.observables.energetics import (
 from stickslip.solution.observables.energy.balance import (
     energies,  # Return the energies at positions in a history.
     heat,  # Return the friction heat up to each position, from the law.
+    taken,  # Return what a dashpot at the contact has taken up to each position.
     trapped_note,  # Return one line on the waves that travel in the body at the end of a run.
 )
 from stickslip.solution.observables.energy.ground import (
@@ -110,6 +111,7 @@ __all__ = [
     "shown_columns",
     "slab_of",
     "speed",
+    "taken",
     "that_count",
     "trapped_note",
     "with_units",

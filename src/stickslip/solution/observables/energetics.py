@@ -3,7 +3,8 @@
     elastic + work = kinetic + heat + damped + balance
 
 `waves` is the sum of three energies: that radiated through the driver; the growth of the energy trapped in the slab; and that
-dissipated by the damping of a block, which is to a block what radiation is to a slab. If the waves of earlier events feed an event,
+dissipated by the drag of layers, or by the damping of a block, which is to a block what radiation is to a slab. What a dashpot at
+the contact of a slab takes is `damped`, but never was in waves. If the waves of earlier events feed an event,
 `waves` is negative.
 Source: Kanamori & Brodsky 2004, Rep. Prog. Phys. 67, 1429; Kanamori & Rivera 2006, AGU Geophysical Monograph 170, 3.
 """
@@ -17,7 +18,7 @@ import numpy as np
 from stickslip.engine import History, Positions, SlipEvents
 from stickslip.foundation.arrays import Floats
 from stickslip.solution.observables.asked import observables_of
-from stickslip.solution.observables.energy.balance import event_energies
+from stickslip.solution.observables.energy.balance import event_energies, taken_between
 from stickslip.solution.observables.energy.pulses import Pulses
 from stickslip.solution.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 
@@ -35,13 +36,13 @@ ENERGETICS_COLUMNS = {
     "damped": ENERGY_COLUMNS["damped"].about,
     "radiated": ("energy", "energy radiated through a driver of finite impedance during the event"),
     "trapped": ENERGY_COLUMNS["trapped"].about,
-    "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
+    "waves": ("energy", "made into waves: radiated + damped inside the body + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
     "static_drop": EVENT_COLUMNS["static_drop"].about,
     "dynamic_drop": ("load", "traction_before less the smallest traction while it slips, both against the slip"),
     "overshoot": ("1", "size of static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / size of slip"),
-    "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
+    "efficiency": ("1", "seismic efficiency: waves / (waves + heat + what a dashpot at the contact takes)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
 """Columns of `Solution.energetics`: unit, as `names.si_unit` understands it, and meaning."""
@@ -76,8 +77,9 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
 def _energies(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     parts = event_energies(history, begin, end)
     extra = observables_of(history.problem).energetics(history, begin, end)
-    made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
-    return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
+    dashpot = taken_between(history, begin, end)
+    made = extra["radiated"] + (parts["damped"] - dashpot) + parts["trapped"] - extra.pop("trapped_before")
+    return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made, "dashpot": dashpot}
 
 
 def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> tuple[Floats, Floats]:
@@ -94,6 +96,6 @@ def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:
         return {
             "overshoot": np.where(drop > rounding, np.abs(columns["static_drop"]) / drop - 1.0, np.nan),
             "apparent_stress": waves / np.abs(columns["slip"]),
-            "efficiency": waves / (waves + columns["heat"]),
+            "efficiency": waves / (waves + columns["heat"] + columns["dashpot"]),
             "radiation_efficiency": waves / (waves + columns["fracture"]),
         }

@@ -200,7 +200,7 @@ EVENT_COLUMNS = {
 ENERGY_COLUMNS = {
     "released": Column("energy", "elastic and kinetic energy that the event takes from the body", lambda e: e.energies["released"]),
     "work": Column("energy", "work of the driver during the event, net of what radiates through it", lambda e: e.energies["work"]),
-    "damped": Column("energy", "dissipated by the damping of a block, or the drag of layers", lambda e: e.energies["damped"]),
+    "damped": Column("energy", "dissipated by damping of block or contact, or drag of layers", lambda e: e.energies["damped"]),
     "trapped": Column(
         "energy",
         "energy of waves travelling in the body at the end, beyond that of the same mean stress at rest",

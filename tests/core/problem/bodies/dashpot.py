@@ -1,4 +1,4 @@
-"""A slab whose damping is not its impedance."""
+"""Slabs whose contact has a dashpot: by its field, and by overriding the damping."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ DROP = 0.3e8
 
 
 class SlabWithDashpot(ss.ElasticSlab):
-    """A slab whose contact has a dashpot beside friction."""
+    """A slab whose damping is not its impedance, though it was given no dashpot: a body of a user."""
 
     @property
     def damping(self) -> float:
@@ -17,7 +17,8 @@ class SlabWithDashpot(ss.ElasticSlab):
         return 1.5 * self.impedance
 
 
-SLAB = SlabWithDashpot(2800, 3500, 1e4, 1e8)
+OWN = SlabWithDashpot(2800, 3500, 1e4, 1e8)
+SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8, contact_damping=4.9e6)
 LAW = ss.friction.Coulomb(0.8, 0.5)
 PROBLEM = ss.Problem(SLAB, LAW, initial_excess=1e6)
 WEAKENING = ss.friction.LinearSlipWeakening(0.8, 0.5, 2.0)

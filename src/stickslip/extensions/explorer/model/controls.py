@@ -48,6 +48,8 @@ STARTS, STARTS_IN_MOTION = ("excess", "load"), ("steady", "load")
 """How the load of the start is given, which takes the place of a kind: minus the static strength, or as it is."""
 PARTS_OF_PATCH = {"y[0]": "from y", "y[1]": "to y", "taper": "taper"}
 """Names of the numbers of a patch."""
+MUST_BE_0 = ("body.contact_mass", "body.contact_damping")
+"""Numbers of a body that are 0 on a fault."""
 RARE_IN_CONTACT = ("frames", "courant", "taper")
 """Numbers of a contact and its patches that are seldom changed."""
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
@@ -226,7 +228,7 @@ class _Tables:
         yield grid
         yield from (replace(group, kind="", kinds=()) for group in self.of_law("friction", ()))
         own = self.of("body", body, ())
-        own = replace(own, controls=tuple(one for one in own.controls if one.path != "body.contact_mass"))  # it must be 0
+        own = replace(own, controls=tuple(one for one in own.controls if one.path not in MUST_BE_0))
         others = (own, self.of("loading", body, ()), self.of("initial", body, (), states=law.states))
         yield from (group for group in others if group.controls)
         run = self.of("run", body, ())

@@ -18,7 +18,7 @@ from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem
 from stickslip.solution import Solution, Window, fronts_of
-from stickslip.solution.observables import FULL, energies, heat, shaken, speed
+from stickslip.solution.observables import FULL, energies, heat, shaken, speed, taken
 
 POINTS = 600
 """Number of points of the curve."""
@@ -252,5 +252,5 @@ def energies_of_waves(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
         "stored": waves.stored(time) + contact,
         "kinetic": waves.kinetic(time, SLAB_PLACES) + contact,
         "radiated": waves.radiated(time),
-        "damped": np.zeros(len(time)),
+        "damped": taken(waves.history, at, _nodes(waves.history)),
     }

@@ -91,7 +91,7 @@ def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
         return SliderRange(0.0, max(body.impedance * body.round_trip_time, REACH * anchor if math.isfinite(anchor) else 0.0))
     if path == "body.driver_integral_gain":
         return SliderRange(0.0, max(body.stiffness, REACH * anchor))
-    if path in ("body.damping", "body.driver_damping"):
+    if path in ("body.damping", "body.driver_damping", "body.contact_damping"):
         return SliderRange(0.0, max(2.0 * body.impedance, REACH * anchor))
     if path == "loading.pull_rate" and anchor <= 0.0:
         return (

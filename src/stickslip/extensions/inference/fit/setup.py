@@ -173,7 +173,7 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
     if not reach > 0.0:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
     times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
-    dampings = dict.fromkeys(("body.damping", "body.driver_damping"), 1.0)
+    dampings = {"body.damping": 1.0, "body.driver_damping": 1.0, "body.contact_damping": 0.1 * problem.body.impedance}
     return {**times, TREND: 0.1 / reach, DRIFT: 0.1 / part.duration, "initial.slip": 0.1 * reach, **dampings}
 
 

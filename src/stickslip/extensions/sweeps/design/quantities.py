@@ -150,7 +150,7 @@ _ALL = (
     ),
     Summary("work", "energy", "work of the driver", _energy("work")),
     Summary("heat", "energy", "friction heat", _energy("heat")),
-    Summary("damped", "energy", "energy dissipated by the damping of a block, or the drag of layers", _energy("damped")),
+    Summary("damped", "energy", "energy dissipated by damping of block or contact, or drag of layers", _energy("damped")),
     Summary("radiated", "energy", "energy radiated through a driver of finite impedance", _energy("radiated")),
     Summary("trapped", "energy", "energy of the waves inside the body at the end", _energy("trapped")),
     Summary("balance", "energy", "energy balance of the run: zero for an exact solution", _energy("balance")),

@@ -205,17 +205,18 @@ class OfLayers(WithWaves, ABC):
         return [float(one.held(*both)[-1]) for one, both in zip(self.stacks, rates, strict=True)]
 
     def slow_limit(self) -> tuple[float, float]:
-        """Return the mass and the damping (SI) of the layers in slow motion, under rigid drivers.
+        """Return the mass and the damping (SI) of the layers and their contact in slow motion, under rigid drivers.
 
         The mass has the kinetic energy of the layers, in which the velocity falls from the contact to a driver in proportion to the
-        compliance passed, and the damping has the loss by their drag. Raises InputError if a driver is not rigid.
+        compliance passed, and the damping has the loss by their drag and by a dashpot.
+        Raises InputError if a driver is not rigid.
         """
         soft = "other_driver_impedance" if math.isinf(self.stacks[0].driver_impedance) else "driver_impedance"
         check_equivalent(cast(BodyOnCharacteristics, self), soft)
         shares = self.sides_together.slipping(self._stiffness)
         mass = sum(share * share * one.slow_mass for share, one in zip(shares, self.stacks, strict=True))
         damping = sum(share * share * one.slow_damping for share, one in zip(shares, self.stacks, strict=True))
-        return mass, damping
+        return mass, damping + self.contact_damping
 
 
 class OfOneSide(OfLayers, ABC):

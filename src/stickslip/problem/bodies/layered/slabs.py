@@ -27,7 +27,7 @@ from stickslip.problem.bodies.layered.layers import (
 from stickslip.problem.bodies.layered.of_layers import DRAG_STEP, USUAL_STEP, OfLayers, OfOneSide, check_stacks
 from stickslip.problem.bodies.layered.sides import Apart, Joined, Sides
 from stickslip.problem.bodies.rigid.blocks import SpringBlock
-from stickslip.problem.bodies.uniform.slab import DRIVER_INERTIA, DRIVER_INTEGRAL_GAIN
+from stickslip.problem.bodies.uniform.slab import CONTACT_DAMPING, DRIVER_INERTIA, DRIVER_INTEGRAL_GAIN
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
@@ -79,7 +79,8 @@ class LayeredSlab(Declared, OfOneSide, OfSlabs):
     contact: waves die, and stress at rest stays. Drag is lumped in the middle of cells, so finely that none of these places takes
     more than the share `drag_step` of a wave. At the start the stress grows outwards by what drag takes while the driver pulls.
 
-    With `driver_inertia` or `driver_integral_gain` the driver is a machine, as that of an `ElasticSlab` can be.
+    With `driver_inertia` or `driver_integral_gain` the driver is a machine, and with `contact_damping` the contact resists slip
+    besides, as those of an `ElasticSlab` can.
     """
 
     kind: ClassVar[str] = "layered-slab"
@@ -96,6 +97,7 @@ class LayeredSlab(Declared, OfOneSide, OfSlabs):
     drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
     driver_inertia: Number = declare(DRIVER_INERTIA, 0.0)
     driver_integral_gain: Number = declare(DRIVER_INTEGRAL_GAIN, 0.0)
+    contact_damping: Number = declare(CONTACT_DAMPING, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)
@@ -117,8 +119,9 @@ class TwoSlabs(Declared, OfSlabs):
     sides = "joined" both move as one on the contact, as the two parts of a string do under a bow, and both drivers are pulled; the
     friction is then shared between them. Layers are cut into cells as those of a `LayeredSlab` are, and drag acts as there, on
     velocities as an observer sees them for whom the driver that is held, or the third body, rests. A contact mass is that of the
-    place where the slabs are joined. Raises InputError if a number is out of range, if lists differ in length, or if no more than
-    4096 cells can be so exact.
+    place where the slabs are joined. `contact_damping` D adds D v to friction, with the slip rate v of one slab on the other,
+    or of both on the third body. Raises InputError if a number is out of range, if lists differ in length, or if no more than 4096
+    cells can be so exact.
     """
 
     kind: ClassVar[str] = "two-slabs"
@@ -141,6 +144,7 @@ class TwoSlabs(Declared, OfSlabs):
     drag: OptionalNumbers = declare(drag_of_layers(), None)
     other_drag: OptionalNumbers = declare(drag_of_layers(OTHER), None)
     drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
+    contact_damping: Number = declare(CONTACT_DAMPING, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)

@@ -16,6 +16,7 @@ from stickslip.problem.bodies.on_bit import BIT_RADIUS, NORMAL_TORQUE, WEIGHT_ON
 from stickslip.problem.bodies.rigid.blocks import RotatingBlock
 from stickslip.problem.bodies.soft_torque import with_soft_torque
 from stickslip.problem.bodies.uniform.string import (
+    CONTACT_DAMPING,
     DRIVE,
     DRIVE_INERTIA,
     DRIVE_INTEGRAL_GAIN,
@@ -47,7 +48,8 @@ class SectionedString(Declared, OnBit, OfOneSide):
     equal times; their travel times are rounded to whole numbers of cells, as those of a `LayeredSlab` are.
 
     With `drag` D, such as that of mud, rho J dv/dt = dM/dx - D v, with the torque M: D is the torque that a metre meets for each
-    rad/s. With `driver_inertia` or `driver_integral_gain` the drive is a machine, as that of a `TorsionalString` can be. Raises
+    rad/s. With `driver_inertia` or `driver_integral_gain` the drive is a machine, as that of a `TorsionalString` can be, and with
+    `contact_damping` the bit resists as there. Raises
     InputError if a number is out of range, if an inner diameter is not below the outer one, if the lists differ in length, or if no
     more than 4096 cells can be as exact as `travel_time_error`.
     """
@@ -77,6 +79,7 @@ class SectionedString(Declared, OnBit, OfOneSide):
     drag_step: Number = declare(DRAG_STEP, USUAL_STEP)
     driver_inertia: Number = declare(DRIVE_INERTIA, 0.0)
     driver_integral_gain: Number = declare(DRIVE_INTEGRAL_GAIN, 0.0)
+    contact_damping: Number = declare(CONTACT_DAMPING, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)

@@ -39,6 +39,7 @@ class OnSpring(WithNormalLoad):
     driver_damping: float = 0.0
     """Of a body that has no dashpot beside its spring."""
     echo_impedance: float = 0.0
+    dashpot: float = 0.0
     pulled_shares: ClassVar[list[float]] = [1.0]
     has_waves: ClassVar[bool] = False
     is_uniform: ClassVar[bool] = True

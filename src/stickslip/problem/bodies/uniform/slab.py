@@ -13,7 +13,7 @@ from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
 from stickslip.problem.bodies.contract import BodyOnCharacteristics, check_body, check_driver, check_equivalent
 from stickslip.problem.bodies.rigid.blocks import SpringBlock
-from stickslip.problem.bodies.uniform.with_waves import WithWaves
+from stickslip.problem.bodies.uniform.with_waves import WithWaves, contact_damping
 
 DRIVER_INERTIA = Quantity(
     "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid"
@@ -23,6 +23,8 @@ DRIVER_INTEGRAL_GAIN = Quantity(
     "Pa/m", "integral gain of the driver: stress for each metre that it lags behind its pull rate", at_least=0
 )
 """Integral gain of such a driver."""
+CONTACT_DAMPING = contact_damping("Pa s/m", "stress")
+"""Dashpot of the contact of a slab."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,8 @@ class ElasticSlab(Declared, WithWaves):
     A driver of finite impedance is a half-space. With a mass or an integral gain it is a machine, and the impedance is its
     proportional gain: M dVd/dt = Zd (V - Vd) + ki phi + far stress - stress, with dphi/dt = V - Vd, for its mass M, its rate Vd,
     the pull rate V and the integral gain ki. With a contact mass the slip
-    rate has no jumps (shocks). Raises InputError if a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3)
+    rate has no jumps (shocks). With `contact_damping` D the contact resists with S mu + D v, such as through a viscous film; D v
+    is not radiated. Raises InputError if a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3)
     `wave_speed`.
     """
 
@@ -62,6 +65,7 @@ class ElasticSlab(Declared, WithWaves):
     )
     driver_inertia: Number = declare(DRIVER_INERTIA, 0.0)
     driver_integral_gain: Number = declare(DRIVER_INTEGRAL_GAIN, 0.0)
+    contact_damping: Number = declare(CONTACT_DAMPING, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)
@@ -139,7 +143,7 @@ class ElasticSlab(Declared, WithWaves):
         """
         check_equivalent(self)
         mass = self.density * self.thickness / 3.0 + self.contact_mass
-        return SpringBlock(mass=mass, stiffness=self.stiffness, normal_force=self.normal_stress)
+        return SpringBlock(mass, self.stiffness, self.normal_stress, self.contact_damping)
 
 
 def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab") -> ElasticSlab:

@@ -17,7 +17,7 @@ from stickslip.problem.bodies.contract import check_body, check_driver, check_eq
 from stickslip.problem.bodies.on_bit import BIT_RADIUS, NORMAL_TORQUE, WEIGHT_ON_BIT, OnBit
 from stickslip.problem.bodies.rigid.blocks import RotatingBlock
 from stickslip.problem.bodies.soft_torque import with_soft_torque
-from stickslip.problem.bodies.uniform.with_waves import WithWaves
+from stickslip.problem.bodies.uniform.with_waves import WithWaves, contact_damping
 
 OUTER = "outer diameter of the section"
 INNER = "inner diameter of the section"
@@ -28,6 +28,8 @@ DRIVE_INERTIA = Quantity("kg m^2", "moment of inertia of the drive: inf for a st
 DRIVE_INTEGRAL_GAIN = Quantity(
     "N m/rad", "integral gain of the drive: torque for each radian that it lags behind its pull rate", at_least=0
 )
+
+CONTACT_DAMPING = contact_damping("N m s", "torque")
 
 
 def check_pipe(owner: str, outer: float, inner: float, entry: str = "") -> None:
@@ -50,7 +52,7 @@ class TorsionalString(Declared, OnBit, WithWaves):
     `inner_diameter` unless it is given as `polar_moment`; I = rho J is the inertia per length, and sqrt(I G J) = J sqrt(rho G) the
     impedance. A drive of finite impedance Zd turns slower than the pull rate by torque / Zd. With `driver_inertia` or
     `driver_integral_gain` it is a machine, as the driver of an `ElasticSlab` can be: a top drive under SoftTorque. With `inertia`,
-    that of bit and collars, the rate has no jumps.
+    that of bit and collars, the rate has no jumps. With `contact_damping` D the bit resists with D v besides.
     """
 
     kind: ClassVar[str] = "torsional-string"
@@ -74,6 +76,7 @@ class TorsionalString(Declared, OnBit, WithWaves):
     driver_inertia: Number = declare(DRIVE_INERTIA, 0.0)
     driver_integral_gain: Number = declare(DRIVE_INTEGRAL_GAIN, 0.0)
     inertia: Number = quantity("kg m^2", "moment of inertia of bit and collars", at_least=0, default=0.0)
+    contact_damping: Number = declare(CONTACT_DAMPING, 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)
@@ -143,4 +146,4 @@ class TorsionalString(Declared, OnBit, WithWaves):
         """
         check_equivalent(self)
         inertia = self.inertia_per_length * self.length / 3.0 + self.inertia
-        return RotatingBlock(inertia=inertia, stiffness=self.stiffness, normal_torque=self.normal_load)
+        return RotatingBlock(inertia, self.stiffness, self.normal_load, self.contact_damping)

@@ -9,7 +9,14 @@ import numpy as np
 
 from stickslip.foundation.arrays import anywhere, everywhere
 from stickslip.foundation.constants import RIGID
+from stickslip.foundation.conversion import Number
+from stickslip.foundation.quantities import Quantity
 from stickslip.problem.bodies.contract import BodyWithWaves, WithNormalLoad
+
+
+def contact_damping(unit: str, load: str) -> Quantity:
+    """Declare the dashpot of a contact: its unit, and what sentences call a load."""
+    return Quantity(unit, f"viscous resistance of the contact beside friction: {load} for each unit of slip rate", at_least=0)
 
 
 class WithWaves(WithNormalLoad):
@@ -24,11 +31,18 @@ class WithWaves(WithNormalLoad):
     has_ground: bool = True
     has_waves: ClassVar[bool] = True
     is_uniform: ClassVar[bool] = True
+    contact_damping: Number = 0.0  # type: ignore[assignment] # fields convert, this is no field
+    """The dashpot of a body that does not declare one."""
 
     @property
     def damping(self: BodyWithWaves) -> float:
-        """The radiation damping, load per slip rate that leaves with the waves (Pa s/m): the impedance."""
-        return self.impedance
+        """The load per slip rate (Pa s/m) that leaves with the waves, which is the impedance, or that a dashpot takes."""
+        return self.impedance + self.contact_damping
+
+    @property
+    def dashpot(self: BodyWithWaves) -> float:
+        """The load per slip rate (Pa s/m) that does not leave with the waves: `damping` less `impedance`."""
+        return self.damping - self.impedance
 
     @property
     def total_damping(self: BodyWithWaves) -> float:

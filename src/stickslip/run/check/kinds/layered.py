@@ -29,7 +29,7 @@ class _CheckOfLayered(CheckOfWaves):
         unit = {name: problem.unit_of(name) for name in ("impedance", "stiffness", "load_rate")}
         symbol, slip = ("GJ", "radian") if body.load_unit == TURNS else ("G", "metre")
         cells, driver = body.cells, CHECK_DRIVERS[problem.driver_kind]
-        found = [Fact("Z", body.impedance, unit["impedance"], f"impedance at the contact{sides}")]
+        found = [Fact("Z", body.impedance, unit["impedance"], f"impedance at the contact{sides}"), *self.resisted(problem)]
         back = driver.sends_back, CHECK_DRIVERS[problem.body.driver_kind].sends_back  # it is the first driver that may change
         for side, one, sent in zip(("", "other "), body.stacks, back, strict=False):
             found += _of_side(side, one, body, unit["impedance"], sent)

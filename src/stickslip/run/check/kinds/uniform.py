@@ -23,6 +23,7 @@ class _CheckOfUniform(CheckOfWaves):
         back = f"reflection {driver.sends_back}: -1 rigid, 0 matched, +1 dead load"
         return [
             Fact("Z", body.impedance, impedance, f"impedance {body.impedance_formula}"),
+            *self.resisted(problem),
             Fact(symbol, body.modulus, of_modulus, meaning),
             Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
             Fact(f"{symbol}/h", body.stiffness, stiffness, "load lost by slow slip"),

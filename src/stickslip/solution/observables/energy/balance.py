@@ -58,6 +58,7 @@ def event_energies(history: History, first: Positions, last: Positions) -> dict[
     """
     parts = observables_of(history.problem).event_energies(history, first, last)
     parts["heat"] = between(history, first, last, _heating(history))
+    parts["damped"] = parts["damped"] + taken_between(history, first, last)
     parts["balance"] = parts["released"] + parts["work"] - parts["heat"] - parts["damped"]
     return parts
 
@@ -88,12 +89,34 @@ def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Fl
     are absolute. All are taken at exactly the same positions, so that their differences balance late in a run too. The work, heat
     and damping of a block are integrated with `nodes` nodes on each piece.
     """
-    return observables_of(history.problem).energies(history, at, nodes)
+    parts = observables_of(history.problem).energies(history, at, nodes)
+    parts["damped"] = parts["damped"] + taken(history, at, nodes)
+    return parts
 
 
 def heat(history: History, at: Positions, nodes: int = FULL) -> Floats:
     """Return the friction heat up to each position, from the law. Slab: J/m^2, block: J."""
     return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode), nodes=nodes)
+
+
+def taken(history: History, at: Positions, nodes: int = FULL) -> Floats:
+    """Return what a dashpot at the contact of a body with waves has taken up to each position (J/m^2): it is no friction heat."""
+    if not history.problem.body.dashpot:
+        return np.zeros(len(at.piece))
+    return up_to(history, at, _resisting(history), np.flatnonzero(history.store.mode), nodes=nodes)
+
+
+def taken_between(history: History, first: Positions, last: Positions) -> Floats:
+    """Return what such a dashpot takes between positions (J/m^2)."""
+    if not history.problem.body.dashpot:
+        return np.zeros(len(first.piece))
+    return between(history, first, last, _resisting(history))
+
+
+def _resisting(history: History) -> Integrand:
+    """Return the power that such a dashpot takes as a function of positions (W/m^2)."""
+    dashpot = history.problem.body.dashpot
+    return lambda at: dashpot * history.rate(at) ** 2
 
 
 def _heating(history: History) -> Integrand:
