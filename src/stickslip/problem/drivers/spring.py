@@ -58,8 +58,11 @@ def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:
     of_pull, of_ground = pulled.segment(start), np.searchsorted(ground.start, start, side="right") - 1
     value = pulled.value[of_pull] + pulled.slope[of_pull] * (start - pulled.start[of_pull]) - mass * ground.jerk[of_ground]
     amplitude, frequency, phase = ground.tone
-    tone = Tone(mass * amplitude * frequency * frequency, frequency, phase) if amplitude != 0.0 else pulled.tone
-    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone)
+    tone = pulled.tone
+    if amplitude != 0.0:  # that of a pull beside it is the belt's: of the same frequency and phase
+        tone = Tone(tone.amplitude + mass * amplitude * frequency * frequency, frequency, phase)
+    shares = {"reflection": pulled.reflection[of_pull], "gain": pulled.gain[of_pull]}
+    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone, **shares)
 
 
 ANSWERS = Spring()

@@ -18,6 +18,7 @@ class SpringBlock(Declared, OnSpring):
     """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
 
     kind: ClassVar[str] = "spring-block"
+    belted: ClassVar[str] = "block-on-belt"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
     load_unit: ClassVar[str] = "N"
     mass_field: ClassVar[str] = "mass"
@@ -45,6 +46,7 @@ class RotatingBlock(Declared, OnSpring):
     """
 
     kind: ClassVar[str] = "rotating-block"
+    belted: ClassVar[str] = "block-on-disc"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
     load_unit: ClassVar[str] = "N m"
     mass_field: ClassVar[str] = "inertia"
