@@ -46,6 +46,7 @@ DRIVEN = {
 """A problem with each kind of driver."""
 MADE = {
     "rigid": PULLED,
+    "belt": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0).on_belt()),
     "uniform": DRIVEN["rigid"],
     "layered": ss.Problem(ss.LayeredSlab([4e3, 6e3], [2600.0, 2800.0], [3000.0, 3500.0], 1e8), LAW, **RUN),
 }

@@ -61,8 +61,8 @@ def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:
     tone = pulled.tone
     if amplitude != 0.0:  # that of a pull beside it is the belt's: of the same frequency and phase
         tone = Tone(tone.amplitude + mass * amplitude * frequency * frequency, frequency, phase)
-    shares = {"reflection": pulled.reflection[of_pull], "gain": pulled.gain[of_pull]}
-    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone, **shares)
+    slope, share, gain = pulled.slope[of_pull], pulled.reflection[of_pull], pulled.gain[of_pull]
+    return replace(pulled, start=start, value=value, slope=slope, tone=tone, reflection=share, gain=gain)
 
 
 ANSWERS = Spring()
