@@ -40,10 +40,12 @@ class _ShownRigid(ShownKind):
         return replace(scenario, problem=beside)
 
     def in_place_of(self, own: BodyOnCharacteristics, kind: str, name: str) -> dict[str, Any]:
-        """Return the block to which a body with waves is equivalent, under a driver that does not give way."""
+        """Return the block to which a body with waves is equivalent, under a driver that does not give way; or the same block."""
+        if not own.has_waves:  # on a belt, or off it
+            return to_table(own) | {"kind": kind}
         known = {one.name for one in fields(own)}
         whole = replace(own, **{field: value for field, value in RIGID_DRIVER.items() if field in known})
-        return to_table(cast(BodyWithWaves, whole).equivalent_block())
+        return to_table(cast(BodyWithWaves, whole).equivalent_block()) | {"kind": kind}
 
     def waves(self, shown: ShownInterval) -> SampledWaves | None:
         return None
