@@ -292,3 +292,9 @@ def test_what_no_belt_does_is_refused_in_one_line(changes: dict[str, LoadingHist
     with pytest.raises(ss.InputError) as refused:
         replace(ss.Problem(BLOCK, LAW, pull_rate=0.1, initial_load=0.0), **changes)
     assert str(refused.value) == message
+
+
+@pytest.mark.parametrize("body", [BLOCK, ss.RotatingBlock(1.0, 2.0, 3.0).on_belt()], ids=["belt", "disc"])
+def test_what_is_shown_of_a_body_on_a_belt_makes_it(body: ss.SpringBlock | ss.RotatingBlock) -> None:
+    assert eval(f"ss.{body!r}") == body
+    assert body.on_belt() == body

@@ -14,6 +14,11 @@ class OnBelt:
     structure: ClassVar[str] = "belt"
     has_belt: ClassVar[bool] = True
 
+    def __repr__(self) -> str:
+        """Return the call that makes it: the classes of bodies on a belt have no names after `ss.`."""
+        own = type(self)
+        return super().__repr__().replace(own.__name__, own.__mro__[2].__name__, 1) + ".on_belt()"
+
 
 @dataclass(frozen=True)
 class BlockOnBelt(OnBelt, SpringBlock):
@@ -24,7 +29,7 @@ class BlockOnBelt(OnBelt, SpringBlock):
     """
 
     kind: ClassVar[str] = "block-on-belt"
-    source: ClassVar[str] = "Newton's second law in the frame of the belt; Galvanetto & Bishop 1999, Chaos 9, 1013 for steady belts"
+    source: ClassVar[str] = "Newton's second law in the frame of the belt"
 
 
 @dataclass(frozen=True)
