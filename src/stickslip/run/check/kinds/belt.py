@@ -7,13 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import Problem
-from stickslip.problem.ground import Ground
+from stickslip.problem import Ground, Problem
 from stickslip.run.check.facts import Fact
-from stickslip.run.check.kinds.rigid import _CheckOfRigid
+from stickslip.run.check.kinds.rigid import CheckOfRigid
 
 
-class _CheckOfBelt(_CheckOfRigid):
+class _CheckOfBelt(CheckOfRigid):
     def numbers(self, problem: Problem) -> list[Fact]:
         """Return those of a body on a spring, and the largest force of inertia while the belt drags the body with it."""
         found = super().numbers(problem)
