@@ -46,6 +46,7 @@ DRIVEN = {
 """A problem with each kind of driver."""
 MADE = {
     "rigid": PULLED,
+    "belt": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0).on_belt()),
     "uniform": DRIVEN["rigid"],
     "layered": ss.Problem(ss.LayeredSlab([4e3, 6e3], [2600.0, 2800.0], [3000.0, 3500.0], 1e8), LAW, **RUN),
 }
@@ -124,7 +125,8 @@ def test_every_kind_answers_every_question(table: ByKind[Any], kind: str) -> Non
         asked += 1
         assert set(needed) <= set(given), f"{name} asks about {sorted(set(needed) - set(given))}"
         if name == "on_ground":
-            given = given | {"problem": replace(given["problem"], ground_velocity=SHAKEN)}
+            shakes = "pull_rate" if kind == "belt" else "ground_velocity"
+            given = given | {"problem": replace(given["problem"], **{shakes: SHAKEN})}
         try:
             said = member(**{one: given[one] for one in needed})
         except ss.InputError:

@@ -18,6 +18,7 @@ from stickslip.foundation.names import KINDS, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem.belt import check_belt, ground_of_belt
 from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics
 from stickslip.problem.ground import Ground
 from stickslip.problem.loading import VARYING, LoadingHistory
@@ -148,7 +149,10 @@ class ProblemFields(CheckedArguments):
         self._check_two_drivers()
         if self.normal_load is not None:
             check_normal_load(self.normal_load, self.body)
-        if self.ground is not None:
+        if self.body.has_belt:
+            other = next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
+            check_belt(type(self.body).__name__, self.ground, other)
+        elif self.ground is not None:
             self._check_ground(self.ground)
         if self.driver_reflection is not None:
             self._check_driver(self.driver_reflection)
@@ -334,6 +338,8 @@ class ProblemFields(CheckedArguments):
     @cached_property
     def ground(self) -> Ground | None:
         """The motion of the ground; None if it is at rest."""
+        if self.body.has_belt:
+            return ground_of_belt(self.pull_rate)
         return Ground.of(self.ground_velocity, self.ground_acceleration)
 
     @cached_property

@@ -5,7 +5,7 @@ Each stands here with the kind that it is like, whose answers are its own wherev
 
 from __future__ import annotations
 
-BODY_KINDS = {"rigid": "", "uniform": "", "layered": ""}
+BODY_KINDS = {"rigid": "", "belt": "rigid", "uniform": "", "layered": ""}
 """Each kind of body (`Body.structure`)."""
 DRIVERS_OF_WAVES = {"rigid": "", "lossy": "", "machine": "lossy", "changing": "lossy"}
 """Each kind of driver of a body with waves."""

@@ -222,6 +222,11 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def has_belt(self) -> bool:
+        """True if the ground is a belt, whose velocity is the pull rate, and the far end of the spring is at rest."""
+        ...
+
+    @property
     def inflow_delay(self) -> float:
         """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
         ...
@@ -296,7 +301,9 @@ def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with wave
 
 
 class WithNormalLoad:
-    """The normal load of a body whose field for it has the usual name: a base for bodies."""
+    """The normal load of a body whose field for it has the usual name, and no belt under it: a base for bodies."""
+
+    has_belt: ClassVar[bool] = False
 
     @property
     def normal_field(self: Body) -> str:

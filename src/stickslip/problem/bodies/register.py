@@ -13,6 +13,8 @@ BODIES: ClassesByKind[BodyOnCharacteristics] = ClassesByKind(
         "layered-slab": "layered.slabs.LayeredSlab",
         "two-slabs": "layered.slabs.TwoSlabs",
         "rotating-block": "rigid.blocks.RotatingBlock",
+        "block-on-belt": "rigid.on_belt.BlockOnBelt",
+        "block-on-disc": "rigid.on_belt.BlockOnDisc",
         "torsional-string": "uniform.string.TorsionalString",
         "sectioned-string": "layered.string.SectionedString",
     },

@@ -58,9 +58,11 @@ def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:
     of_pull, of_ground = pulled.segment(start), np.searchsorted(ground.start, start, side="right") - 1
     value = pulled.value[of_pull] + pulled.slope[of_pull] * (start - pulled.start[of_pull]) - mass * ground.jerk[of_ground]
     amplitude, frequency, phase = ground.tone
-    tone = Tone(mass * amplitude * frequency * frequency, frequency, phase) if amplitude != 0.0 else pulled.tone
-    none, all_of_it = np.zeros(len(start)), np.ones(len(start))
-    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone, reflection=none, gain=all_of_it)
+    tone = pulled.tone
+    if amplitude != 0.0:  # that of a pull beside it is the belt's: of the same frequency and phase
+        tone = Tone(tone.amplitude + mass * amplitude * frequency * frequency, frequency, phase)
+    slope, share, gain = pulled.slope[of_pull], pulled.reflection[of_pull], pulled.gain[of_pull]
+    return replace(pulled, start=start, value=value, slope=slope, tone=tone, reflection=share, gain=gain)
 
 
 ANSWERS = Spring()

@@ -44,5 +44,5 @@ def _before(problem: Problem) -> Iterator[str]:
     if varying:
         has = "have their values" if len(varying) > 1 else "has its value"
         yield f"before the start the {' and the '.join(varying)} {has} of 0 s"
-    if problem.ground is not None:
+    if problem.ground is not None and not problem.body.has_belt:
         yield "before the start the ground is at rest"

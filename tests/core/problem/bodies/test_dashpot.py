@@ -19,6 +19,8 @@ def test_no_body_has_one_unless_it_is_given() -> None:
         ss.ElasticSlab(2800, 3500, 1e4, 1e8),
         ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0),
         ss.RotatingBlock(1.0, 1e3, 10.0, damping=2.0),
+        ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0).on_belt(),
+        ss.RotatingBlock(1.0, 1e3, 10.0, damping=2.0).on_belt(),
         ss.TorsionalString(2e3, 7850.0, 8e10, polar_moment=1e-5, normal_torque=10.0),
         ss.SectionedString([1e2, 2e3], [0.17, 0.13], [0.07, 0.11], [7850.0] * 2, [8e10] * 2, normal_torque=10.0),
         ss.LayeredSlab([1e3, 9e3], [2800, 2800], [1750, 3500], 1e8),

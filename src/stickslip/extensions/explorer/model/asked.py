@@ -9,7 +9,7 @@ from stickslip.extensions.explorer.model.answer import SlabPicture
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import BODY_KINDS
+from stickslip.problem import BODY_KINDS, Problem
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario
 
@@ -31,6 +31,10 @@ class ShownKind(ABC):
     @abstractmethod
     def in_place_of(self, own: BodyOnCharacteristics, kind: str, name: str) -> dict[str, Any]:
         """Return the table of a body `kind`, of this kind, which takes the place of another one in the scenario `name`."""
+
+    def loading_of(self, table: dict[str, Any], own: Problem) -> dict[str, Any]:
+        """Return the table [loading] of a problem as a body of this kind can have it: by default as it is."""
+        return table
 
     @abstractmethod
     def waves(self, shown: ShownInterval) -> SampledWaves | None:

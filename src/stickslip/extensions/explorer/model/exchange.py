@@ -98,12 +98,14 @@ def _or_started(setting: Setting) -> Setting:
 def _with_body(setting: Setting, kind: str) -> Setting:
     """Return a setting with a body of another kind: a slab's equivalent block, or the slab beside which a block stands."""
     kind_of("body", {"kind": kind}, setting.name)
-    own = setting.scenario().problem.body
+    problem = setting.scenario().problem
+    own = problem.body
     if own.kind == kind:
         return setting
     if kind not in bodies_beside(own.kind):
         raise InputError(f"{setting.name}: {own.kind} cannot be exchanged for {kind}: one slides, the other turns")
-    body = SHOWN_KINDS[BODIES[kind].structure].in_place_of(own, kind, setting.name)
+    of_kind = SHOWN_KINDS[BODIES[kind].structure]
+    body = of_kind.in_place_of(own, kind, setting.name)
     made = {"kind": kind} | _began(setting, "body", kind, body)
     # a far stress acts on a driver that gives way, no ground is under sides that are apart, another driver changes otherwise
     missing = (
@@ -112,7 +114,7 @@ def _with_body(setting: Setting, kind: str) -> Setting:
         *("ground_",) * (kind == "two-slabs" and made.get("sides") != "joined"),
     )
     loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith(missing)}
-    setting = setting.with_value("loading", loading)
+    setting = setting.with_value("loading", of_kind.loading_of(loading, problem))
     run = {key: value for key, value in setting.value("run").items() if key not in ("creep_rtol", "shortest_event")}
     return _started(setting.with_value("body", made).with_value("run", run))
 

@@ -21,6 +21,7 @@ class SpringBlock(Declared, OnSpring):
     """
 
     kind: ClassVar[str] = "spring-block"
+    belted: ClassVar[str] = "block-on-belt"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); damping and driver_damping are additions"
     load_unit: ClassVar[str] = "N"
     mass_field: ClassVar[str] = "mass"
@@ -51,6 +52,7 @@ class RotatingBlock(Declared, OnSpring):
     """
 
     kind: ClassVar[str] = "rotating-block"
+    belted: ClassVar[str] = "block-on-disc"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
     load_unit: ClassVar[str] = "N m"
     mass_field: ClassVar[str] = "inertia"

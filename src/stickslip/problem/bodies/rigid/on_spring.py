@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithNormalLoad
+from stickslip.problem.bodies.register import BODIES
 
 LONGEST_ROUND_TRIP = 1e6
 """Largest number of periods (1) in a block's round trip."""
@@ -33,6 +35,8 @@ class OnSpring(WithNormalLoad):
     noun_with_driver: str = "slab"
     turn: ClassVar[str] = "period"
     what_is_heavy: ClassVar[str] = "block"
+    belted: ClassVar[str]
+    """The kind of this body on a belt."""
     drivers: int = 1
     first_share: float = 1.0
     has_ground: bool = True
@@ -100,6 +104,15 @@ class OnSpring(WithNormalLoad):
     def check_uniform(self, refusal: str) -> None:
         """Refuse: a rigid body has no waves."""
         raise InputError(refusal)
+
+    def on_belt(self) -> Any:
+        """Return the body on a belt: what moves at the pull rate is then the ground, and the spring hangs on a wall.
+
+        A `SpringBlock` is then a `BlockOnBelt`. A `RotatingBlock` is a `BlockOnDisc`: the belt is a disc that turns. The pull rate
+        of the problem is the velocity of the belt, and slip is how far the belt has run ahead of the body.
+        """
+        numbers = {one.name: getattr(self, one.name) for one in fields(self)}  # type: ignore[arg-type] # every body is a dataclass
+        return BODIES[self.belted](**numbers)
 
     def equivalent_block(self) -> BodyOnCharacteristics:
         """Refuse: a block stands for itself."""

@@ -13,7 +13,9 @@ from stickslip.run.check.facts import Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 
 
-class _CheckOfRigid(CheckOfKind):
+class CheckOfRigid(CheckOfKind):
+    """The answers of rigid bodies."""
+
     def numbers(self, problem: Problem) -> list[Fact]:
         """Return period, impedance and rate of loading."""
         body, first = problem.body, ", at first" if problem.loading_varies else ""
@@ -48,4 +50,4 @@ class _CheckOfRigid(CheckOfKind):
         return "stiffness K", sliding.critical_stiffness(body.inertia, body.total_damping)
 
 
-ANSWERS = _CheckOfRigid()
+ANSWERS = CheckOfRigid()

@@ -24,7 +24,9 @@ RIGID_DRIVER = {
 """Numbers of a driver that does not give way: the block equivalent to a body needs one."""
 
 
-class _ShownRigid(ShownKind):
+class ShownRigid(ShownKind):
+    """The answers of rigid bodies."""
+
     has_the_mass: ClassVar[str] = "the block"
     beside: ClassVar[str] = "equivalent "
     times: ClassVar[int] = 400
@@ -40,19 +42,24 @@ class _ShownRigid(ShownKind):
         return replace(scenario, problem=beside)
 
     def in_place_of(self, own: BodyOnCharacteristics, kind: str, name: str) -> dict[str, Any]:
-        """Return the block to which a body with waves is equivalent, under a driver that does not give way."""
+        """Return the block to which a body with waves is equivalent, under a driver that does not give way; or the same block."""
+        if not own.has_waves:  # on a belt, or off it
+            return to_table(own) | {"kind": kind}
         known = {one.name for one in fields(own)}
         whole = replace(own, **{field: value for field, value in RIGID_DRIVER.items() if field in known})
-        return to_table(cast(BodyWithWaves, whole).equivalent_block())
+        return to_table(cast(BodyWithWaves, whole).equivalent_block()) | {"kind": kind}
 
     def waves(self, shown: ShownInterval) -> SampledWaves | None:
+        """Return None: there are none."""
         return None
 
     def inside(self, shown: ShownInterval, waves: SampledWaves | None) -> SlabPicture | None:
+        """Return None: there is no inside."""
         return None
 
     def energies(self, shown: ShownInterval, waves: SampledWaves | None, time: Floats) -> dict[str, Floats] | None:
+        """Return those of the run."""
         return exact_energies(shown, time)
 
 
-ANSWERS = _ShownRigid()
+ANSWERS = ShownRigid()
