@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -57,12 +58,18 @@ def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:
     start = np.union1d(pulled.start, ground.start)
     of_pull, of_ground = pulled.segment(start), np.searchsorted(ground.start, start, side="right") - 1
     value = pulled.value[of_pull] + pulled.slope[of_pull] * (start - pulled.start[of_pull]) - mass * ground.jerk[of_ground]
-    amplitude, frequency, phase = ground.tone
-    tone = pulled.tone
-    if amplitude != 0.0:  # that of a pull beside it is the belt's: of the same frequency and phase
-        tone = Tone(tone.amplitude + mass * amplitude * frequency * frequency, frequency, phase)
+    tone = _together(pulled.tone, ground.tone, mass) if ground.tone.amplitude != 0.0 else pulled.tone
     slope, share, gain = pulled.slope[of_pull], pulled.reflection[of_pull], pulled.gain[of_pull]
     return replace(pulled, start=start, value=value, slope=slope, tone=tone, reflection=share, gain=gain)
+
+
+def _together(pull: Tone, ground: Tone, mass: float) -> Tone:
+    """Return the sinusoid of a pull and of -m a'; that of a pull beside it is the belt's: of one frequency."""
+    size, frequency, phase = mass * ground.amplitude * ground.frequency**2, ground.frequency, ground.phase
+    if pull.amplitude == 0.0 or pull.phase == phase:
+        return Tone(pull.amplitude + size, frequency, phase)
+    both = size + pull.amplitude * cmath.exp(1j * (pull.phase - phase))  # a dashpot beside the spring turns its phase
+    return Tone(abs(both), frequency, phase + cmath.phase(both))
 
 
 ANSWERS = Spring()

@@ -298,3 +298,21 @@ def test_what_no_belt_does_is_refused_in_one_line(changes: dict[str, LoadingHist
 def test_what_is_shown_of_a_body_on_a_belt_makes_it(body: ss.SpringBlock | ss.RotatingBlock) -> None:
     assert eval(f"ss.{body!r}") == body
     assert body.on_belt() == body
+
+
+def test_a_dashpot_beside_the_spring_hangs_on_the_wall() -> None:
+    """To 1e-12 of scipy (tolerances 1e-13) in the frame of the wall, where it resists x' alone; its sinusoid is out of phase."""
+    dashpot, belt, begins = 1.5, Sinusoidal(3.0, 0.9, 0.5, 0.4), 4.0
+    body = ss.SpringBlock(MASS, STIFFNESS, FORCE, driver_damping=dashpot).on_belt()
+    start = begins + dashpot * belt.first  # the load counts what the dashpot would bear of a block that moves with the belt
+    run = ss.simulate(ss.Problem(body, LAW, pull_rate=belt, initial_load=start, initial_rate=belt.first), 2.0)
+    times = np.linspace(0.0, 2.0, 21)
+
+    def change(t: float, y: list[float]) -> list[float]:
+        return [y[1], (0.4 * FORCE - STIFFNESS * y[0] - dashpot * y[1]) / MASS]
+
+    place, velocity = solve_ivp(change, (0.0, 2.0), [begins / STIFFNESS, 0.0], "DOP853", rtol=1e-13, atol=1e-15, t_eval=times).y
+    assert run.slip_rate(times) == pytest.approx(belt.at(times) - velocity, abs=1e-12)
+    assert run.slip(times) == pytest.approx(moved(belt, times) - place + begins / STIFFNESS, abs=1e-12)
+    energy = run.energy(times)
+    assert np.abs(energy.balance).max() < 1e-13 * float(energy.work.max())
