@@ -40,6 +40,7 @@ SHAKEN = PiecewiseLinear([0.0, 1.0, 2.0], [0.0, 0.1, 0.0])
 FREED = Steps([0.0, 5.0], [-1.0, 0.5])
 DRIVEN = {
     "spring": PULLED,
+    "spring_and_dashpot": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0, driver_damping=2.0)),
     **{kind: ss.Problem(slab, LAW, **RUN) for kind, slab in SLABS.items()},
     "changing": ss.Problem(SLABS["rigid"], LAW, **RUN, far_stress=6e7, driver_reflection=FREED),
 }
