@@ -13,11 +13,12 @@ class OnBelt:
 
     structure: ClassVar[str] = "belt"
     has_belt: ClassVar[bool] = True
+    off_belt: ClassVar[str]
+    """The class of the body off the belt."""
 
     def __repr__(self) -> str:
         """Return the call that makes it: the classes of bodies on a belt have no names after `ss.`."""
-        own = type(self)
-        return super().__repr__().replace(own.__name__, own.__mro__[2].__name__, 1) + ".on_belt()"
+        return super().__repr__().replace(type(self).__name__, self.off_belt, 1) + ".on_belt()"
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class BlockOnBelt(OnBelt, SpringBlock):
     """
 
     kind: ClassVar[str] = "block-on-belt"
+    off_belt: ClassVar[str] = "SpringBlock"
     source: ClassVar[str] = "Newton's second law in the frame of the belt"
 
 
@@ -41,4 +43,5 @@ class BlockOnDisc(OnBelt, RotatingBlock):
     """
 
     kind: ClassVar[str] = "block-on-disc"
+    off_belt: ClassVar[str] = "RotatingBlock"
     source: ClassVar[str] = "Newton's second law in the frame of the disc"
