@@ -148,7 +148,7 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     for name, shape in shapes.items():
         yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
     count = Counts(checkpoint.count)
-    rows = (max(len(checkpoint.waves), FIRST_ROW + 1), int(count.slots), at.TERMS) if count.cells > 0 else NO_WAVES.shape
+    rows = (max(len(checkpoint.waves), FIRST_ROW + 1), int(count.slots), at.TERMS) if count.slots > 0 else NO_WAVES.shape
     yield "shape or type of engine_waves", not _is(checkpoint.waves, rows, "f")
     yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
 
