@@ -142,6 +142,8 @@ def examples(entry: ProblemEntry, problem: ss.Problem) -> list[Any]:
         "driver_inertia": 0.1 * body.impedance * body.round_trip_time,
         "driver_integral_gain": 0.2 * body.stiffness,
         "damping": 0.2 * body.impedance,
+        "driver_damping": 0.2 * body.impedance,
+        "contact_damping": 0.2 * body.impedance,
         "contact_mass": 0.1 * body.impedance * body.round_trip_time,
         "pull_rate": 0.03,
         "far_stress": 0.5 * problem.normal,

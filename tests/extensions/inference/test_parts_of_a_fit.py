@@ -99,7 +99,7 @@ def test_two_samples_are_a_part_of_a_record_and_one_is_none() -> None:
 
 def test_steps_of_free_numbers_that_start_at_zero_follow_the_record() -> None:
     time, slip = np.array([5.0, 10.0, 15.0]), np.array([2.0, np.nan, 6.0])
-    problem = SimpleNamespace(first_pull_rate=-3.0)
+    problem = SimpleNamespace(first_pull_rate=-3.0, body=SimpleNamespace(impedance=1.0))
     moved = scales_of(Part(Record(time, {"slip": slip}), None, ("slip",)), problem)  # type: ignore[arg-type]
     assert moved["initial.slip"] == pytest.approx(0.4)
     assert moved[TREND] == pytest.approx(0.025)
