@@ -6,7 +6,7 @@ from pathlib import Path
 
 import stickslip as ss
 from stickslip.problem.loading import Sinusoidal
-from tests.core.problem.loading.test_belt import BLOCK, LAW, SCENARIO
+from tests.core.problem.loading.belts import BLOCK, LAW, SCENARIO
 
 
 def test_a_sweep_over_how_the_belt_swings_is_its_runs(tmp_path: Path) -> None:

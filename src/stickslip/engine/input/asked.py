@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
-from stickslip.engine.input.shaking import Shaken
+import numpy as np
+
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import LadderCell
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
 from stickslip.problem import BODY_KINDS, Problem
 
@@ -25,6 +27,34 @@ class CellCounts(NamedTuple):
     """True if the sides move as one."""
     slots: int = 0
     """Places for waves: a machine has one, too."""
+
+
+class Shaken(Protocol):
+    """What moving ground does to the load of a contact, by segments of time."""
+
+    @property
+    def start(self) -> Floats:
+        """Times (s) at which segments begin."""
+        ...
+
+    @property
+    def brings_inflow(self) -> bool:
+        """True if it has the inflow of the driver in it."""
+        ...
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Write it into segments (`LoadingSegment.of` a table) that begin at times (s), its own among them."""
+        ...
+
+
+class AtRest:
+    """Ground that does not move."""
+
+    start: Floats = np.zeros(1)
+    brings_inflow: bool = False
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Leave the segments as they are."""
 
 
 class InputOfBody(ABC):

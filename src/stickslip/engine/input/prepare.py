@@ -12,11 +12,10 @@ import numpy as np
 from stickslip.contact import folds_not_followed, rule_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.contact_step.certificate import RATIOS
-from stickslip.engine.input.asked import INPUTS
+from stickslip.engine.input.asked import INPUTS, AtRest, Shaken
 from stickslip.engine.input.branch_table import branch_of, is_algebraic, table_of_branches
 from stickslip.engine.input.first_pieces import pieces_of, together
 from stickslip.engine.input.limits import set_length, set_lumping
-from stickslip.engine.input.shaking import AtRest, Shaken
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -20,34 +20,6 @@ from stickslip.problem import Ground, Inflow, Problem, Tone, inflow_of, tone_of
 
 STILL = 1e-15
 """Ground whose velocity is below this share of its largest one (1) is at rest: the rest is rounding of sums."""
-
-
-class Shaken(Protocol):
-    """What moving ground does to the load of a contact, by segments of time."""
-
-    @property
-    def start(self) -> Floats:
-        """Times (s) at which segments begin."""
-        ...
-
-    @property
-    def brings_inflow(self) -> bool:
-        """True if it has the inflow of the driver in it."""
-        ...
-
-    def put(self, segments: Any, start: Floats) -> None:
-        """Write it into segments (`LoadingSegment.of` a table) that begin at times (s), its own among them."""
-        ...
-
-
-class AtRest:
-    """Ground that does not move."""
-
-    start: Floats = np.zeros(1)
-    brings_inflow: bool = False
-
-    def put(self, segments: Any, start: Floats) -> None:
-        """Leave the segments as they are."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,11 +15,8 @@ import stickslip as ss
 from stickslip.problem.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from stickslip.run.check.examine import examine
 from tests.core.problem.loading.belt_by_scipy import MASS, STIFFNESS, by_scipy
+from tests.core.problem.loading.belts import BLOCK, FORCE, LAW, SCENARIO
 
-FORCE = 12.0
-"""N."""
-BLOCK = ss.SpringBlock(MASS, STIFFNESS, FORCE).on_belt()
-LAW = ss.friction.Coulomb(static=0.6, dynamic=0.4)
 SWINGS = Sinusoidal(0.3, 0.12, 0.5, 0.4)
 FREQUENCY = math.sqrt(STIFFNESS / MASS)
 
@@ -167,30 +164,6 @@ def test_energies_balance_as_seen_from_the_belt_and_from_the_wall(belt: LoadingH
     stretch = [1.0 / STIFFNESS, 1.0 / STIFFNESS + quad(belt.at, 0.0, 3.0, points=[0.5, 1.5, 2.0])[0] - float(run.slip(3.0))]
     gained = [0.5 * MASS * v**2 + 0.5 * STIFFNESS * x**2 for v, x in zip(velocity, stretch, strict=True)]
     assert work == pytest.approx(gained[1] - gained[0], rel=1e-9)
-
-
-SCENARIO = """
-title = "A box on a belt"
-[body]
-kind = "block-on-belt"
-mass = "2 kg"
-stiffness = "150 N/m"
-normal_force = "12 N"
-[friction]
-kind = "coulomb"
-static = 0.6
-dynamic = 0.4
-[loading.pull_rate]
-kind = "sinusoidal"
-mean = "0.3 m/s"
-amplitude = "12 cm/s"
-period = "0.5 s"
-phase = 0.4
-[initial]
-load = 0
-[run]
-duration = "4 s"
-"""
 
 
 def test_a_scenario_says_it_and_a_run_that_is_taken_up_again_is_the_same(tmp_path: Path) -> None:

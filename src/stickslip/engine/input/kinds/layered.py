@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from stickslip.engine.input.asked import CellCounts, InputOfBody
+from stickslip.engine.input.asked import CellCounts, InputOfBody, Shaken
 from stickslip.engine.input.kinds.uniform import smallest_jump, steady_numbers
 from stickslip.engine.input.ladder import first_pieces, ladder_of, layers_of
-from stickslip.engine.input.shaking import GroundUnderLayers, Shaken
 from stickslip.engine.state import layout as at
 from stickslip.problem import Problem, driver_of
 
@@ -33,6 +32,8 @@ class InputOfLayered(InputOfBody):
 
     def on_ground(self, problem: Problem) -> Shaken:
         """Return the velocity of the ground, whose echoes the engine follows."""
+        from stickslip.engine.input.shaking import GroundUnderLayers  # here, because few runs move the ground
+
         return GroundUnderLayers.of(problem)
 
     def ladder(self, problem: Problem) -> at.Floats:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from stickslip.engine.input.asked import InputOfBody
+from stickslip.engine.input.asked import InputOfBody, Shaken
 from stickslip.engine.input.first_pieces import pieces_of
-from stickslip.engine.input.shaking import Shaken, StepsOfForce
 from stickslip.engine.state import layout as at
 from stickslip.problem import EVENT_SHARE, Problem, driver_of
 
@@ -35,6 +34,8 @@ class InputOfRigid(InputOfBody):
 
     def on_ground(self, problem: Problem) -> Shaken:
         """Return the jumps of the force of inertia; its growth is in the inflow."""
+        from stickslip.engine.input.shaking import StepsOfForce  # here, because few runs move the ground
+
         return StepsOfForce.of(problem)
 
 

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.input.asked import InputOfBody
+from stickslip.engine.input.asked import InputOfBody, Shaken
 from stickslip.engine.input.first_pieces import pieces_of
-from stickslip.engine.input.shaking import Shaken, Shaking
 from stickslip.engine.state import layout as at
 from stickslip.problem import Problem, driver_of, inflow_of, steady_inflow, wave_before
 
@@ -58,6 +57,8 @@ class InputOfUniform(InputOfBody):
 
     def on_ground(self, problem: Problem) -> Shaken:
         """Return the inflow of driver and ground together."""
+        from stickslip.engine.input.shaking import Shaking  # here, because few runs move the ground
+
         return Shaking.of(problem)
 
 
