@@ -1,4 +1,4 @@
-"""The kinds of bodies and of drivers. All code that depends on a kind is in modules with its name (`foundation.by_kind`).
+"""The kinds of bodies and of drivers, by whose names modules answer what other code asks of them (`foundation.by_kind`).
 
 Each stands here with the kind that it is like, whose answers are its own wherever it has no module.
 """

@@ -317,6 +317,31 @@ class WithNormalLoad:
         return found
 
 
+class WithOneDriver(WithNormalLoad):
+    """What bodies have in common that one driver ends, without layers before it: a base for bodies."""
+
+    drivers: int = 1
+    first_share: float = 1.0
+    has_ground: bool = True
+
+    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
+        """Return all of what the driver sends, and its growth."""
+        return sent
+
+    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
+        """Return the velocities (m/s) of the contact, which slips at `rate`, and of the driver, which is by `shear` faster."""
+        return [(rate, rate + shear)]
+
+    def held_at_start(self, rate: float, shear: float) -> list[float]:
+        """Return the stress (Pa) that drag takes between contact and driver: none."""
+        return [0.0]
+
+    @property
+    def pulled_shares(self) -> list[float]:
+        """The share (1) of the driver in an inflow that varies: all."""
+        return [1.0]
+
+
 def check_driver(body: BodyOnCharacteristics) -> None:
     """Raise InputError if the mass and the gains of a driver do not go together."""
     owner = type(body).__name__

@@ -1,4 +1,4 @@
-"""Leaps of a body of layers: it makes none, because its waves are never alike; its echoes are many, and get shorter."""
+"""Leaps of a body of layers: it makes none, because its waves differ from one round trip to the next; its echoes get shorter."""
 
 from __future__ import annotations
 

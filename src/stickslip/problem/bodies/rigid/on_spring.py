@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
-from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithNormalLoad
+from stickslip.problem.bodies.contract import BodyOnCharacteristics, WithOneDriver
 from stickslip.problem.bodies.register import BODIES
 
 LONGEST_ROUND_TRIP = 1e6
@@ -26,7 +26,7 @@ class BodyOnSpring(BodyOnCharacteristics, Protocol):
         ...
 
 
-class OnSpring(WithNormalLoad):
+class OnSpring(WithOneDriver):
     """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
 
     structure: ClassVar[str] = "rigid"
@@ -37,14 +37,10 @@ class OnSpring(WithNormalLoad):
     what_is_heavy: ClassVar[str] = "block"
     belted: ClassVar[str]
     """The kind of this body on a belt."""
-    drivers: int = 1
-    first_share: float = 1.0
-    has_ground: bool = True
     driver_damping: float = 0.0
     """Of a body that has no dashpot beside its spring."""
     echo_impedance: float = 0.0
     dashpot: float = 0.0
-    pulled_shares: ClassVar[list[float]] = [1.0]
     has_waves: ClassVar[bool] = False
     is_uniform: ClassVar[bool] = True
     has_inertia: ClassVar[bool] = True
@@ -88,18 +84,6 @@ class OnSpring(WithNormalLoad):
     def grows_in_a_trip(self: BodyOnCharacteristics, rate: Any) -> Any:
         """Return the growth of the load (N) in one period while the spring is pulled at a rate (m/s) and the block rests."""
         return self.stiffness * rate * self.round_trip_time
-
-    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
-        """Return all of what the driver sends, and its growth."""
-        return sent
-
-    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
-        """Return the velocities (m/s) of the block, which slips at `rate`, and of the driver, which is by `shear` faster."""
-        return [(rate, rate + shear)]
-
-    def held_at_start(self, rate: float, shear: float) -> list[float]:
-        """Return the stress that drag takes between contact and driver: none."""
-        return [0.0]
 
     def check_uniform(self, refusal: str) -> None:
         """Refuse: a rigid body has no waves."""

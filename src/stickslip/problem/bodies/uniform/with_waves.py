@@ -11,7 +11,7 @@ from stickslip.foundation.arrays import anywhere, everywhere
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem.bodies.contract import BodyWithWaves, WithNormalLoad
+from stickslip.problem.bodies.contract import BodyWithWaves, WithOneDriver
 
 
 def contact_damping(unit: str, load: str) -> Quantity:
@@ -19,16 +19,13 @@ def contact_damping(unit: str, load: str) -> Quantity:
     return Quantity(unit, f"viscous resistance of the contact beside friction: {load} for each unit of slip rate", at_least=0)
 
 
-class WithWaves(WithNormalLoad):
+class WithWaves(WithOneDriver):
     """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
 
     structure: ClassVar[str] = "uniform"
     driver_may_change: ClassVar[bool] = True
     turn: ClassVar[str] = "round trip"
     what_is_heavy: ClassVar[str] = "contact mass"
-    drivers: int = 1
-    first_share: float = 1.0
-    has_ground: bool = True
     has_waves: ClassVar[bool] = True
     is_uniform: ClassVar[bool] = True
     contact_damping: Number = 0.0  # type: ignore[assignment] # fields convert, this is no field
@@ -80,18 +77,6 @@ class WithWaves(WithNormalLoad):
         """Return the growth of the load (Pa) at rest in one round trip, under a rigid driver at a rate (m/s): 2 Z V."""
         return 2.0 * self.impedance * rate
 
-    def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
-        """Return all of what the driver sends, and its growth."""
-        return sent
-
-    def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
-        """Return the velocities (m/s) of the contact, which slips at `rate`, and of the driver, which is by `shear` faster."""
-        return [(rate, rate + shear)]
-
-    def held_at_start(self, rate: float, shear: float) -> list[float]:
-        """Return the stress (Pa) that drag takes between contact and driver: none."""
-        return [0.0]
-
     def check_uniform(self, refusal: str) -> None:
         """Do nothing: it is a uniform body with waves."""
 
@@ -107,11 +92,6 @@ class WithWaves(WithNormalLoad):
     def meets_driver_at_first(self: BodyWithWaves, excess: Any, rate: Any, shear: Any) -> Any:
         """Return the wave (Pa, minus the reference strength) that meets the driver at the start."""
         return self.impedance * shear - (excess - 2.0 * self.impedance * rate)
-
-    @property
-    def pulled_shares(self) -> list[float]:
-        """The share (1) of the driver in an inflow that varies: all."""
-        return [1.0]
 
     @property
     def echo_impedance(self: BodyWithWaves) -> float:
