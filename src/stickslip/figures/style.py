@@ -93,7 +93,7 @@ STYLE: Any = {
 
 FLAT = 0.02
 """Stresses whose range is less than this share of their largest magnitude are drawn as changes: else the line looks flat."""
-WIDE = 100.0
+SPAN_OF_LOGARITHM = 100.0
 """Positive values that span more than this factor, and counts above this number, are drawn on a logarithmic axis."""
 
 
@@ -209,4 +209,4 @@ def nearly_flat(*stresses: Floats) -> bool:
 
 def spans_decades(values: Floats) -> bool:
     """Return True if values are positive and span so much that they need a logarithmic axis."""
-    return bool(values.min() > 0.0 and values.max() > WIDE * values.min())
+    return bool(values.min() > 0.0 and values.max() > SPAN_OF_LOGARITHM * values.min())

@@ -54,14 +54,14 @@ from stickslip.problem.kinds import (
     DRIVERS_OF_WAVES,  # Each kind of driver of a body with waves.
 )
 from stickslip.problem.limits import (
+    # Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces
+    # and 0.1 s.
+    EXACT_TRIPS,
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
     LARGEST_SHARE,
     # Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond.
     MOST_PIECES,
     MOST_ROUND_TRIPS,  # Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps.
-    # Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces
-    # and 0.1 s.
-    PATIENCE,
     automatic_length,  # Return the shortest event (s) of automatic lumping.
     check_creep_rtol,  # Check a tolerance of leaps over creep that `simulate` takes (None is automatic).
     check_round_trips,  # Refuse a run of more than 2^53 round trips of `round_trip` seconds, which cannot be counted exactly.
@@ -128,7 +128,7 @@ from stickslip.problem.run_quantities import (
     # Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z.
     EVENT_SHARE,
     LARGEST_RTOL,  # Largest relative tolerance of a run.
-    RTOL,  # Declares the relative tolerance of a run.
+    RUN_RTOL,  # Declares the relative tolerance of a run.
     SHORTEST_EVENT,  # Declares the length (s) below which slip events are lumped.
     RunNumbers,  # The numbers of a run, which its solver takes: how long and how accurately, and how much it may keep.
     check_event_rate,  # Return the slip rate (m/s) that defines slip events, or None, which stands for the default of the problem.
@@ -167,6 +167,7 @@ __all__ = [
     "EDGE",
     "ENOUGH_EVENTS",
     "EVENT_SHARE",
+    "EXACT_TRIPS",
     "FULL_HISTORY",
     "HISTORIES",
     "HISTORIES_ONLY",
@@ -178,10 +179,9 @@ __all__ = [
     "MAY_VARY",
     "MOST_PIECES",
     "MOST_ROUND_TRIPS",
-    "PATIENCE",
     "PERFECT_DELAY",
     "PRESSING",
-    "RTOL",
+    "RUN_RTOL",
     "SELECTION_RULES",
     "SHORTEST_EVENT",
     "SHORT_OF_MEMORY",

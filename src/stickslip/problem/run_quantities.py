@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
 
 DURATION = Quantity("s", "how long to simulate", above=0)
-RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
+RUN_RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
 CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
 SHORTEST_EVENT = Quantity(
     "s", "lump slip events that are shorter (slab, rigid driver; layers); 0: none; else automatic", at_least=0
@@ -40,7 +40,7 @@ class RunNumbers(NamedTuple):
 
 def check_rtol(value: Any, where: str, name: str = "rtol") -> float:
     """Return a relative tolerance as a float. Raises InputError, beginning with `where`, if it is out of range."""
-    found = RTOL.check(where, name, value)
+    found = RUN_RTOL.check(where, name, value)
     if found > LARGEST_RTOL:
         raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {found:g}")
     return found

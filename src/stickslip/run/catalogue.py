@@ -19,7 +19,7 @@ from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import run_to_end
-from stickslip.solution.files import CATALOGUE, FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
+from stickslip.solution.files import CATALOGUE, FILE_FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
 from stickslip.solution.observables import (
     EventStream,
     Look,
@@ -307,7 +307,7 @@ class EventRows:
     def _about(self, so_far: OutputSoFar, rows: Rows) -> dict[str, Any]:
         stream = so_far.stream
         return {
-            CATALOGUE: FORMAT,
+            CATALOGUE: FILE_FORMAT,
             "catalogue": rows.path.name,
             "bytes": so_far.size,
             "digest": rows.digest(so_far.size),

@@ -31,7 +31,7 @@ WHAT: dict[str, Callable[[Solution], bool | int]] = {
     "pulses": lambda run: int(run.events.pulses.sum()),
 }
 """What may change along a parameter: whether the contact sticks in the last third of a run, how many events or pulses it has."""
-SETTLED = "sticking"
+SETTLED_OUTCOME = "sticking"
 """That of them which is asked of the end of a run, and should not depend on its length."""
 WITHIN = 1e-3
 """Default width of the last bracket, as a share of its upper end."""
@@ -184,7 +184,7 @@ def find(
         search = _EdgeSearch(scenario, parameter, what, lasts, tell)
         span = search.ends(*ends)
         edge = search.edge(*span, within)
-        return held_in_longer_runs(search, edge, span, within, given=duration is not None) if what == SETTLED else edge
+        return held_in_longer_runs(search, edge, span, within, given=duration is not None) if what == SETTLED_OUTCOME else edge
 
 
 def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lambda text: None) -> FromRest | None:

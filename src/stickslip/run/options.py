@@ -33,7 +33,7 @@ from stickslip.problem.scenarios import Scenario, read_source
 if TYPE_CHECKING:
     from stickslip.solution import Solution
 
-RTOL = 1e-10
+DEFAULT_RTOL = 1e-10
 """Default relative tolerance."""
 CHECKPOINT_EVERY = 30.0
 """Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
@@ -63,7 +63,7 @@ class RunOptions:
     """
 
     duration: Number = declare(DURATION)
-    rtol: float = RTOL
+    rtol: float = DEFAULT_RTOL
     creep_rtol: float | None = None
     shortest_event: OptionalNumber = declare(SHORTEST_EVENT, None)
     max_events: int | None = None

@@ -55,7 +55,11 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     assert np.isin(time, places).all()
     top = highest[np.searchsorted(places, time)]
     assert top == pytest.approx(total, rel=0.0, abs=1e-9 * total.max())
-    assert [name for name in energy.PARTS if energy.PARTS[name][0] in [area.get_label() for area in axes.collections]] == parts
+    assert [
+        name
+        for name in energy.PARTS_OF_ENERGY
+        if energy.PARTS_OF_ENERGY[name][0] in [area.get_label() for area in axes.collections]
+    ] == parts
     assert all((dataset[part] >= -1e-12 * dataset.total.max()).all() for part in parts)
     assert worst_imbalance(run) < 1e-9
 
@@ -64,7 +68,7 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
 @pytest.mark.usefixtures("coarse")
 def test_the_parts_miss_the_total_if_one_is_left_out() -> None:
     _, dataset = drawn("slab, lossy")
-    without = sum(dataset[part] for part in energy.PARTS if part != "radiated")
+    without = sum(dataset[part] for part in energy.PARTS_OF_ENERGY if part != "radiated")
     assert float(abs(without - dataset.total).max() / dataset.total.max()) > 0.1
 
 

@@ -18,7 +18,7 @@ from stickslip.foundation.place import Place
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-POINTS = 801
+RATES_DRAWN = 801
 """Number of slip rates at which friction is drawn."""
 AROUND, FAST = 10.0, 10.0
 """Factor by which the drawn slip rates go beyond those that are named; and the rate (m/s) they reach if no rate is critical."""
@@ -32,7 +32,7 @@ def data(found: SteadySlidings, title: str = "") -> xr.Dataset:
     edge = _edge_from_rest(found)
     rests = [] if edge is None else [edge]
     named = np.array([*slidings, *critical, *rests, *([] if critical.size else [FAST / AROUND])])
-    rates = np.unique(np.concatenate((np.geomspace(named.min() / AROUND, named.max() * AROUND, POINTS), critical)))
+    rates = np.unique(np.concatenate((np.geomspace(named.min() / AROUND, named.max() * AROUND, RATES_DRAWN), critical)))
     below = not found.changes[0].stable_above if found.changes else bool(found.slidings and found.slidings[0].stable)
     stable = (np.searchsorted(critical, rates, side="right") % 2 == 0) == below
     contents = {
