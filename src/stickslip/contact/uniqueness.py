@@ -142,7 +142,9 @@ class Uniqueness(NamesAttributes):
         from stickslip.figures.sheet import known_to_pyplot
 
         assert self.problem is not None
-        return known_to_pyplot(admissible.draw(admissible.data(self.problem, law_slip=self.law_slip), **place), place)
+        return known_to_pyplot(
+            admissible.draw_admissible(admissible.admissible_data(self.problem, law_slip=self.law_slip), **place), place
+        )
 
     @property
     def loop_area(self) -> float:

@@ -24,6 +24,7 @@ from stickslip.solution import Solution
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 WHAT: dict[str, Callable[[Solution], bool | int]] = {
     "sticking": lambda run: share_sticking(run.history) > 0.0,
@@ -90,10 +91,16 @@ class Edge(StudyWithDataset):
     def _about(self) -> Iterable[str]:
         return (self.text, f"{self.parameter} in {self.unit}" if self.unit not in ("", "1") else "")
 
-    def _figure(self) -> Any:
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
         from stickslip.figures.runs import find as drawn
 
-        return drawn
+        return drawn.edge_data(self)
+
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.figures.runs import find as drawn
+
+        return drawn.draw_edge
 
     def _lines(self) -> Iterable[str]:
         return (self.text,)

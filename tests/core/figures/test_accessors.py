@@ -36,7 +36,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
     """Return a run and the numbers that its figure shows."""
     problem, duration, _ = DRAWN[name]
     run = ss.simulate(problem, duration, rtol=1e-12)
-    return run, energy.data(run)
+    return run, energy.energy_data(run)
 
 
 @pytest.mark.usefixtures("coarse")
@@ -45,7 +45,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
 def test_areas_stack_up_to_the_total(name: str) -> None:
     """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""
     (run, dataset), parts = drawn(name), DRAWN[name][2]
-    axes = energy.draw(dataset).axes[0]
+    axes = energy.draw_energy(dataset).axes[0]
     (line,) = axes.lines
     time, total = (np.asarray(values, float) for values in (line.get_xdata(), line.get_ydata()))
     x, y = np.asarray(axes.collections[-1].get_paths()[0].vertices).T
@@ -89,7 +89,7 @@ def test_a_long_run_is_shown_around_its_event_with_units() -> None:
 def test_a_block_at_rest_can_be_drawn() -> None:
     """All its energies are zero: there is nothing to stack."""
     rest = ss.simulate(ss.Problem(BLOCK_PROBLEM.body, BLOCK_PROBLEM.friction, pull_rate=0.0, initial_excess=-1e6), 10.0)
-    (axes,) = energy.draw(energy.data(rest)).axes
+    (axes,) = energy.draw_energy(energy.energy_data(rest)).axes
     assert not axes.collections
     assert not axes.lines[0].get_ydata().any()
 

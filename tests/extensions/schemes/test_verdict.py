@@ -103,9 +103,9 @@ def test_bad_axes_and_options_are_refused(problem: ss.Problem, options: dict[str
 
 
 def test_the_figure_shows_the_ratios_and_both_lines(found: Analogy) -> None:
-    dataset = figure.data(found)
+    dataset = figure.analogy_data(found)
     np.testing.assert_array_equal(dataset.slip_ratio.values, found.ratio("slip"))
-    drawn = figure.draw(dataset)
+    drawn = figure.draw_analogy(dataset)
     assert drawn.axes[2].get_xlabel() == "wavelength (m)"
     titles = [axes.get_title(loc="left") for axes in drawn.axes[:4]]
     assert titles[0] == "(a)  ratio of slips"

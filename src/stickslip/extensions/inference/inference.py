@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import pandas as pd
@@ -36,6 +36,9 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.problem.scenarios import Scenario
 from stickslip.run import TextProgress, telling
 from stickslip.solution.files import origin
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MISSED, MISSED_SHARE = 3.0, 0.2
 """A run misses a record if residuals exceed this multiple of the noise of neighbouring samples and this share of the scatter."""
@@ -153,10 +156,16 @@ class Inference(FittedRecord):
 
         return write(self, Path(folder), *others)
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.inference.figures import inference as drawn
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
+        from stickslip.extensions.inference.figures.inference import inference_data
 
-        return drawn
+        return inference_data(self)
+
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.inference.figures.inference import draw_inference
+
+        return draw_inference
 
     def _lines(self) -> Iterator[str]:
         yield self.headline

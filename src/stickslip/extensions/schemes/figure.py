@@ -59,7 +59,7 @@ def curves(study: Schemes) -> list[SchemeCurve]:
 
 
 @styled
-def draw(study: Schemes, **place: Unpack[Place]) -> Figure:
+def draw_schemes(study: Schemes, **place: Unpack[Place]) -> Figure:
     """Draw the errors on the left; on the right the slip, and below it the slip rate."""
     figure = sheet((7.4, 5.4), **place)
     axes: Any = figure.subplot_mosaic([["errors", "slip"], ["errors", "slip_rate"]], width_ratios=(1, 1.25))

@@ -6,7 +6,7 @@ physical hypothesis". With the exact solution of every rule this can be measured
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -166,10 +166,10 @@ class Schemes(Study):
         for name, (unit, meaning) in self.columns.items():
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.schemes import figure
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.schemes.figure import draw_schemes
 
-        return figure
+        return draw_schemes
 
     def _lines(self) -> Iterator[str]:
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"

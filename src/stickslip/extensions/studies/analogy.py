@@ -9,6 +9,7 @@ Source: Campillo et al. 1996, Figs 5-7, who compare both bodies at three points;
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -31,6 +32,8 @@ from stickslip.run import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from stickslip.problem.scenarios import Scenario
 
 
@@ -88,10 +91,16 @@ class Analogy(StudyWithDataset):
         ranges = (f"{name.replace('_', ' ')} {ratio.min():.2g} to {ratio.max():.2g}" for name, ratio in ratios)
         return f"{where}; {noun} over block: {', '.join(ranges)}"
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.studies.figures import analogy as drawn
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
+        from stickslip.extensions.studies.figures.analogy import analogy_data
 
-        return drawn
+        return analogy_data(self)
+
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.studies.figures.analogy import draw_analogy
+
+        return draw_analogy
 
     def _lines(self) -> tuple[str, ...]:
         return (self.text,)

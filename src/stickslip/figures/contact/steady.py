@@ -24,7 +24,7 @@ AROUND, FAST = 10.0, 10.0
 """Factor by which the drawn slip rates go beyond those that are named; and the rate (m/s) they reach if no rate is critical."""
 
 
-def data(found: SteadySlidings, title: str = "") -> xr.Dataset:
+def steady_data(found: SteadySlidings, title: str = "") -> xr.Dataset:
     """Return the friction of steady sliding along the slip rate and whether it is stable there, with the rates that are named."""
     assert found.problem is not None
     slidings = [abs(one.rate) for one in found.slidings]
@@ -55,7 +55,7 @@ def _edge_from_rest(found: SteadySlidings) -> float | None:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+def draw_steady(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw friction of steady sliding, solid where it is stable, with the steady motion, critical rates and hysteresis."""
     axes = one_panel((5.6, 3.8), **place)
     metres, stress = unit_shown(dataset["slip_rate"]), unit_shown(dataset["traction"])

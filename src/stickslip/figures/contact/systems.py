@@ -43,7 +43,7 @@ PANELS_OF_LAWS = {
 """Panels by their abscissa: the dimension of the laws, the title and the place of the legend."""
 
 
-def data(block: Problem, slab: Problem) -> xr.Dataset:
+def systems_data(block: Problem, slab: Problem) -> xr.Dataset:
     """Return the constants of both systems, and the displacement (m) of the slab at t = 0 across its thickness, all in SI."""
     inside = as_slab(slab.body)
     x = np.linspace(0.0, inside.thickness, 21)
@@ -60,7 +60,7 @@ def data(block: Problem, slab: Problem) -> xr.Dataset:
 
 
 @styled
-def draw(_: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_systems(_: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a sketch, not to scale, that shows what the symbols mean; it is the same whatever numbers the dataset holds."""
     figure, ((left, right),) = panels(1, 2, (7.2, 2.7), place)
     for axes in (left, right):

@@ -69,7 +69,7 @@ LETTERS_OF_LINE = 17
 """Number of letters in a line of a title or a label of a panel in a narrow figure."""
 
 
-def data(solution: Solution, event: int | None = None) -> xr.Dataset:
+def catalogue_data(solution: Solution, event: int | None = None) -> xr.Dataset:
     """Return the catalogue of a run, its slip, and one event in local time, as a dataset in SI.
 
     `event` is the row number in `solution.events`; negative ones count from the last. By default it is the last event whose slip is
@@ -120,7 +120,7 @@ def _title(title: str, table: pd.DataFrame) -> str:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_catalogue(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
 
     A catalogue without its run has no zooms, one of one event no distributions, and one of two no return map. In a narrow figure

@@ -28,7 +28,7 @@ RUN_CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Curves of each run, in SI; the panel of traction shows the load too."""
 
 
-def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
+def comparison_data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
     """Return the curves of each run from t = 0 to `end` (s), in SI, with the run's name as prefix of the variables.
 
     Each run has its own times, with both limits at every shock. `titles` names the columns.
@@ -47,7 +47,7 @@ def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_comparison(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a column for each system, with friction as a solid line and the load as a dashed line behind it."""
     names, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("systems", "system_titles"))
     figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), place, sharex=True)

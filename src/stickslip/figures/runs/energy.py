@@ -47,7 +47,7 @@ PARTS_OF_ENERGY = {
 """The parts that are stacked, from below: name of the variable, text and colour."""
 
 
-def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
+def energy_data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
     """Return the parts of the energy against `time` (s), and their total, as a dataset (J/m^2 for a slab, J for a block).
 
     The interval from `start` to `end` (s) is by default that of `choose_interval`. Heat, radiated and damped energy count from
@@ -71,7 +71,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+def draw_energy(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw the parts stacked, without those that are zero throughout, and the total as a dashed line."""
     axes = one_panel((6.4, 3.8), **place)
     unit, size = readable_unit(dataset.total.attrs["units"], dataset.total.values)

@@ -37,7 +37,7 @@ HEIGHTS = {"curves": 1.75, "drive": 1.5, "loading": 1.25, "slip": 2.0}
 
 
 @styled
-def draw(readings: Readings, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
+def draw_run(readings: Readings, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
     """Draw a run, or a window on it, from `start` to `end` (s).
 
     Shocks (jumps of the slip rate) are marked by dotted lines. The unit of time, from µs to years, suits the interval. If the

@@ -53,7 +53,7 @@ FRAMES = 4000
 """Number of times at which the slip rate is drawn, evenly spaced, besides those of the samples."""
 
 
-def data(study: Inference) -> xr.Dataset:
+def inference_data(study: Inference) -> xr.Dataset:
     """Return data, model and residual of each sample, the slip rate of the runs, and the numbers with their covariance, in SI."""
     table = study.curves
     begins = np.array([part.record.time[0] for part in study.parts])  # the first sample, or the first event
@@ -127,7 +127,7 @@ def _numbers(study: Inference) -> dict[str, xr.Variable]:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_inference(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw record and best run, the residual and the slip rate below each other, and beside them pairs of numbers."""
     paired = _paired(dataset)
     count = max(len(paired) - 1, 0)

@@ -33,7 +33,7 @@ NOT, STANDS = TWO
 """Colours of points at which the block does not stand for the slab, and at which it does."""
 
 
-def data(found: Analogy) -> xr.Dataset:
+def analogy_data(found: Analogy) -> xr.Dataset:
     """Return the results of a study over its two axes, shape (y, x), in SI.
 
     They are the three ratios slab / block, the numbers of pulses of slab and block, the two weakening numbers, and `stands` (1 if
@@ -54,7 +54,7 @@ def data(found: Analogy) -> xr.Dataset:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_analogy(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
     figure, axes = panels(2, 2, (7.2, 6.8), place, sharex=True, sharey=True)
     noun = dataset.attrs["body"]

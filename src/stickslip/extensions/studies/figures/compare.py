@@ -115,7 +115,7 @@ def _line(view: Readings, row: str, span: tuple[float, float], *, shares: bool, 
 
 
 @styled
-def draw(study: Comparison, **place: Unpack[Place]) -> Figure:
+def draw_compared(study: Comparison, **place: Unpack[Place]) -> Figure:
     """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
     figure, grid = panels(len(COMPARED_PANELS), 1, (6.4, 6.2), place, sharex=True)
     found = drawn(study)

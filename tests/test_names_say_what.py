@@ -1,4 +1,4 @@
-"""A constant says what it is of: a module constant of one word stands in few modules, so that grep finds the one that is meant."""
+"""A constant or a function says what it is of: grep for its name finds the one that is meant, or a few."""
 
 from __future__ import annotations
 
@@ -58,3 +58,10 @@ def test_a_constant_of_one_word_stands_in_three_modules_at_most() -> None:
 )
 def test_every_way_to_write_a_constant_is_counted(line: str, names: set[str]) -> None:
     assert set(words_of_modules({"one.py": line})) == names
+
+
+def test_a_function_that_draws_says_what() -> None:
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
+    functions = {path: [one.name for one in tree.body if isinstance(one, ast.FunctionDef)] for path, tree in trees.items()}
+    assert sum(name.startswith("draw_") for names in functions.values() for name in names) > 15
+    assert [path for path, names in functions.items() if {"draw", "data"} & set(names)] == []
