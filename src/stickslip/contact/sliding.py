@@ -227,7 +227,7 @@ class SteadySlidings:
         from stickslip.figures.sheet import known_to_pyplot
 
         self.check_drawn("plot")
-        return known_to_pyplot(steady.draw(steady.data(self), **place), place)
+        return known_to_pyplot(steady.draw_steady(steady.steady_data(self), **place), place)
 
     def check_drawn(self, where: str) -> None:
         """Raise InputError, which begins with `where`, if there is no steady sliding that could be drawn."""

@@ -21,7 +21,7 @@ from stickslip.contact.lowest_slope import critical_stress_between
 from stickslip.contact.regime import Regime, named_regime, proof_of, window_of
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
-from stickslip.contact.slopes import FASTEST
+from stickslip.contact.slopes import FASTEST_BOUNDED
 from stickslip.contact.uniqueness_in_words import (
     INERTIA,
     MOST_SHOWN,
@@ -142,7 +142,9 @@ class Uniqueness(NamesAttributes):
         from stickslip.figures.sheet import known_to_pyplot
 
         assert self.problem is not None
-        return known_to_pyplot(admissible.draw(admissible.data(self.problem, law_slip=self.law_slip), **place), place)
+        return known_to_pyplot(
+            admissible.draw_admissible(admissible.admissible_data(self.problem, law_slip=self.law_slip), **place), place
+        )
 
     @property
     def loop_area(self) -> float:
@@ -269,7 +271,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
-    window, critical, endless = window_of(stable), _critical(problem, g, slip), proof.reach < FASTEST
+    window, critical, endless = window_of(stable), _critical(problem, g, slip), proof.reach < FASTEST_BOUNDED
     jumps = jumps_of(g, stable, table, min(len(stable), MOST_LEFT) if endless else len(stable)) if window else ()
     return Uniqueness(
         regime=named_regime(g, window),

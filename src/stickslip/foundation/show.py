@@ -20,7 +20,7 @@ from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumber
 
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
 """Units of time with their lengths in s, longest first."""
-DIGITS = 6
+BRIEF_DIGITS = 6
 """Number of significant digits of `brief`."""
 UNHANDY = 2
 """A text may be this many characters longer if its number then lies between 0.1 and 1000."""
@@ -55,7 +55,7 @@ def in_turns(angle: float) -> str:
     return f" ({number(turns, 6)} turns)" if abs(turns) >= 1.0 else ""
 
 
-def brief(value: float, unit: str, digits: int = DIGITS) -> str:
+def brief(value: float, unit: str, digits: int = BRIEF_DIGITS) -> str:
     """Format a quantity, with 6 digits by default, in the unit that makes it short: "10 km", "0.05 m/year", "100 MPa".
 
     Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
@@ -251,7 +251,7 @@ def _text(value: Any, declared: Any) -> str:
     if isinstance(value, np.ndarray) and value.ndim:
         return f"<array of shape {value.shape}>"
     if isinstance(value, Given):
-        return f"'{value.amount:.{DIGITS}g} {value.unit}'"
+        return f"'{value.amount:.{BRIEF_DIGITS}g} {value.unit}'"
     if isinstance(value, Real) and not isinstance(value, bool | np.bool_ | int):
         return _number(float(value), unit)
     if isinstance(value, tuple) and type(value) is tuple:

@@ -22,7 +22,7 @@ from stickslip.run.options import CallOptions
 from stickslip.run.progress import reporting
 from stickslip.run.run_loop import run_to_end
 from stickslip.run.words import WORDS, GivenToCatalogue
-from stickslip.solution.files import CATALOGUE, FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
+from stickslip.solution.files import CATALOGUE, FILE_FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
 from stickslip.solution.observables import (
     EventStream,
     Look,
@@ -287,7 +287,7 @@ class EventRows:
     def _about(self, so_far: OutputSoFar, rows: Rows) -> dict[str, Any]:
         stream = so_far.stream
         return {
-            CATALOGUE: FORMAT,
+            CATALOGUE: FILE_FORMAT,
             "catalogue": rows.path.name,
             "bytes": so_far.size,
             "digest": rows.digest(so_far.size),

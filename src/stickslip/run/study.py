@@ -64,15 +64,15 @@ class Study(NamesAttributes):
 
         The keywords `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`.
         """
-        figure: Figure = self._figure().draw(self._drawn(), **place)
+        figure: Figure = self._figure()(self._drawn(), **place)
         return known_to_pyplot(figure, place)
 
     def _drawn(self) -> Any:
         """Return what the figure is drawn from: the result, or its dataset."""
         return self
 
-    def _figure(self) -> Any:
-        """Return the module that draws it: `draw(result)`, or `data(result)` and `draw(dataset)`."""
+    def _figure(self) -> Callable[..., Any]:
+        """Return the function that draws the result, or its dataset."""
         raise NotImplementedError
 
     def _shown_table(self) -> pd.DataFrame:
@@ -98,7 +98,7 @@ class StudyWithDataset(Study):
 
     def to_dataset(self) -> xr.Dataset:
         """Return what `plot` draws, in SI units."""
-        return self._figure().data(self)  # type: ignore[no-any-return]
+        raise NotImplementedError
 
     def _drawn(self) -> Any:
         return self.to_dataset()

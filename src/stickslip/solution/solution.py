@@ -45,7 +45,7 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.runs import catalogue
 
-        return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
+        return known_to_pyplot(catalogue.draw_catalogue(catalogue.catalogue_data(self._run, event), **place), place)
 
     @in_given_units
     def path(self, **place: Unpack[Place]) -> Figure | Axes:
@@ -55,7 +55,7 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.contact import admissible
 
-        return known_to_pyplot(admissible.draw(admissible.data(self._run.problem, self._run), **place), place)
+        return known_to_pyplot(admissible.draw_admissible(admissible.admissible_data(self._run.problem, self._run), **place), place)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -17,7 +17,16 @@ from stickslip.extensions.explorer.model.solve import solve
 from stickslip.extensions.explorer.model.tour import TOUR
 from stickslip.extensions.explorer.page.panels import view_of
 from stickslip.extensions.explorer.static import export
-from stickslip.extensions.explorer.static.export import COARSE, LEVELS, SHORT, check_folder, content_of, packed, script, write_tour
+from stickslip.extensions.explorer.static.export import (
+    COARSE,
+    LARGEST_PACKED,
+    SHORT_COLUMN,
+    check_folder,
+    content_of,
+    packed,
+    script,
+    write_tour,
+)
 from stickslip.foundation.errors import InputError
 
 
@@ -26,7 +35,7 @@ def unpacked(one: Any) -> Any:
     if isinstance(one, list):
         return np.array([np.nan if number is None else number for number in one], float)
     raw = np.frombuffer(base64.b64decode(one["whole"]), f"<u{one['bits'] // 8}").astype(float)
-    most = LEVELS[one["bits"]]
+    most = LARGEST_PACKED[one["bits"]]
     values = np.where(raw > most, np.nan, one["low"] + raw / most * (one["high"] - one["low"]))
     return values.reshape(one["shape"]) if "shape" in one else values
 
@@ -44,11 +53,11 @@ def test_a_packed_column_is_right_to_half_a_step(bits: int, shape: tuple[int, ..
     values = np.random.default_rng(3).normal(size=shape)
     values.flat[5] = np.nan
     found = unpacked(packed([values] if len(shape) == 2 else values, bits))
-    np.testing.assert_allclose(found, values, rtol=0, atol=0.5001 * (np.nanmax(values) - np.nanmin(values)) / LEVELS[bits])
+    np.testing.assert_allclose(found, values, rtol=0, atol=0.5001 * (np.nanmax(values) - np.nanmin(values)) / LARGEST_PACKED[bits])
     assert found.shape == shape
 
 
-@pytest.mark.parametrize("values", [[], [1.5, np.nan], np.full(SHORT + 1, 3.25), np.full(SHORT + 1, np.nan)])
+@pytest.mark.parametrize("values", [[], [1.5, np.nan], np.full(SHORT_COLUMN + 1, 3.25), np.full(SHORT_COLUMN + 1, np.nan)])
 def test_short_constant_and_empty_columns_are_exact(values: Any) -> None:
     np.testing.assert_array_equal(unpacked(packed(values)), np.asarray(values, float))
 

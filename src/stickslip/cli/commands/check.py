@@ -123,14 +123,14 @@ def _set(loaded: Scenario) -> Callable[..., object]:
     """Return the function that draws the set K of a scenario."""
     from stickslip.figures.contact import admissible
 
-    return partial(admissible.draw, admissible.data(loaded.problem, title=loaded.heading))
+    return partial(admissible.draw_admissible, admissible.admissible_data(loaded.problem, title=loaded.heading))
 
 
 def _sliding(found: SteadySlidings, title: str) -> Callable[..., object]:
     """Return the function that draws steady sliding."""
     from stickslip.figures.contact import steady
 
-    return partial(steady.draw, steady.data(found, title))
+    return partial(steady.draw_steady, steady.steady_data(found, title))
 
 
 def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
@@ -143,4 +143,4 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:
         found = regime_map(loaded.problem, x, y, lambda done, count: report(f"{done} of {count} points"))
-    return partial(regimes.draw, loaded.problem, found, loaded.heading)
+    return partial(regimes.draw_regimes, loaded.problem, found, loaded.heading)

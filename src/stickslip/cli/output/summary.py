@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from stickslip.run import Catalogue
     from stickslip.solution import Solution
 
-FIRST = 12
+ROWS_SHOWN = 12
 """Number of table rows that are shown."""
-DIGITS = 8, 5
+TABLE_DIGITS = 8, 5
 """Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
 MANY_EVENTS = 100_000
 """A catalogue with more events than this is not read again for its statistics."""
@@ -32,7 +32,7 @@ NOTES = {"trapped": "trapped energy", "predictability": "predictability", "prove
 """Notes that one line sums up, as `Catalogue.notes` calls them, in words."""
 REST = " (--all has the rest)"
 """Says where the rest of these notes is."""
-REACH = "reach"
+ATTRIBUTE_OF_REACH = "reach"
 """Attribute of a catalogue with the slip at the end and the largest displacement, in words."""
 LATE = 1e4
 """Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
@@ -85,8 +85,8 @@ def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any], p
     """Print on standard output the slip events of a catalogue, after what its attributes say about the run, if there are any."""
     screen = console()
     say(screen, clean(name), style="bold")
-    if about.get(REACH):
-        say(screen, clean(str(about[REACH])))
+    if about.get(ATTRIBUTE_OF_REACH):
+        say(screen, clean(str(about[ATTRIBUTE_OF_REACH])))
     if "status" in about:
         say(screen, clean(f"{about['status']}: {about['status_message']}"))
         reached = float(about["duration"])
@@ -169,13 +169,13 @@ def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], uni
     if not count:
         say(screen, f"no {what}\n")
         return
-    first = list(islice(zip(*columns.values(), strict=True), FIRST))
+    first = list(islice(zip(*columns.values(), strict=True), ROWS_SHOWN))
     scaled = [_readable(column, unit) for column, unit in zip(zip(*first, strict=True), units, strict=True)]
     headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, (unit, _) in zip(columns, scaled, strict=True)]
     rows = list(zip(*(column for _, column in scaled), strict=True))
-    forms = [[[_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)] for row in rows] for digits in DIGITS]
+    forms = [[[_cell(value, unit, n) for value, unit in zip(row, units, strict=True)] for row in rows] for n in TABLE_DIGITS]
     shown = next((form for form in forms if fits(screen, headings, form)), forms[0])
-    more = f", the first {FIRST} of them" if count > FIRST else ""
+    more = f", the first {ROWS_SHOWN} of them" if count > ROWS_SHOWN else ""
     say(screen, f"{count} {what}{'s' if count > 1 else ''}{more}")
     print_numbers(screen, headings, shown)
     screen.print()

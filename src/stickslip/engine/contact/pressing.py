@@ -10,7 +10,7 @@ import math
 
 from stickslip.engine.contact.pieces import phase_at, xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, fill
-from stickslip.engine.series.radau_nodes import POINT, POINTS
+from stickslip.engine.series.radau_nodes import NODES_OF_STEP, POINT
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import kernel
@@ -109,7 +109,7 @@ def before_turn(run: Run, xi_to: float) -> float:
 def press_stages(run: Run, h: float) -> None:
     """Put the normal load at the points of an implicit step of h seconds into its stages."""
     first, phase = own_states(run), phase_at(run, run.state.xi)
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         p, rate = pressing_at(run, phase, h * POINT[i])
         run.stage_state[TERMS * first + i], run.stage_state[TERMS * (first + 1) + i] = p, rate
 

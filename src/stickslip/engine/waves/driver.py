@@ -26,7 +26,7 @@ from stickslip.engine.waves.varying_forcing import cut
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 
-HALVINGS = 60
+HALVINGS_OF_LOAD = 60
 """Largest number of times (1) that a piece of load is halved."""
 
 
@@ -37,7 +37,7 @@ def drive(run: Run) -> float:
     pace, met, doubled = pace_of(run), wave_at_driver(run), 2.0 * impedance_at_driver(run)
     share = 1.0 / max(math.ceil(pace * (abs(run.state.speed) + 2.0 * abs(run.state.bend))), 1.0)
     shorten(run, share)
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS_OF_LOAD):
         force_machine(run)
         if move_machine(run, pace):
             break

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 SERVER = "Server"
 """Heading of the options of the server in the help."""
-FIRST = "fig6-slab"
-"""The scenario that is shown first if none is named."""
 ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reached from this computer only."
 ALLOW_ORIGIN = "Another host (NAME or NAME:PORT) under which the page may be reached, as behind a proxy; may be repeated."
 PORT = "Port to listen on; 0 for any free port. Not given: the first free port from 5018 on."
@@ -69,14 +67,14 @@ def explore(
     Exit code: 0 ended by Ctrl-C, 2 unusable input.
     """
     from stickslip.cli.overrides import load
-    from stickslip.extensions.explorer.model.setting import Setting, explorable
+    from stickslip.extensions.explorer.model.setting import FIRST_SCENARIO, Setting, explorable
     from stickslip.extensions.explorer.notebook import check_extra
 
     check_extra("explore")
     if static is not None:
         _write(static, scenario, changes, record)
         return
-    loaded = explorable(load(scenario or FIRST, "explore", changes, any_kind=True))
+    loaded = explorable(load(scenario or FIRST_SCENARIO, "explore", changes, any_kind=True))
     if not loaded.is_of_core and (loaded.to_solve.is_plane or record is not None):
         raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
     from stickslip.extensions.explorer.server.serve import Endpoint

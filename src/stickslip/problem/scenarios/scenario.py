@@ -247,7 +247,7 @@ class BundledScenarios(Mapping[str, Scenario]):
         if not isinstance(name, str):
             raise InputError(f"scenarios: a name must be text, such as 'fig6-slab', got {shown(name)}")
         if name not in self:
-            close = nearest(name, library.names(), listed=library.LISTED)
+            close = nearest(name, library.names(), listed=library.NAMES_LISTED)
             cure = "a file is read with ss.load_scenario" if name.endswith(".toml") else close
             raise InputError(f"no bundled scenario {ascii(name)[:60]}; {cure}")
         return load_scenario(name)

@@ -26,8 +26,8 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.problem import (
+    EXACT_TRIPS,
     MOST_PIECES,
-    PATIENCE,
     STEADY,
     VARYING,
     LoadingHistory,
@@ -125,7 +125,7 @@ def _automatic(scenario: Scenario) -> list[Fact]:
     if scenario.creep_rtol is None and tolerance > 0.0:
         over = leaps_over(problem)
         turn, of = problem.body.turn, "with slip" if "creep" in over else "of it"
-        does = f"leaps over {over} after {PATIENCE} {turn}s {of}, error of slip at most this times the slip so far"
+        does = f"leaps over {over} after {EXACT_TRIPS} {turn}s {of}, error of slip at most this times the slip so far"
         facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every {turn}"))
     if scenario.shortest_event is None and lumps_by_itself(problem):
         does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Iterator
 
 from stickslip.contact import Uniqueness
-from stickslip.foundation.names import KINDS
+from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.foundation.show import brief
 from stickslip.friction import SinusoidalSlip
 from stickslip.problem import Problem
@@ -77,7 +77,7 @@ class CheckOfWaves(CheckOfKind):
         held = problem.body.held_at_start(problem.rate, problem.initial_shear)
         if any(held):
             sizes = " and ".join(brief(one, problem.load_unit) for one in held if one)
-            yield f"the {KINDS[problem.load_unit].loads} grows from the contact to the driver by what drag takes, {sizes}"
+            yield f"the {KINDS_OF_BODY[problem.load_unit].loads} grows from the contact to the driver by what drag takes, {sizes}"
         yield from CHECK_DRIVERS[problem.driver_kind].at_start(problem)
 
     def other_start(self, problem: Problem) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from stickslip.foundation.show import brief
 
-DIGITS = 4
+DIGITS_IN_WORDS = 4
 """Number of significant digits."""
 
 
 def short(value: float, unit: str) -> str:
     """Return a quantity (SI) briefly, such as "2.721 m"."""
-    return brief(float(value), unit, DIGITS).replace(" um", " µm")
+    return brief(float(value), unit, DIGITS_IN_WORDS).replace(" um", " µm")
 
 
 def several(count: int, thing: str) -> str:

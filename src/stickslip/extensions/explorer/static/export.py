@@ -21,9 +21,9 @@ from stickslip.extensions.explorer.model.solve import solve
 from stickslip.extensions.explorer.model.strip import setting_at, strip_of
 from stickslip.extensions.explorer.model.tour import TOUR, TourStep
 from stickslip.extensions.explorer.page.components import asset, look, player_script, style_sheet
-from stickslip.extensions.explorer.page.page import TITLES
+from stickslip.extensions.explorer.page.page import TITLES_OF_PANELS
 from stickslip.extensions.explorer.page.panels import plots, view_of
-from stickslip.extensions.explorer.page.panels.loading import TEXTS as GIVEN
+from stickslip.extensions.explorer.page.panels.loading import TEXTS_OF_LOADING
 from stickslip.extensions.explorer.page.panels.motion import FURTHER
 from stickslip.extensions.explorer.page.stage import Stage
 from stickslip.extensions.explorer.page.strip import place_of, view_of_strip
@@ -35,9 +35,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import readable_unit
 from stickslip.foundation.show import number
 
-SHORT = 8
+SHORT_COLUMN = 8
 """Columns of at most this many numbers are written as they are."""
-LEVELS = {8: 2**8 - 2, 16: 2**16 - 2}
+LARGEST_PACKED = {8: 2**8 - 2, 16: 2**16 - 2}
 """The largest whole number of a packed column by its bits; the one after it stands for NaN."""
 COARSE = {"velocity", "stress"}
 """Images that are only drawn in colours: 8 bits are enough for them."""
@@ -72,7 +72,7 @@ def packed(values: Any, bits: int = 16) -> Any:
     if any(np.ndim(one) for one in values):
         return [_numbers(np.asarray(one, float)) for one in values]
     found = np.asarray(values, float)
-    return _numbers(found) if found.size <= SHORT else _quantised(found, bits)
+    return _numbers(found) if found.size <= SHORT_COLUMN else _quantised(found, bits)
 
 
 def _numbers(values: Any) -> list[float | None]:
@@ -82,8 +82,8 @@ def _numbers(values: Any) -> list[float | None]:
 def _quantised(values: Any, bits: int) -> dict[str, Any]:
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
-    scale = LEVELS[bits] / (high - low) if high > low else 0.0
-    whole = np.where(np.isfinite(values), np.rint((values - low) * scale), LEVELS[bits] + 1)
+    scale = LARGEST_PACKED[bits] / (high - low) if high > low else 0.0
+    whole = np.where(np.isfinite(values), np.rint((values - low) * scale), LARGEST_PACKED[bits] + 1)
     text = b64encode(whole.astype(f"<u{bits // 8}").tobytes()).decode("ascii")
     return {"bits": bits, "low": low, "high": high, "whole": text}
 
@@ -184,7 +184,7 @@ def content_of(step: TourStep, places: int) -> dict[str, Any]:
 def shown_of(answer: Answer) -> dict[str, Any]:
     """Return what the panels and the sentence show of an answer."""
     view = view_of(answer)
-    return {"words": words_of(answer), "view": packed_view(view) | {"headings": headings_of(view, TITLES)}}
+    return {"words": words_of(answer), "view": packed_view(view) | {"headings": headings_of(view, TITLES_OF_PANELS)}}
 
 
 # ---- the page ---------------------------------------------------------------------------------------------------------------
@@ -201,7 +201,7 @@ def index_page() -> str:
     from bokeh.embed import components
 
     stages = Stage(), Stage()
-    never = FURTHER | GIVEN  # no step has a state, a record or a loading history
+    never = FURTHER | TEXTS_OF_LOADING  # no step has a state, a record or a loading history
     shown = {name: plot for name, plot in plots(stages[0]).items() if name not in never}
     models = shown | {f"strip_{name}": plot for name, plot in strip_plots(stages[1]).items()}
     made, places = components(models, wrap_script=False)

@@ -21,8 +21,8 @@ from stickslip.friction.formula.operations.enclosures import (
     sum_of_series,
 )
 from stickslip.friction.formula.operations.operation import (
+    FORMULA_UNITS,
     TINIEST,
-    UNITS,
     BallsWriter,
     Dimension,
     Levels,
@@ -47,7 +47,7 @@ def _same(node: Expression, a: Dimension, b: Dimension) -> Dimension:
     zero = Expression("constant", value=0.0)
     if a != b and zero not in node.arguments:
         one, other = (unit_text(x) or "a pure number" for x in (a, b))
-        raise InputError(f"{one} and {other} cannot be added or subtracted; {UNITS}")
+        raise InputError(f"{one} and {other} cannot be added or subtracted; {FORMULA_UNITS}")
     return b if node.arguments[0] == zero else a
 
 

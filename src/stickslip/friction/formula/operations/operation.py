@@ -29,7 +29,7 @@ FRESH = 4
 
 Dimension = dict[str, Fraction]
 """Exponents of m, kg and s in a unit; those that are zero are left out."""
-UNITS = "u is in m, v in m/s, a number without unit is a pure number"
+FORMULA_UNITS = "u is in m, v in m/s, a number without unit is a pure number"
 """End of a message about a wrong unit."""
 
 
@@ -157,7 +157,7 @@ class Radius:
 def pure(_: Expression, *arguments: Dimension) -> Dimension:
     """Return the dimension of a function, whose argument must be a pure number. Raises InputError if it is not."""
     if arguments[0]:
-        raise InputError(f"its argument must be a pure number, but is in {unit_text(arguments[0])}; {UNITS}")
+        raise InputError(f"its argument must be a pure number, but is in {unit_text(arguments[0])}; {FORMULA_UNITS}")
     return {}
 
 
