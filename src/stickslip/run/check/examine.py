@@ -41,8 +41,7 @@ from stickslip.problem import (
 )
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario, doubts, key_of, quantities_in
-from stickslip.run.check.asked import CHECK_KINDS
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_KINDS, Fact
 from stickslip.run.check.stability import stability_of, start_of, wait_of
 from stickslip.run.check.starts import chosen_starts
 

@@ -13,7 +13,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import (
     difference_of_series,
     product_of_series,
@@ -21,8 +20,12 @@ from stickslip.friction.formula.operations.enclosures import (
     sum_of_series,
 )
 from stickslip.friction.formula.operations.operation import (
+    REFERENCE,
+    SLOPE,
+    STEP,
     TINIEST,
     UNITS,
+    VALUE,
     BallsWriter,
     Dimension,
     Levels,
