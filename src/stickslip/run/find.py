@@ -95,7 +95,7 @@ class Edge(StudyWithDataset):
 
         return drawn
 
-    def _lines(self) -> Iterable[str]:
+    def _sentences(self) -> Iterable[str]:
         return (self.text,)
 
 

@@ -93,7 +93,7 @@ class Analogy(StudyWithDataset):
 
         return drawn
 
-    def _lines(self) -> tuple[str, ...]:
+    def _sentences(self) -> tuple[str, ...]:
         return (self.text,)
 
 

@@ -97,7 +97,7 @@ class Comparison(Study):
 
         return drawn
 
-    def _lines(self) -> Iterator[str]:
+    def _sentences(self) -> Iterator[str]:
         yield f"of {', '.join(self.runs)}"
         yield self.reach_text
 
