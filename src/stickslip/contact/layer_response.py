@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.drive import SteadyDrive
+from stickslip.contact.asked import SteadyDrive
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.problem.bodies.layered.layers import Layers

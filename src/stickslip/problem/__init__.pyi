@@ -2,20 +2,18 @@
 
 from stickslip.problem import features, loading
 from stickslip.problem import selection_rule as selection
-from stickslip.problem.at_first import (
-    far_at_first,  # Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa).
-    far_excess,  # Return the default far stress, that in the slab at the start, minus the reference strength (Pa).
-    # Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start.
-    wave_before,
-)
 from stickslip.problem.drivers.driver import (
     DRIVERS,  # What each kind of driver answers, by `Problem.driver_kind`.
     driver_impedance,  # Return how the driver of a uniform body resists a motion exp(s t) of its end.
     driver_of,  # Return what the driver of a problem answers.
+    far_at_first,  # Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa).
+    far_excess,  # Return the default far stress, that in the slab at the start, minus the reference strength (Pa).
     inflow_of,  # Return the inflow of a problem.
     loading_rate,  # Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
     steady_inflow,  # Return the inflow of a loading that does not vary: its value at 0 s and its growth per second.
     tone_of,  # Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground.
+    # Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start.
+    wave_before,
 )
 from stickslip.problem.drivers.machine import (
     pace_of,  # Return how fast (1/s) the motion of a machine may change by its own size: see `engine.waves.driver`.

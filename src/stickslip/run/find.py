@@ -102,7 +102,7 @@ class Edge(StudyWithDataset):
 
         return drawn.draw_edge
 
-    def _lines(self) -> Iterable[str]:
+    def _sentences(self) -> Iterable[str]:
         return (self.text,)
 
 

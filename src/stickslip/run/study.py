@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.show import ShownAsTable
 from stickslip.problem import in_given_units
 from stickslip.run.progress import reporting
 from stickslip.solution import Solution, known_to_pyplot
@@ -45,7 +45,7 @@ def uninterrupted(solution: Solution) -> Solution:
     return solution
 
 
-class Study(NamesAttributes):
+class Study(NamesAttributes, ShownAsTable):
     """The result of a study: a table, a text and a figure."""
 
     table: Any
@@ -78,19 +78,17 @@ class Study(NamesAttributes):
     def _shown_table(self) -> pd.DataFrame:
         return self.table  # type: ignore[no-any-return]
 
-    def _lines(self) -> Iterable[str]:
-        """Return what `repr` shows below the name; empty lines are left out."""
+    def _sentences(self) -> Iterable[str]:
+        """Return what is said of the result; empty texts are left out."""
         raise NotImplementedError
 
     @in_given_units
-    def __repr__(self) -> str:
-        return "\n".join([f"stickslip {type(self).__name__}", *(f"  {line}" for line in self._lines() if line)])
+    def _lines(self) -> list[tuple[str, ...]]:
+        return [(text,) for text in self._sentences() if text]
 
     @in_given_units
     def _repr_html_(self) -> str:
-        lines = "".join(f"<div>{escape(line)}</div>" for line in self._lines() if line)
-        table = self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)
-        return f"<div><b>stickslip {type(self).__name__}</b>{lines}{table}</div>"
+        return super()._repr_html_() + self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)
 
 
 class StudyWithDataset(Study):

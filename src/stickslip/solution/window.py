@@ -48,7 +48,7 @@ class Window(Exports):
         return self.solution.problem
 
     @property
-    def title(self) -> str:  # type: ignore[override]  # read only
+    def title(self) -> str:
         """The title of the run."""
         return self.solution.title
 

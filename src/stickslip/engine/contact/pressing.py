@@ -27,6 +27,14 @@ def own_states(run: Run) -> int:
 
 
 @kernel
+def tone_series(run: Run, amplitude: float, phase: float, time: float) -> None:
+    """Write into run.spare the coefficients in xi of amplitude sin(frequency t + phase) on a piece that begins at `time` (s)."""
+    frequency = run.params.tone_frequency
+    turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
+    tone_along(amplitude, (frequency * time + phase, turn, bend), run.spare, run.trial)
+
+
+@kernel
 def pressing_at(run: Run, phase: float, later: float) -> tuple[float, float]:
     """Return p and its rate of change (1/s) a time `later` (s) after a phase (s) of the present round trip."""
     params, segment = run.params, run.loading[run.counts.segment]

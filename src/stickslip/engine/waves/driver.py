@@ -17,11 +17,11 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.contact.pieces import phase_at
+from stickslip.engine.contact.pressing import tone_series
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import settled_rate
-from stickslip.engine.waves.tone import tone_series
 from stickslip.engine.waves.varying_forcing import cut
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead

@@ -167,7 +167,7 @@ class Inference(FittedRecord):
 
         return draw_inference
 
-    def _lines(self) -> Iterator[str]:
+    def _sentences(self) -> Iterator[str]:
         yield self.headline
         width = max(len(name) for name, _, _ in self.rows)
         for name, value, unit in self.rows:

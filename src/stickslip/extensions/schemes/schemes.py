@@ -171,7 +171,7 @@ class Schemes(Study):
 
         return draw_schemes
 
-    def _lines(self) -> Iterator[str]:
+    def _sentences(self) -> Iterator[str]:
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"
         if self.interrupted:
             yield "interrupted: these are the runs that were finished"

@@ -102,7 +102,7 @@ class Analogy(StudyWithDataset):
 
         return draw_analogy
 
-    def _lines(self) -> tuple[str, ...]:
+    def _sentences(self) -> tuple[str, ...]:
         return (self.text,)
 
 

@@ -97,7 +97,7 @@ class Comparison(Study):
 
         return draw_compared
 
-    def _lines(self) -> Iterator[str]:
+    def _sentences(self) -> Iterator[str]:
         yield f"of {', '.join(self.runs)}"
         yield self.reach_text
 

@@ -194,7 +194,7 @@ class Ensemble(RunsCompared):
 
         return draw_ensemble
 
-    def _lines(self) -> tuple[str, ...]:
+    def _sentences(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
         return about, self.note, self.text, self.growth_text, self.stopped
 

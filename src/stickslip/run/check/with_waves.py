@@ -12,8 +12,7 @@ from stickslip.friction import SinusoidalSlip
 from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario
-from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind, Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 from stickslip.run.reference.slab import PulseTrain
 

@@ -9,10 +9,9 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.extensions.explorer.model.answer import Answer, KeyNumber
+from stickslip.extensions.explorer.model.answer import Answer, KeyNumber, short
 from stickslip.extensions.explorer.model.fault import FaultAnswer
 from stickslip.extensions.explorer.model.setting import Setting, inner_leaves_of
-from stickslip.extensions.explorer.model.words import short
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.show import clean
 

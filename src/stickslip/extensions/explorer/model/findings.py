@@ -11,9 +11,8 @@ import pandas as pd
 
 from stickslip.contact import Uniqueness
 from stickslip.engine import largest_of
-from stickslip.extensions.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
+from stickslip.extensions.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind, short
 from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
-from stickslip.extensions.explorer.model.words import DIGITS_IN_WORDS, several, short
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem
 from stickslip.solution import Solution, last_large_event
@@ -72,6 +71,11 @@ def marks_of(found: Findings, motion: BodyCurves) -> tuple[Mark, ...]:
     """Return the marks of a run in order of time."""
     marks = [*_events(found), *_pulses(found, motion), *_jumps(found)]
     return tuple(sorted(marks, key=lambda mark: mark.time))
+
+
+def several(count: int, thing: str) -> str:
+    """Return a number of things: "no pulse", "one pulse", "3 pulses"."""
+    return f"{ {0: 'no', 1: 'one'}.get(count, count) } {thing}{'' if count in (0, 1) else 's'}"
 
 
 def largest_first(table: pd.DataFrame) -> pd.DataFrame:
@@ -199,7 +203,7 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
 def _reach(found: Findings) -> str:
     """Return the slip at the end and the largest displacement, if there is any, in few words: the plots need the room."""
     reach = found.solution.reach
-    text = reach.text(found.solution.problem, DIGITS_IN_WORDS).replace(" um", " µm") if reach.largest else ""
+    text = reach.text(found.solution.problem, DIGITS).replace(" um", " µm") if reach.largest else ""
     end, which, _ = text.partition(", which is the largest")
     return f"{end}, the largest" if which else text
 

@@ -18,7 +18,7 @@ from stickslip.foundation.determined import covariance_of, misses_trend, sizes_a
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import in_units
-from stickslip.foundation.show import html_table, text_table, with_uncertainty
+from stickslip.foundation.show import ShownAsTable, with_uncertainty
 from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw
 
@@ -28,8 +28,8 @@ AT_LIMIT = 1e-9
 """A parameter is at its limit if it is closer than this share of the change that the points would notice."""
 
 
-@dataclass(frozen=True, eq=False)
-class Fit(NamesAttributes):
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(NamesAttributes, ShownAsTable):
     """The result of `fit`: the law that fits best, and how well the points determine it.
 
     `points` have the variables of the law, and `residual` is their standard deviation about the law (no unit), corrected for the
@@ -78,11 +78,14 @@ class Fit(NamesAttributes):
             found.append((name, with_uncertainty(value, sizes.get(name)), f"{unit} {how}".strip()))
         return [*found, ("residual", f"{self.residual:.3g}", "standard deviation of the points about the law")]
 
-    def __repr__(self) -> str:
-        return text_table(self.title, self.rows, self.notes)
+    @property
+    def _caption(self) -> str:
+        """The title."""
+        return self.title
 
-    def _repr_html_(self) -> str:
-        return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
+    def _lines(self) -> list[tuple[str, ...]]:
+        """Return rows and notes."""
+        return [*self.rows, *(("note", note) for note in self.notes)]
 
 
 @for_users

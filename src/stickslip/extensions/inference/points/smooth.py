@@ -12,7 +12,7 @@ from stickslip.extensions.inference.points.penalised_spline import PenalisedSpli
 from stickslip.foundation.arguments import NamesAttributes, for_users, is_number, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, gathered, nearest
-from stickslip.foundation.show import html_table, text_table
+from stickslip.foundation.show import ShownAsTable
 from stickslip.friction.custom.points import FromTable, Points
 from stickslip.friction.piecewise import IGNORED_NOISE, reversals
 
@@ -32,8 +32,8 @@ FOLLOWS = 0.01
 """Largest distance between the law and the smooth curve, as a share of the residual."""
 
 
-@dataclass(frozen=True, eq=False)
-class Smooth(NamesAttributes):
+@dataclass(frozen=True, eq=False, repr=False)
+class Smooth(NamesAttributes, ShownAsTable):
     """The result of `smooth`: a law through the smooth curve, constant outside the range of the points, and what was smoothed away.
 
     `residual` is the standard deviation of the points about the curve (no unit), with the degrees of freedom taken into account;
@@ -79,11 +79,14 @@ class Smooth(NamesAttributes):
             found.append("the curve follows almost every point: the noise of neighbouring points may not be independent")
         return found
 
-    def __repr__(self) -> str:
-        return text_table(self.title, self.rows, self.notes)
+    @property
+    def _caption(self) -> str:
+        """The title."""
+        return self.title
 
-    def _repr_html_(self) -> str:
-        return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
+    def _lines(self) -> list[tuple[str, ...]]:
+        """Return rows and notes."""
+        return [*self.rows, *(("note", note) for note in self.notes)]
 
 
 @dataclass(frozen=True)

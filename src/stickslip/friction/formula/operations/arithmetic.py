@@ -13,7 +13,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import (
     difference_of_series,
     product_of_series,
@@ -22,7 +21,11 @@ from stickslip.friction.formula.operations.enclosures import (
 )
 from stickslip.friction.formula.operations.operation import (
     FORMULA_UNITS,
+    REFERENCE,
+    SLOPE,
+    STEP,
     TINIEST,
+    VALUE,
     BallsWriter,
     Dimension,
     Levels,

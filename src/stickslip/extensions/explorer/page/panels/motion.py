@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import Span
 
-from stickslip.extensions.explorer.model.answer import Answer, BodyCurves
-from stickslip.extensions.explorer.model.words import short
+from stickslip.extensions.explorer.model.answer import Answer, BodyCurves, short
 from stickslip.extensions.explorer.page.components import paint
 from stickslip.extensions.explorer.page.panels.units import Curve, held, share_axis
 from stickslip.extensions.explorer.page.stage import NARROW, Stage
