@@ -67,7 +67,7 @@ class RunOfHistory(KindOfRun):
 
     @override
     def run(self, request: Request) -> WholeRun:
-        keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
+        keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.options.max_pieces}
         if request.resume is None:
             chosen = request.chosen
             request.pictures.check_problem(chosen.problem)
@@ -75,14 +75,14 @@ class RunOfHistory(KindOfRun):
                 from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
                 return WholeRun(chosen, simulate(chosen, progress=report, **keep))
-        from stickslip.run import RunOptions, resume_run
+        from stickslip.run import CallOptions, resume_run
         from stickslip.solution.files import read_solution
 
         stopped = read_solution(request.resume)
         check_same(request, stopped.problem)
         with progress_line(f"{request.resume.stem}:") as report:
-            others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
-            options = RunOptions.to_continue(stopped, request.duration, request.events, **others)
+            others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.options.max_pieces}
+            options = CallOptions.to_continue(stopped, request.duration, max_events=request.events, **others)
             solution = resume_run(stopped, request.resume, options)
         return WholeRun(solution.scenario(request.resume.stem), solution)
 
@@ -110,19 +110,19 @@ class EventsOnly(KindOfRun):
 
     @override
     def run(self, request: Request) -> EventsOfRun:
-        from stickslip.run import PausedCatalogue, RunOptions, catalogue_of, check_energy
+        from stickslip.run import CallOptions, PausedCatalogue, catalogue_of, check_energy
 
         if request.resume is None:
             chosen = request.chosen
             check_energy(chosen.creep_rtol, request.energy, "run", "--energy and --creep-rtol")
             with progress_line(f"{chosen.name}:") as report:
-                options = RunOptions.of(chosen, progress=report, max_pieces=request.max_pieces)
+                options = CallOptions.of(chosen, progress=report, max_pieces=request.options.max_pieces)
                 return EventsOfRun(chosen, catalogue_of(chosen.problem, options, request.catalogue, energy=request.energy))
         paused = PausedCatalogue.read(request.resume)
         check_same(request, paused.stopped.problem)
         with progress_line(f"{request.resume.stem}:") as report:
-            others = {"progress": report, "max_pieces": request.max_pieces}
-            options = RunOptions.to_continue(paused.stopped, request.duration, request.events, **others)
+            others = {"progress": report, "max_pieces": request.options.max_pieces}
+            options = CallOptions.to_continue(paused.stopped, request.duration, max_events=request.events, **others)
             found = paused.resume(options)
         return EventsOfRun(replace(paused.stopped.scenario(request.resume.stem), duration=options.duration), found)
 

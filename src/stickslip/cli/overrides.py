@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,14 +13,12 @@ import typer
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import show_in
-from stickslip.problem import SHORTEST_EVENT, Problem, check_creep_rtol, check_rtol, check_shortest_event, units_given
+from stickslip.problem import Problem, read_option, units_given
 from stickslip.problem.scenarios import (
     LARGEST_SCENARIO_FILE,
     Scenario,
-    check_events,
     check_rule,
     load_scenario,
-    read_duration,
     read_scenario,
     read_typed,
     solved_by_core,
@@ -33,8 +30,8 @@ from stickslip.problem.scenarios import (
 if TYPE_CHECKING:
     from stickslip.foundation.axis import Axis
 
-OptionReader = Callable[[Any, str, str], Any]
-"""A function that converts what was typed, given also the name of the command and of the option for messages."""
+CALLED = {"max_events": "events"}
+"""Options of a run whose name on the command line is that of scenario files."""
 STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
 
@@ -75,38 +72,24 @@ def load_with(
     `changes` are the values of --set, which come first. Raises InputError as `load` does.
     """
     loaded = load(scenario, command, changes, any_kind=any_kind)
-    readers = _readers(loaded.problem)
-    replaced = {}
-    for option, value in typed.items():
-        if value is not None:
-            field, reader = readers[option]
-            replaced[field] = read(reader, value, command, option)
-    return replace(loaded, **replaced)
+    given = {**typed}
+    if (rule := given.pop("selection", None)) is not None:
+        changed = replace(loaded.problem, selection=check_rule(rule, command, "--selection"))
+        loaded = replace(loaded, problem=changed)
+    found = loaded.with_given({name: typed_option(name, value, command) for name, value in given.items()})
+    found.check_with(found.problem, command, option_for)
+    return found
 
 
-def read(reader: OptionReader, value: Any, command: str, option: str, default: Any = None) -> Any:
-    """Return the value of an option, or the default if it is None. Raises InputError, which names the command and the option."""
-    return default if value is None else reader(value, command, f"--{option.replace('_', '-')}")
+def option_for(name: str) -> str:
+    """Return how an option of a run is typed."""
+    return f"--{CALLED.get(name, name).replace('_', '-')}"
 
 
-def _readers(problem: Problem) -> dict[str, tuple[str, OptionReader]]:
-    """Return by option the field of a scenario that it replaces, and the function that reads it."""
-    return {
-        "duration": ("duration", read_duration),
-        "events": ("max_events", check_events),
-        "rtol": ("rtol", check_rtol),
-        "creep_rtol": ("creep_rtol", partial(check_creep_rtol, problem)),
-        "shortest_event": ("shortest_event", partial(_shortest_event, problem)),
-        "selection": ("problem", partial(_under_rule, problem)),
-    }
-
-
-def _shortest_event(problem: Problem, text: str, command: str, option: str) -> float | None:
-    return check_shortest_event(problem, read_typed(text, SHORTEST_EVENT, command, option), command, option)
-
-
-def _under_rule(problem: Problem, rule: str, command: str, option: str) -> Problem:
-    return replace(problem, selection=check_rule(rule, command, option))
+def typed_option(name: str, value: Any, command: str) -> Any:
+    """Return an option of a run that was typed, a number or a text with a unit; None is not typed. Raises InputError."""
+    number = typed_number(value) if isinstance(value, str) else value
+    return None if value is None else read_option(name, number, command, option_for(name))
 
 
 def typed_values(texts: Iterable[str], where: str, example: str) -> dict[str, float | str]:

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import CATALOGUES, Target, check_targets
-from stickslip.cli.overrides import load_with, read
+from stickslip.cli.overrides import load_with, option_for, typed_option
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
-from stickslip.problem.scenarios import Scenario, check_events, read_duration
+from stickslip.problem.scenarios import Scenario
 from stickslip.run import FILES_OF_CORE
 
 if TYPE_CHECKING:
     from stickslip.cli.output.pictures import Pictures
+    from stickslip.cli.typed_options import TypedOptions
+
+
+AS_BEGUN = ("rtol", "creep_rtol", "shortest_event", "selection")
+"""Options of a run that cannot change while it goes on."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,14 +29,12 @@ class Request:
     """The options of `stickslip run` as they were typed.
 
     `changes` are the values of --set.
-    `overrides` are those that replace numbers of the scenario: duration, events, rtol, creep_rtol, shortest_event and selection.
     """
 
     scenario: str | None
     resume: Path | None
     changes: Sequence[str] | None
-    overrides: Mapping[str, Any]
-    max_pieces: int | None
+    options: TypedOptions
     out: Path | None
     catalogue: Path | None
     csv: Path | None
@@ -57,38 +60,39 @@ class Request:
         tables = Target("--catalogue", self.catalogue, CATALOGUES), Target("--csv", self.csv, (".csv",))
         check_targets(Target("--out", self.out, (suffix,)), *tables, *self.pictures.targets())
         self.pictures.check()
-        as_begun = [self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")]
+        as_begun = [getattr(self.options, name) for name in AS_BEGUN]
         if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
-            options = "--set, --rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
-            raise InputError(f"run: --resume goes on as the run began: leave out {options}")
+            options = ", ".join(map(option_for, AS_BEGUN))
+            raise InputError(f"run: --resume goes on as the run began: leave out --set, {options} and --catalogue")
 
     @property
     def typed(self) -> dict[str, Any]:
         """What was typed of the options that concern the accuracy and the kind of results, by option; None is not typed."""
-        others = {f"--{name.replace('_', '-')}": value for name, value in self.overrides.items() if name != "duration"}
-        return others | {"--max-pieces": self.max_pieces, "--catalogue": self.catalogue}
+        others = {option_for(name): value for name, value in vars(self.options).items() if name != "duration"}
+        return others | {"--catalogue": self.catalogue}
 
     @property
     def duration(self) -> float | None:
         """The duration that was typed, s, or None."""
-        typed: float | None = read(read_duration, self.overrides["duration"], "run", "duration")
+        typed: float | None = typed_option("duration", self.options.duration, "run")
         return typed
 
     @property
     def events(self) -> int | None:
         """The number of slip events that was typed, or None."""
-        typed: int | None = read(check_events, self.overrides["events"], "run", "events")
+        typed: int | None = typed_option("max_events", self.options.max_events, "run")
         return typed
 
     @cached_property
     def chosen(self) -> Scenario:
         """The scenario with the changes that the options ask for. Raises InputError."""
         assert self.scenario is not None
-        return load_with("run", self.scenario, self.changes, any_kind=True, **self.overrides)
+        return load_with("run", self.scenario, self.changes, any_kind=True, **self.options.replaced)
 
     @property
     def most_pieces(self) -> int:
         """The largest number of pieces that the history of a catalogue may have."""
-        from stickslip.run import CAPACITY, MAX_PIECES
+        from stickslip.problem import MAX_PIECES
+        from stickslip.run import CAPACITY
 
-        return max(self.max_pieces or MAX_PIECES, CAPACITY)
+        return max(self.options.max_pieces or MAX_PIECES, CAPACITY)

@@ -39,7 +39,7 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
 from stickslip.problem import SELECTION_RULES, Branch, Plateau, Problem, Resistance, in_given_units, normal_name
-from stickslip.problem.scenarios import read_source
+from stickslip.problem.scenarios import read_problem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -245,8 +245,7 @@ def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str |
     >>> print(answer.regime, f"above {answer.critical_parameter} = {answer.critical_value:.4f} {answer.critical_unit}")
     irregular above alpha = 0.1620 s/m
     """
-    found = read_source("uniqueness", problem)
-    return uniqueness_of(found if isinstance(found, Problem) else found.problem, law_slip)
+    return uniqueness_of(read_problem("uniqueness", problem), law_slip)
 
 
 def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = None) -> Uniqueness:

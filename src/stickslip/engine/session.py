@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Generic, Protocol, Self, TypeVar
+from typing import Generic, Self, TypeVar
 
 import numpy as np
 
@@ -37,7 +37,7 @@ from stickslip.engine.state.workspace import (
 )
 from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
 from stickslip.foundation.kernels.kernels import ready
-from stickslip.problem import Problem, RunNumbers, Stop, creep_tolerance
+from stickslip.problem import BoundedOptions, Problem, Stop, creep_tolerance
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""
@@ -52,15 +52,7 @@ WORTH = 1.25
 """Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
 
 
-class AskedOfRun(Protocol):
-    """Options of a run, of which a session needs only the numbers; `run.options.RunOptions` are such options."""
-
-    @property
-    def numbers(self) -> RunNumbers:
-        """How long and how accurately to run, and the largest number of pieces of history."""
-
-
-Options = TypeVar("Options", bound=AskedOfRun)
+Options = TypeVar("Options", bound=BoundedOptions)
 
 
 @dataclass(eq=False)
@@ -91,7 +83,7 @@ class Session(Generic[Options]):
         self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
         self._memory = ready(self.memory)
-        self.last = split_time(self.options.numbers.duration, self.problem.round_trip_time)
+        self.last = split_time(self.options.duration, self.problem.round_trip_time)
         if self.leaps is not None:
             self.leaps.begin(self.count)
         if are_rows_short(self.count, self.waves):
@@ -102,12 +94,11 @@ class Session(Generic[Options]):
     @classmethod
     def begin(cls, problem: Problem, options: Options) -> Self:
         """Return a run at t = 0."""
-        numbers = options.numbers
-        setup, memory = prepare(problem, numbers.rtol, numbers.shortest_event)
-        capacity = min(FIRST_CAPACITY, numbers.most_pieces + SPARE)
+        setup, memory = prepare(problem, options.rtol, options.shortest_event)
+        capacity = min(FIRST_CAPACITY, options.most_pieces + SPARE)
         store = at.new_store(capacity, problem.kept_series)
-        tolerance = creep_tolerance(problem, numbers.creep_rtol, numbers.rtol)
-        leaps = CreepLeaps(problem, tolerance, patient=numbers.creep_rtol is None) if tolerance > 0.0 else None
+        tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
+        leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
         return cls(problem, options, setup, memory, store, EchoNode.table(capacity), leaps)
 
     @classmethod
@@ -117,7 +108,7 @@ class Session(Generic[Options]):
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        capacity = max(checkpoint.length, min(capacity, options.numbers.most_pieces + SPARE))
+        capacity = max(checkpoint.length, min(capacity, options.most_pieces + SPARE))
         run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
         run.restore(checkpoint)
         return run
@@ -139,7 +130,7 @@ class Session(Generic[Options]):
     @property
     def lumping_note(self) -> str:
         """One line on automatic lumping, or an empty string if it has not begun."""
-        return lumping_note(self.count, self.params, self.options.numbers.shortest_event)
+        return lumping_note(self.count, self.params, self.options.shortest_event)
 
     @property
     def rounding_note(self) -> str:
@@ -188,7 +179,7 @@ class Session(Generic[Options]):
 
     def grow(self) -> bool:
         """Make room for more pieces. Returns False if there are as many as the options allow, or if memory is short."""
-        max_pieces = self.options.numbers.most_pieces
+        max_pieces = self.options.most_pieces
         if are_rows_short(self.count, self.waves):
             return self._more_rows()
         if self.length >= max_pieces:

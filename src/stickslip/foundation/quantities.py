@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.arguments import shown
+from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import as_text, has_unit, remembered, to_number, unit_among
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import Given
@@ -40,10 +40,10 @@ LARGEST_SERIES = 10_000
 class Quantity:
     """Unit (SI; "1" for a pure number), meaning and allowed range of a number.
 
-    `above` and `at_least` are exclusive and inclusive lower bounds, in `unit`. If `infinite`, infinite values and magnitudes above
-    `LARGEST` are allowed, and `word` may be given for infinity besides "inf". If `whole`, only whole numbers up to `LARGEST_WHOLE`
-    in magnitude are allowed, such as an exponent. In a friction law such a number is written into the formula and is not a
-    parameter of it.
+    `above` and `at_least` are exclusive and inclusive lower bounds, `at_most` is an upper bound, in `unit`. If `infinite`, infinite
+    values and magnitudes above `LARGEST` are allowed, and `word` may be given for infinity besides "inf". If `whole`, only whole
+    numbers up to `LARGEST_WHOLE` in magnitude are allowed, such as an exponent. In a friction law such a number is written into the
+    formula and is not a parameter of it.
     """
 
     unit: str
@@ -53,6 +53,7 @@ class Quantity:
     infinite: bool = False
     word: str = "inf"
     whole: bool = False
+    at_most: float | None = None
 
     def check(self, owner: str, name: str, value: Any) -> float:
         """Return the value in SI as a float. Raise InputError, which names owner and field, if it is not allowed.
@@ -88,7 +89,7 @@ class Quantity:
         if self.whole:
             return 1.0, 0.0
         beyond = -math.inf if self.above is None else max(self.above + SMALLEST, math.nextafter(self.above, math.inf))
-        most = math.inf if self.infinite else LARGEST
+        most = self.at_most if self.at_most is not None else math.inf if self.infinite else LARGEST
         return max(beyond, -most if self.at_least is None else self.at_least, -most), most
 
     def _rules(self, number: Any) -> Iterator[tuple[Any, str]]:
@@ -100,6 +101,8 @@ class Quantity:
             yield number <= self.above, f"be greater than {self.above:g} {self.label}"
         if self.at_least is not None:
             yield number < self.at_least, f"be at least {self.at_least:g} {self.label}"
+        if self.at_most is not None:
+            yield number > self.at_most, f"be at most {self.at_most:g} {self.label}"
         if not self.infinite:
             yield abs(number) > LARGEST, f"lie within {LARGEST:g} {self.label}"
         if self.above is not None:
@@ -123,6 +126,7 @@ class Quantity:
         parts = [self.meaning, "no unit" if self.unit == "1" else f"in {self.unit}"]
         parts += [] if self.above is None else [f"above {self.above:g}"]
         parts += [] if self.at_least is None else [f"at least {self.at_least:g}"]
+        parts += [] if self.at_most is None else [f"at most {self.at_most:g}"]
         return ", ".join(parts)
 
 
@@ -200,6 +204,22 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Count:
+    """Declare a whole number from 1 to below a bound; `key` is its name in scenario files, if that differs from the field's."""
+
+    meaning: str
+    below: int
+    key: str = ""
+
+    def check(self, owner: str, name: str, value: Any) -> int:
+        """Return the number as an int. Raise InputError, which names owner and field, if it is not allowed."""
+        found = check_whole(f"{owner}: {name}", value)
+        if found >= self.below:
+            raise InputError(f"{owner}: {name} must be below {self.below:g}, got {shown(value)}")
+        return found
+
+
+@dataclass(frozen=True)
 class Choice:
     """Declare a choice between several words."""
 
@@ -260,7 +280,7 @@ class NamedNumbers:
         return tuple(Named(n, Quantity("1", "").check(owner, f"{self.key} {ascii(n)[:60]}", x), unit) for n, x, unit in named)
 
 
-Field = Quantity | NumberSeries | LawField | Text | Choice | NamedNumbers
+Field = Quantity | NumberSeries | LawField | Text | Count | Choice | NamedNumbers
 """Every kind of declaration."""
 _Declared = TypeVar("_Declared", bound=Field)
 
@@ -314,16 +334,18 @@ def _quantities_of(kind: type) -> dict[str, Quantity]:
     return {name: declared for name, declared in found.items() if isinstance(declared, Quantity)}
 
 
-def check_fields(owner: Any, but: Collection[str] = (), units: Mapping[str, str] = MappingProxyType({})) -> None:
+def check_fields(
+    owner: Any, but: Collection[str] = (), units: Mapping[str, str] = MappingProxyType({}), who: str | None = None
+) -> None:
     """Check the declared fields of a frozen dataclass, except those in `but`, and store the converted values.
 
-    `units` replaces declared units such as "Pa or N" by the one that applies here. A field that is None is left as it is if None
-    is its default. Raise InputError for a value that is not allowed.
+    Messages begin with `who`, by default the name of its class. `units` replaces declared units such as "Pa or N" by the one that
+    applies here. A field that is None is left as it is if None is its default. Raise InputError for a value that is not allowed.
     """
     for name, (declared, default) in fields_of(type(owner)).items():
         value = getattr(owner, name)
         if name not in but and (value is not None or default is not None):
-            object.__setattr__(owner, name, in_units(declared, units).check(type(owner).__name__, name, value))
+            object.__setattr__(owner, name, in_units(declared, units).check(who or type(owner).__name__, name, value))
 
 
 def given_in(owner: Any) -> str:

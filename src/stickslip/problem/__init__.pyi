@@ -26,6 +26,13 @@ from stickslip.problem.drivers.machine import (
 from stickslip.problem.equivalent_block import (
     block_for,  # Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
 )
+from stickslip.problem.event_rate import (
+    # Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z.
+    EVENT_SHARE,
+    check_event_rate,  # Return the slip rate (m/s) that defines slip events, or None, which stands for the default of the problem.
+    # Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z.
+    default_event_rate,
+)
 from stickslip.problem.fields import (
     HISTORIES_ONLY,  # Fields of a problem that are a loading history or nothing.
     INITIAL_STATES,  # Names of the initial states in a `Problem`.
@@ -121,20 +128,15 @@ from stickslip.problem.run_codes import (
     UNSTABLE,  # Slip rates of a planar slab have grown beyond what its loads can drive.
     Stop,  # Say why the engine returned.
 )
-from stickslip.problem.run_quantities import (
-    CHECKPOINT_INTERVAL,  # Declares the wall-clock time (s) between two checkpoints.
-    CREEP_RTOL,  # Declares the error of slip of leaps over creep.
+from stickslip.problem.run_options import (
     DURATION,  # Declares how long to simulate (s).
-    # Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z.
-    EVENT_SHARE,
+    LARGEST_HISTORY,  # Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines.
     LARGEST_RTOL,  # Largest relative tolerance of a run.
+    MAX_PIECES,  # Largest number of pieces of a history unless `max_pieces` is given: 0.8 GB.
     RTOL,  # Declares the relative tolerance of a run.
-    SHORTEST_EVENT,  # Declares the length (s) below which slip events are lumped.
-    RunNumbers,  # The numbers of a run, which its solver takes: how long and how accurately, and how much it may keep.
-    check_event_rate,  # Return the slip rate (m/s) that defines slip events, or None, which stands for the default of the problem.
-    check_rtol,  # Return a relative tolerance as a float.
-    # Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z.
-    default_event_rate,
+    BoundedOptions,  # The options that the engine takes: those of a run, and how many pieces its history may have.
+    RunOptions,  # How long and how accurately to run a problem, when to stop, and what to call the run.
+    read_option,  # Return the value of one option, in SI and in its range whatever is run.
 )
 from stickslip.problem.run_status import (
     SHORT_OF_MEMORY,  # How the message of that status begins where memory is short.
@@ -158,8 +160,6 @@ from stickslip.problem.selection_rule import (
 __all__ = [
     "BAD_PARAMETERS",
     "BODY_KINDS",
-    "CHECKPOINT_INTERVAL",
-    "CREEP_RTOL",
     "DRIVERS",
     "DRIVERS_OF_WAVES",
     "DRIVER_KINDS",
@@ -172,9 +172,11 @@ __all__ = [
     "HISTORIES_ONLY",
     "INITIAL_STATES",
     "INTERRUPTED",
+    "LARGEST_HISTORY",
     "LARGEST_RTOL",
     "LARGEST_SHARE",
     "LOAD",
+    "MAX_PIECES",
     "MAY_VARY",
     "MOST_PIECES",
     "MOST_ROUND_TRIPS",
@@ -183,7 +185,6 @@ __all__ = [
     "PRESSING",
     "RTOL",
     "SELECTION_RULES",
-    "SHORTEST_EVENT",
     "SHORT_OF_MEMORY",
     "SILENT",
     "STATUSES",
@@ -192,6 +193,7 @@ __all__ = [
     "UNDER_WAY",
     "UNSTABLE",
     "VARYING",
+    "BoundedOptions",
     "Branch",
     "Crowd",
     "Ground",
@@ -202,7 +204,7 @@ __all__ = [
     "Plateau",
     "Problem",
     "Resistance",
-    "RunNumbers",
+    "RunOptions",
     "Segment",
     "SelectionRule",
     "SelectionTable",
@@ -217,7 +219,6 @@ __all__ = [
     "check_event_rate",
     "check_problem",
     "check_round_trips",
-    "check_rtol",
     "check_shortest_event",
     "creep_tolerance",
     "default_event_rate",
@@ -240,6 +241,7 @@ __all__ = [
     "pressing_of",
     "pull_of",
     "put_many",
+    "read_option",
     "registered",
     "resistance_slope",
     "selection",

@@ -27,10 +27,7 @@ from stickslip.run.one_run import (
     steady,  # Find how a contact slides steadily at its pull rate, whether that is stable, and at which rates stability changes.
 )
 from stickslip.run.options import (
-    MAX_PIECES,  # Largest number of pieces of a history unless `max_pieces` is given: 0.8 GB.
-    RunOptions,  # How long and how accurately to run a problem, and what to report and store on the way.
-    # Return the options of a run, not yet checked; those in `given` that are None come from the scenario, or are the defaults.
-    options_of,
+    CallOptions,  # The options of a run, and what only the call has: see `stickslip.simulate`.
 )
 from stickslip.run.progress import (
     Pace,  # Measure how fast a run goes since its first report: wall-clock time (s), simulated time (s), and share of the run done.
@@ -68,7 +65,7 @@ __all__ = [
     "ALL_TAKE",
     "CAPACITY",
     "FILES_OF_CORE",
-    "MAX_PIECES",
+    "CallOptions",
     "Catalogue",
     "Edge",
     "ExactRun",
@@ -76,7 +73,6 @@ __all__ = [
     "Pace",
     "PausedCatalogue",
     "Reader",
-    "RunOptions",
     "RunSource",
     "RunsCompared",
     "SolverKind",
@@ -90,7 +86,6 @@ __all__ = [
     "how_far",
     "how_fast",
     "no_results",
-    "options_of",
     "progress_line",
     "reader_of",
     "reporting",

@@ -6,19 +6,22 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.engine import Reach, creep_note, reach_of
-from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
+from stickslip.foundation.takes import takes
 from stickslip.problem import ENOUGH_EVENTS, UNDER_WAY, Problem, Status, check_event_rate
+from stickslip.problem.scenarios import read_source
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
-from stickslip.run.progress import Progress, reporting
+from stickslip.run.options import CallOptions
+from stickslip.run.progress import reporting
 from stickslip.run.run_loop import run_to_end
+from stickslip.run.words import WORDS, GivenToCatalogue
 from stickslip.solution.files import CATALOGUE, FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
 from stickslip.solution.observables import (
     EventStream,
@@ -42,21 +45,16 @@ CAPACITY = 16_384
 """Initial room of a catalogue in pieces of history, about 7 MB; it grows only if the pieces to keep fill half of it."""
 
 
-@for_users
+@takes(WORDS, GivenToCatalogue, "rtol")
 def catalogue(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
     path: str | Path | None = None,
     *,
     rtol: float | None = None,
-    creep_rtol: float | None = None,
-    shortest_event: float | str | WithUnit | None = None,
-    max_events: int | None = None,
     event_rate: float | str | WithUnit | None = None,
     energy: bool = False,
-    progress: Progress | bool | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-    max_pieces: int | None = None,
+    **options: Unpack[GivenToCatalogue],
 ) -> pd.DataFrame:
     """Run a problem, or a scenario, in bounded memory and return the table of its slip events.
 
@@ -69,20 +67,12 @@ def catalogue(
     path : str or Path, optional
         File for the table (.csv, .parquet or .nc). NAME.checkpoint.nc beside it is renewed while the run continues, and
         `stickslip.resume` resumes from it. Without a path the rows are kept in memory.
-    rtol, creep_rtol, shortest_event, progress
-        See `stickslip.simulate`.
-    max_events : int, optional
-        Number of slip events after which the run stops.
     event_rate : float or str, optional
         Slip above this rate (m/s, or a text with a unit) is an event. The default is 1e-6 S (range of mu)/Z; for a block sqrt(K m)
         replaces Z.
     energy : bool
         Add the energies of each event (slab: J/m^2, block: J). Automatic leaps over creep are then switched off.
-    checkpoint_every : float or str
-        Interval between two checkpoints, s of wall clock.
-    max_pieces : int, optional
-        Largest number of pieces of history kept at a time, two million by default. An event that needs more, together with what
-        precedes it, ends the run with the status "too many pieces".
+    {options}
 
     Returns
     -------
@@ -113,25 +103,15 @@ def catalogue(
     file = None if path is None else as_path("catalogue: path", path)
     if file is not None:
         check_catalogue(file)
-    with reporting(progress, "catalogue") as report:
-        given, options = problem_and_options(
-            "catalogue",
-            problem,
-            duration=duration,
-            rtol=rtol,
-            creep_rtol=creep_rtol,
-            shortest_event=shortest_event,
-            max_events=max_events,
-            progress=report,
-            checkpoint_every=checkpoint_every,
-            max_pieces=max_pieces,
-        )
-        check_energy(options.creep_rtol, energy, "catalogue")
-        return catalogue_of(given, options, file, rate, energy=energy).read()
+    with reporting(options.pop("progress", None), "catalogue") as report:
+        scenario = read_source("catalogue", problem, duration)
+        checked = CallOptions.of(scenario, rtol=rtol, progress=report, **options).check("catalogue", scenario.problem)
+        check_energy(checked.creep_rtol, energy, "catalogue")
+        return catalogue_of(scenario.problem, checked, file, rate, energy=energy).read()
 
 
 def catalogue_of(
-    problem: Problem, options: RunOptions, path: Path | None, event_rate: float | None = None, *, energy: bool = False
+    problem: Problem, options: CallOptions, path: Path | None, event_rate: float | None = None, *, energy: bool = False
 ) -> Catalogue:
     """Run from the start; with a path, an earlier table and checkpoint of the same names are deleted first.
 

@@ -24,7 +24,7 @@ from stickslip.problem import (
     leaps_over,
     lumps_by_itself,
 )
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import Doing, Pace, Report
 from stickslip.solution import Solution
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(eq=False)
-class ExactRun(Session[RunOptions]):
+class ExactRun(Session[CallOptions]):
     """A session with its slip events, an implementation of `run.solver.Solver`."""
 
     keeps_events_only: bool = False
@@ -100,21 +100,9 @@ class ExactRun(Session[RunOptions]):
         reached = options.duration if code in (Stop.FINISHED, Stop.LOCKED) else history.duration
         counted = options.max_events if code == ENOUGH_EVENTS else None
         history = replace(history, duration=reached, creep=self.creep, max_events=counted)
-        return Solution(
-            self.problem,
-            options.duration,
-            options.rtol,
-            self._full() if code == FULL_HISTORY else STATUSES[code],
-            history,
-            self.checkpoint(),
-            max_events=options.max_events,
-            creep_rtol=options.creep_rtol,
-            shortest_event=options.shortest_event,
-            title=options.title,
-            description=options.description,
-            lumping_note=self.lumping_note,
-            rounding_note=self.rounding_note,
-        )
+        status = self._full() if code == FULL_HISTORY else STATUSES[code]
+        notes = self.lumping_note, self.rounding_note
+        return Solution(self.problem, options.options, status, history, self.checkpoint(), *notes)
 
     def save(self) -> None:
         """Renew the checkpoint, if a file for it was given."""

@@ -15,7 +15,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem import DURATION, INITIAL_STATES, STEADY, Problem
+from stickslip.problem import INITIAL_STATES, STEADY, Problem
 from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter, read_source
 from stickslip.run.longer_runs import held_in_longer_runs
 from stickslip.run.simulate import simulate
@@ -173,15 +173,13 @@ def find(
         raise InputError(f"find: what: {ascii(what)[:60]} is unknown; {nearest(what, WHAT)} (or a function of a solution)")
     if not 0.0 < within < 1.0:
         raise InputError(f"find: within must lie between 0 and 1, got {within!r}")
-    found = read_source("find", problem)
-    lasts = found.duration if isinstance(found, Scenario) and duration is None else DURATION.check("find", "duration", duration)
-    scenario = Scenario(found, lasts) if isinstance(found, Problem) else found
+    scenario = read_source("find", problem, duration)
     parameter = find_parameter(scenario, along, "find")
     if not isinstance(parameter.declared, Quantity):
         raise InputError(f"find: {parameter.name} is no number that could be halved")
     ends = [None if end is None else parameter.declared.check("find", parameter.name, end) for end in (low, high)]
     with telling(progress, "find") as tell:
-        search = _EdgeSearch(scenario, parameter, what, lasts, tell)
+        search = _EdgeSearch(scenario, parameter, what, scenario.duration, tell)
         span = search.ends(*ends)
         edge = search.edge(*span, within)
         return held_in_longer_runs(search, edge, span, within, given=duration is not None) if what == SETTLED else edge

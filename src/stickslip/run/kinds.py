@@ -22,7 +22,7 @@ from stickslip.problem.scenarios import Scenario
 if TYPE_CHECKING:
     from stickslip.cli.kinds import KindOfRun
     from stickslip.run.check.examine import Examination
-    from stickslip.run.options import RunOptions
+    from stickslip.run.options import CallOptions
 
 ALL_TAKE = frozenset({"duration", "progress", "checkpoint", "checkpoint_every"})
 """Options that each solver takes."""
@@ -45,10 +45,10 @@ class SolverKind:
 
     solves: Callable[[Any], bool]
     """True for what it solves: see `Scenario.to_solve`."""
-    run: Callable[[Any, RunOptions], Any]
+    run: Callable[[Any, CallOptions], Any]
     """Run a scenario, or what it solves, from t = 0 with options that are not yet checked."""
     takes: frozenset[str]
-    """Names of fields of `RunOptions`, of options of its own, and "selection", which replaces the problem's."""
+    """Names of fields of `CallOptions`, of options of its own, and "selection", which replaces the problem's."""
     refusal: str
     """The message for any other option; the first braces stand for its name, the second, if there are any, for what takes it."""
     on_command_line: Callable[[], KindOfRun] | None = None

@@ -6,7 +6,7 @@ from pathlib import Path
 from stickslip.contact import SteadySlidings, proven_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.problem import Problem
-from stickslip.problem.scenarios import Scenario, read_source
+from stickslip.problem.scenarios import Scenario, read_problem
 from stickslip.run.study import TextProgress, telling
 
 
@@ -52,8 +52,7 @@ def steady(
     >>> found.slidings[0].stable, round(found.changes[0].pull_rate, 6), round(found.from_rest.sticks_at, 2)
     (False, 0.103972, 0.15)
     """
-    source = read_source("steady", problem)
-    one = source if isinstance(source, Problem) else source.problem
+    one = read_problem("steady", problem)
     found = proven_slidings(one)
     if not from_rest or found.regained is None:
         return found

@@ -5,34 +5,33 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, Unpack
 
 from stickslip.engine import Reach, check_checkpoint, engine_key
-from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.memory import chosen_memory
+from stickslip.foundation.takes import takes
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.kinds import no_results, reader_of
-from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
+from stickslip.run.words import WORDS, GivenToContinue
 from stickslip.solution import Solution
 from stickslip.solution.files import CATALOGUE, Rows, check_catalogue, check_place, is_catalogue, read, read_solution, to_solution
 from stickslip.solution.observables import EventStream, HistoryPlace
 
 
-@for_users
+@takes(WORDS, GivenToContinue, "checkpoint")
 def resume(
     path: str | Path,
     duration: float | str | WithUnit | None = None,
     *,
-    max_events: int | None = None,
-    progress: Any = None,
     checkpoint: str | Path | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-    max_pieces: int | None = None,
+    **options: Unpack[GivenToContinue],
 ) -> Any:
     """Continue a run or a catalogue where its file left it.
 
@@ -45,14 +44,7 @@ def resume(
         catalogue's rows in the same folder; or the folder (.zarr) of a run of a `PlanarSlab`.
     duration : float or str, optional
         New end of the run, counted from its start: a number in s, or a text with a unit. The previous one by default.
-    max_events : int, optional
-        Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
-        run has already reached it.
-    progress, checkpoint_every, max_pieces
-        See `simulate`, or `catalogue` for a catalogue. A run that ended with "too many pieces" goes on only with a larger
-        max_pieces, or where memory was short, with more memory.
-    checkpoint : str or Path, optional
-        File for checkpoints and, at the end, the solution; `path` by default. A catalogue, and a folder, keep their own name.
+    {options}
 
     Returns
     -------
@@ -70,13 +62,17 @@ def resume(
 
     Notes
     -----
+    `checkpoint` is `path` by default; a catalogue, and a folder, keep their own name. Slip events are counted from the start of the
+    run, up to the previous number by default unless the run has reached it. A run that ended with "too many pieces" goes on only
+    with a larger max_pieces, or where memory was short, with more memory.
+
     Rows of a catalogue that were written after its checkpoint are cut off and computed again.
     """
     file = as_path("resume: path", path)
+    progress = options.pop("progress", None)
     if (reader := reader_of(file)) is not None:
-        given = {"max_events": max_events, "checkpoint": checkpoint, "max_pieces": max_pieces}
         with reporting(progress, "resume") as report:
-            return reader.resume(file, duration, progress=report, checkpoint_every=checkpoint_every, **given)
+            return reader.resume(file, duration, progress=report, checkpoint=checkpoint, **options)
     if file.is_dir():
         raise no_results(file)
     paused = PausedCatalogue.read(file) if is_catalogue(file) else None
@@ -85,12 +81,11 @@ def resume(
     stopped = read_solution(file) if paused is None else paused.stopped
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
     with reporting(progress, "resume") as report:
-        others: dict[str, Any] = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
-        options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
-        return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
+        to_go_on = CallOptions.to_continue(stopped, duration, checkpoint=kept, progress=report, **options)
+        return resume_run(stopped, file, to_go_on) if paused is None else paused.resume(to_go_on).read()
 
 
-def resume_run(stopped: Solution, path: Path, options: RunOptions) -> Solution:
+def resume_run(stopped: Solution, path: Path, options: CallOptions) -> Solution:
     """Continue a run that was read from a file. Raises InputError as `resume` does."""
     with options.alone():
         run = taken_up(stopped, path, options)
@@ -131,7 +126,7 @@ class PausedCatalogue:
                 raise InputError(f"{path}: is a link: a catalogue is resumed in the file itself")
         return found
 
-    def resume(self, options: RunOptions) -> Catalogue:
+    def resume(self, options: CallOptions) -> Catalogue:
         """Continue the run to its end. Raises InputError as `stickslip.resume` does."""
         about, rows = self.about, self.rows
         run = taken_up(self.stopped, self.path, options)
@@ -146,7 +141,7 @@ class PausedCatalogue:
             return follow(run, rows, Reach(0.0, about["displaced"], about["displaced_at"]))
 
 
-def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
+def taken_up(stopped: Solution, path: Path, options: CallOptions) -> ExactRun:
     """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit with these options."""
     chosen_memory()  # refused now, and not when the history has grown further
     options = options.check("resume", stopped.problem)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, TypeVar, overload
+from typing import Any, TypeVar, Unpack, overload
 
-from stickslip.foundation.arguments import as_path, check_names, for_users
+from stickslip.foundation.arguments import as_path, check_names
 from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
-from stickslip.problem import Problem, SelectionRule
+from stickslip.foundation.takes import takes
+from stickslip.problem import Problem
 from stickslip.problem.scenarios import Scenario, read_source, under_rule
 from stickslip.run.kinds import ALL_TAKE, SolverKind, Special, special_solver_of, special_solvers
-from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
-from stickslip.run.progress import Progress, reporting
+from stickslip.run.options import CallOptions
+from stickslip.run.progress import reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
+from stickslip.run.words import WORDS, GivenToRun
 from stickslip.solution import Solution
 
 Run = TypeVar("Run")
@@ -26,49 +28,16 @@ def simulate(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
     rtol: float | None = None,
-    *,
-    creep_rtol: float | None = None,
-    shortest_event: float | str | WithUnit | None = None,
-    max_events: int | None = None,
-    selection: str | SelectionRule | None = None,
-    progress: Progress | bool | None = None,
-    checkpoint: str | Path | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-    max_pieces: int | None = None,
-    title: str = "",
-    **of_solver: Any,
+    **options: Unpack[GivenToRun],
 ) -> Solution: ...
 
 
 @overload
-def simulate(
-    problem: Special[Run],
-    duration: float | str | WithUnit,
-    *,
-    progress: Callable[[Any], object] | bool | None = None,
-    checkpoint: str | Path | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-    **of_solver: Any,
-) -> Run: ...
+def simulate(problem: Special[Run], duration: float | str | WithUnit, **options: Any) -> Run: ...
 
 
-@for_users
-def simulate(
-    problem: Any,
-    duration: float | str | WithUnit | None = None,
-    rtol: float | None = None,
-    *,
-    creep_rtol: float | None = None,
-    shortest_event: float | str | WithUnit | None = None,
-    max_events: int | None = None,
-    selection: str | SelectionRule | None = None,
-    progress: Any = None,
-    checkpoint: str | Path | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-    max_pieces: int | None = None,
-    title: str = "",
-    **of_solver: Any,
-) -> Any:
+@takes(WORDS, GivenToRun, "duration", "rtol", others="of_solver")
+def simulate(problem: Any, duration: float | str | WithUnit | None = None, rtol: float | None = None, **options: Any) -> Any:
     """Run a problem, or a scenario, from t = 0: `simulate(problem, 10.0)`, `simulate("fig6-slab")`, `simulate("mine.toml")`.
 
     Parameters
@@ -77,35 +46,7 @@ def simulate(
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
         Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
         `duration`, `progress`, `checkpoint` and `checkpoint_every`, and `frames`.
-    duration : float or str
-        Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
-        Other times may be given as texts, too, and as quantities of the library pint.
-    rtol : float, optional
-        Relative tolerance of the run, between 1e-15 and 1e-2; 1e-10 by default.
-    creep_rtol : float, optional
-        Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
-        Automatic by default (see Notes).
-    shortest_event : float or str, optional
-        Slip events shorter than this (s) are lumped: up to 1 % of the two-way travel time, and 0 for no lumping. Automatic by
-        default (see Notes).
-    max_events : int, optional
-        Number of slip events after which the run stops.
-    selection : str or callable, optional
-        The selection rule, which decides where the contact equation has several solutions: "perfect-delay", "maxwell", "minimal",
-        "maximal", or one of your own (see `stickslip.selection`). By default that of the problem.
-    progress : bool or callable, optional
-        True shows the progress in one line, on a terminal or in a notebook. A function is called with a
-        `stickslip.run.progress.Report` while the run continues.
-    checkpoint : str or Path, optional
-        File (.nc) that lets `stickslip.resume` continue the run, even after it has been killed. At the end it holds the solution.
-        For a `PlanarSlab` a new folder (NAME.zarr); all frames are written to it.
-    checkpoint_every : float or str
-        Interval between two checkpoints, s of wall clock.
-    max_pieces : int, optional
-        Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is
-        two million, some 0.8 GB in memory and in a file. Whatever the number, a history takes at most a sixth of the free memory.
-    title : str
-        Title of the run, for figures; by default the scenario's title.
+    {options}
     **of_solver
         Options of the solver of an extension. For a `PlanarSlab`, `frames` is the number of frames to keep in each two-way travel
         time; 100 by default.
@@ -151,47 +92,38 @@ def simulate(
     >>> print(f"{event.slip:.6f} m of slip in {event.duration:.6f} s, at up to {event.peak_rate:.6f} m/s")
     23.440233 m of slip in 5.714286 s, at up to 4.102041 m/s
     """
+    progress, rule, checkpoint = (options.pop(name, None) for name in ("progress", "selection", "checkpoint"))
+    of_solver = {name: options.pop(name) for name in [*options] if name not in WORDS}
+    check_option_names(of_solver)
     with reporting(progress, "simulate") as report:
         solver = special_solver_of(problem)
         if solver is None:
-            problem = read_source("simulate", problem, any_kind=True)
+            problem = read_source("simulate", problem, duration, any_kind=True)
             solver = special_solver_of(problem) or EXACT
-        given = {
-            "duration": duration,
-            "rtol": rtol,
-            "creep_rtol": creep_rtol,
-            "shortest_event": shortest_event,
-            "max_events": max_events,
-            "max_pieces": max_pieces,
-            "title": title or None,
-        }
-        check_option_names(of_solver)
-        solver.check("simulate", given | of_solver | {"selection": selection, "checkpoint": checkpoint})
-        problem = problem if selection is None else under_rule(problem, selection)
+        given = {"duration": duration, "rtol": rtol} | options | {"title": options.get("title") or None}
+        solver.check("simulate", given | of_solver | {"selection": rule, "checkpoint": checkpoint})
+        problem = problem if rule is None else under_rule(problem, rule)
         file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
-        others = {"progress": report, "checkpoint": file, "checkpoint_every": checkpoint_every, "of_solver": of_solver}
-        return solver.run(problem, options_of(problem, **given, **others))
+        return solver.run(problem, CallOptions.of(problem, **given, progress=report, checkpoint=file, of_solver=of_solver))
 
 
 def check_option_names(of_solver: Mapping[str, object]) -> None:
     """Refuse options that no solver has. Raises ArgumentError with the nearest name."""
     if of_solver:
-        known = {name: None for solver in special_solvers() for name in sorted(solver.takes)}
-        parameters = [one for one in signature(simulate).parameters.values() if one.kind is not one.VAR_KEYWORD]
-        others = [name for name in known if name not in signature(simulate).parameters]
-        more = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in others]
-        check_names("simulate", [*parameters, *more], (None,), of_solver)
+        taken = [one for one in signature(simulate).parameters.values() if one.kind is not one.VAR_KEYWORD]
+        others = dict.fromkeys(name for solver in special_solvers() for name in sorted(solver.takes))
+        more = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in others if name not in WORDS]
+        check_names("simulate", [*taken, *more], (None,), of_solver)
 
 
-def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solution:
+def simulate_exactly(scenario: Scenario, options: CallOptions) -> Solution:
     """Run a contact that slips as a whole (one node) from t = 0: see `simulate`."""
     if options.checkpoint is not None:
         check_replaceable(options.checkpoint, f"simulate: {options.checkpoint}")
     from stickslip.run.exact_run import ExactRun  # which loads the engine, as no other solver does
 
-    problem = source if isinstance(source, Problem) else source.problem
     with options.alone():
-        run = ExactRun.begin(problem, options.check("simulate", problem))
+        run = ExactRun.begin(scenario.problem, options.check("simulate", scenario.problem))
         return run_to_end(run, WholeHistory(run))
 
 

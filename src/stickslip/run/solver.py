@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol, TypeVar
 
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import Pace
 
 
@@ -26,7 +26,7 @@ Result_co = TypeVar("Result_co", covariant=True)
 class Solver(Protocol[New_co, Result_co]):
     """A run in progress. Its state is consistent between any two calls."""
 
-    options: RunOptions
+    options: CallOptions
 
     @property
     def length(self) -> int:

@@ -72,8 +72,11 @@ class Readings(NamesAttributes):
 
     problem: Problem
     history: History
-    title: str
-    """Title of the scenario, for figures; empty for a problem from Python."""
+    if TYPE_CHECKING:
+
+        @property
+        def title(self) -> str:
+            """Title of the scenario, for figures; empty for a problem from Python."""
 
     @property
     def shown(self) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, exactly, how_long, html_table
-from stickslip.problem import Problem, Status, check_event_rate, default_event_rate, in_given_units
+from stickslip.problem import Problem, RunOptions, Status, check_event_rate, default_event_rate, in_given_units
 from stickslip.problem.scenarios import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
 
@@ -68,27 +68,51 @@ class Solution(Exports):
     """
 
     problem: Problem
-    asked_duration: float
-    """Latest end of the run (s), as it was asked for; `duration` is the time that the run reached."""
-    rtol: float
+    options: RunOptions
+    """How long and how accurately the problem was to be run, as the user gave it, and the title of its scenario."""
     status: Status
     history: History
     checkpoint: Checkpoint | None = None
     """State for continuing the run, or a longer one (`stickslip.resume`)."""
-    max_events: int | None = None
-    """Number of slip events after which the run was told to stop."""
-    creep_rtol: float | None = None
-    """Tolerance of leaps over creep as the user gave it: None is automatic, 0 computes every round trip."""
-    shortest_event: float | None = None
-    """Events shorter than this (s) are lumped, as the user gave it: None is automatic, 0 lumps none."""
     lumping_note: str = ""
     """One line on automatic lumping; empty if it did not begin."""
     rounding_note: str = ""
     """One line on steps that miss the contact equation by more than the tolerance, by rounding; empty if there are none."""
-    title: str = ""
-    """Title of the scenario, which figures show; empty for a problem from Python."""
-    description: str = ""
-    """Description of the scenario; empty for a problem from Python."""
+
+    @property
+    def asked_duration(self) -> float:
+        """The latest end of the run (s), as it was asked for; `duration` is the time that the run reached."""
+        return self.options.duration
+
+    @property
+    def rtol(self) -> float:
+        """The relative tolerance of the run."""
+        return self.options.rtol
+
+    @property
+    def max_events(self) -> int | None:
+        """The number of slip events after which the run was told to stop."""
+        return self.options.max_events
+
+    @property
+    def creep_rtol(self) -> float | None:
+        """The tolerance of leaps over creep: None is automatic, 0 computes every round trip."""
+        return self.options.creep_rtol
+
+    @property
+    def shortest_event(self) -> float | None:
+        """Events shorter than this (s) are lumped: None is automatic, 0 lumps none."""
+        return self.options.shortest_event
+
+    @property
+    def title(self) -> str:
+        """The title of the scenario, which figures show; empty for a problem from Python."""
+        return self.options.title
+
+    @property
+    def description(self) -> str:
+        """The description of the scenario; empty for a problem from Python."""
+        return self.options.description
 
     @property
     def duration(self) -> float:
@@ -197,17 +221,7 @@ class Solution(Exports):
 
     def scenario(self, name: str = UNNAMED) -> Scenario:
         """Return the scenario of this run."""
-        return Scenario(
-            problem=self.problem,
-            duration=self.asked_duration,
-            rtol=self.rtol,
-            max_events=self.max_events,
-            creep_rtol=self.creep_rtol,
-            shortest_event=self.shortest_event,
-            title=self.title,
-            description=self.description,
-            name=name,
-        )
+        return Scenario(self.problem, **vars(self.options), name=name)
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the solution to a netCDF file, and return the path; `stickslip.open_solution` restores it bit for bit."""

@@ -10,7 +10,7 @@ from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.session import Session
 from stickslip.engine.state import layout as at
 from stickslip.engine.waves.echo_queue import NOTHING
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 FRAGMENTS = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=0.1234, initial_excess=0.0)
@@ -55,7 +55,7 @@ def test_the_side_decides_which_piece_is_read_at_a_border() -> None:
 @pytest.mark.parametrize("problem", [FRAGMENTS, HEALING], ids=["fragments", "healing"])
 def test_echo_queue_finds_every_onset(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
-    run, met = Session.begin(problem, RunOptions(2000.0)), 0
+    run, met = Session.begin(problem, CallOptions(2000.0)), 0
     impedance, ramp = SLAB.impedance, float(run.setup.params.ramp)
     while run.advance(1) == -1 and met < 150:
         between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING

@@ -11,7 +11,7 @@ import stickslip as ss
 from stickslip.engine.state.layout import NEVER
 from stickslip.problem.run_codes import Stop
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from tests.core.run.long_runs.problems import continued, differences
 
 PULSING = ss.load_scenario("fig5-slab-reconstructed").problem
@@ -25,7 +25,7 @@ MOST = 2_000
 
 def landed() -> ExactRun:
     """Return a run that stands behind its twelfth leap."""
-    run = ExactRun.begin(PULSING, RunOptions(2.0 * ss.YEAR, creep_rtol=1e-5, max_pieces=300_000))
+    run = ExactRun.begin(PULSING, CallOptions(2.0 * ss.YEAR, creep_rtol=1e-5, max_pieces=300_000))
     while run.count.creep_leaps < LEAPS:
         if run.advance(MOST) == Stop.FULL:
             assert run.grow()

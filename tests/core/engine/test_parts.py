@@ -13,7 +13,7 @@ from stickslip.engine.on_demand import PARTS, function_of
 from stickslip.engine.session import Session
 from stickslip.engine.state.layout import EnginePart, NearFold
 from stickslip.engine.state.workspace import Run
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
@@ -48,7 +48,7 @@ def test_each_part_is_a_kernel_in_its_module() -> None:
 
 def passed(takes_part_away: bool) -> tuple[int, np.ndarray]:
     """Run FOLDING pass by pass; return how often its folds were taken away beside one, and its pieces."""
-    run, taken = Session.begin(FOLDING, RunOptions(8.0)), 0
+    run, taken = Session.begin(FOLDING, CallOptions(8.0)), 0
     lent = Run(run.memory)
     for n in range(PASSES):
         run.advance(1)

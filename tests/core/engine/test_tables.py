@@ -22,7 +22,7 @@ from stickslip.engine.history.slip_events import EventTurns, SlipEvents, group_t
 from stickslip.engine.history.turning_points import Turn
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings
 from stickslip.engine.state.layout import TERMS
-from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem.event_rate import default_event_rate
 from tests.core.engine.compiled import compiled
 from tests.core.run.long_runs.problems import RUNS
 from tests.problems import SLAB

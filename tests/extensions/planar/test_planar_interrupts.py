@@ -9,7 +9,7 @@ from stickslip.extensions.planar.run import PlanarRun
 from stickslip.extensions.planar.solution import Frames
 from stickslip.extensions.planar.solver import PlanarSolver
 from stickslip.run import run_loop
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from tests.core.run.long_runs.signals import heard, lost
 from tests.extensions.planar.patches import patch
 
@@ -32,6 +32,6 @@ def test_the_budget_of_slow_steps_falls_to_a_single_one() -> None:
 
     assert run_loop.next_budget(8, 8.0) == run_loop.SMALLEST_BUDGET
     slab = patch(nodes=30_000, length=2e7)
-    run = PlanarRun(RunOptions(1.0), PlanarSolver(slab, 1e-3), (slice(None),), 0.0, Frames(slab, slab.steps_per_round_trip))
+    run = PlanarRun(CallOptions(1.0), PlanarSolver(slab, 1e-3), (slice(None),), 0.0, Frames(slab, slab.steps_per_round_trip))
     run.advance(run_loop.SMALLEST_BUDGET)
     assert run.length == 1

@@ -21,7 +21,7 @@ from stickslip.extensions.studies.ensemble import Ensemble, ensemble
 from stickslip.extensions.studies.separation import disturbed, shared_events, slope
 from stickslip.problem.run_codes import UNDER_WAY
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.solution.files.netcdf import save_checkpoint
 from tests.core.run.long_runs.problems import differences, killed
 
@@ -325,7 +325,7 @@ def test_an_ensemble_that_was_stopped_goes_on_with_the_runs_that_it_kept(tmp_pat
     begun = ensemble(FAST, 300 * TRIP, members=3, checkpoint=folder, progress=stop)
     assert len(begun.runs) == 1
     assert sorted(path.name for path in folder.iterdir()) == ["member-1.nc", "undisturbed.nc"]
-    half = ExactRun.begin(whole.runs[1].problem, RunOptions(300 * TRIP, creep_rtol=0.0, shortest_event=0.0))
+    half = ExactRun.begin(whole.runs[1].problem, CallOptions(300 * TRIP, creep_rtol=0.0, shortest_event=0.0))
     half.advance(50)
     assert 0 < half.length < len(whole.runs[1].history)
     save_checkpoint(half.solution(UNDER_WAY), folder / "member-2.nc")

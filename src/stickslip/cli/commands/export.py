@@ -108,11 +108,10 @@ def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any
 
 
 def _source(run: str, duration: str | None) -> RunSource:
-    from stickslip.cli.overrides import STDIN, load, read
-    from stickslip.problem.scenarios import read_duration
+    from stickslip.cli.overrides import STDIN, load, typed_option
     from stickslip.run import run_source
 
-    length = read(read_duration, duration, "export", "duration")
+    length = typed_option("duration", duration, "export")
     return run_source(load(run, "export") if run == STDIN else run, length, who="export")
 
 

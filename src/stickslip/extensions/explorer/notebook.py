@@ -81,13 +81,13 @@ def explore(
         check_is_there("inference", "explore: record=")
     from stickslip.extensions.explorer.model.setting import explorable
     from stickslip.extensions.explorer.server.start import shown_in_notebook
-    from stickslip.problem.scenarios import Scenario, read_source
+    from stickslip.problem.scenarios import read_source
 
-    found = read_source("explore", problem, any_kind=True)
-    if isinstance(found, Problem):
-        found = Scenario(found, found.round_trip_time * ROUND_TRIPS if duration is None else duration, name="problem")
+    if isinstance(problem, Problem):
+        lasts = problem.round_trip_time * ROUND_TRIPS if duration is None else duration
+        found = replace(read_source("explore", problem, lasts), name="problem")
     else:
-        found = explorable(found if duration is None else replace(found, duration=duration))
+        found = explorable(read_source("explore", problem, duration, any_kind=True))
     behind = None
     if record is not None and not found.is_of_core:
         raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")

@@ -55,8 +55,8 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
-from stickslip.problem import PRESSING, Problem, check_rtol
-from stickslip.problem.scenarios import read_source
+from stickslip.problem import PRESSING, Problem, read_option
+from stickslip.problem.scenarios import read_problem
 from stickslip.run import TextProgress, telling
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ class Wishes:
         elif self.checkpoint is not None:
             raise InputError("infer: checkpoint is of the samples that are drawn: ask for some with samples=, or leave it out")
         KeptWalk(self.checkpoint).check()
-        check_rtol(self.rtol, "infer")
+        read_option("rtol", self.rtol, "infer")
 
     def progress(self, tell: Tell) -> SearchProgress:
         """Return the progress of the search, which ends when its time is over. Raises InputError for a time that is none."""
@@ -300,8 +300,7 @@ def infer(
         checkpoint=None if checkpoint is None else as_path("infer: checkpoint", checkpoint),
     )  # fmt: skip
     wishes.check()
-    source = read_source("infer", problem)
-    given = source if isinstance(source, Problem) else source.problem
+    given = read_problem("infer", problem)
     records = _records(record, begin=begin, end=end)
     observed = wishes.observe if by == "samples" else None
     _check_normal(given, wishes, free)

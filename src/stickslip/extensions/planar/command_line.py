@@ -88,14 +88,14 @@ class PlanarKindOfRun(KindOfRun):
     def run(self, request: Request) -> PlanarResults:
         """Run, and say before the start how large the run is. Raises InputError."""
         from stickslip.extensions.planar.run import simulate_planar
-        from stickslip.run import options_of
+        from stickslip.run import CallOptions
 
         if request.resume is not None:
             return _resumed(request, request.resume)
         chosen = request.chosen
         announce_run(chosen, streamed=request.out is not None)
         with progress_line(f"{chosen.name}:") as report:
-            run = simulate_planar(chosen, options_of(chosen, progress=report, checkpoint=request.out))
+            run = simulate_planar(chosen, CallOptions.of(chosen, progress=report, checkpoint=request.out))
         return PlanarResults(chosen, run, is_fresh=True)
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from stickslip.cli.results import Stored
     from stickslip.extensions.planar.solution import PlanarSolution
     from stickslip.problem.scenarios import Scenario
-    from stickslip.run import RunOptions
+    from stickslip.run import CallOptions
     from stickslip.run.check import Examination
 
 
@@ -25,7 +25,7 @@ def _solves(what: Any) -> bool:
     return isinstance(what, PlanarSlab)
 
 
-def _run(source: Any, options: RunOptions) -> PlanarSolution:
+def _run(source: Any, options: CallOptions) -> PlanarSolution:
     from stickslip.extensions.planar.run import simulate_planar
 
     return simulate_planar(source, options)

@@ -21,7 +21,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
 from stickslip.problem import INTERRUPTED, UNSTABLE, Stop
 from stickslip.problem.scenarios import Scenario
-from stickslip.run import Pace, RunOptions, WholeHistory, how_far, how_fast, run_to_end
+from stickslip.run import CallOptions, Pace, WholeHistory, how_far, how_fast, run_to_end
 
 if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver
@@ -110,17 +110,17 @@ def check_memory(slab: PlanarSlab, duration: float, frames: int) -> float:
     return needed
 
 
-def with_frames(who: str, options: RunOptions, frames: int | None) -> RunOptions:
+def with_frames(who: str, options: CallOptions, frames: int | None) -> CallOptions:
     """Return options with the number of frames of each two-way travel time; None for the default. Raises InputError."""
     return replace(options, of_solver={"frames": FRAMES if frames is None else check_whole(f"{who}: frames", frames)})
 
 
-def frames_of(options: RunOptions) -> int:
+def frames_of(options: CallOptions) -> int:
     """Return the number of frames that are kept of each two-way travel time."""
     return int(options.of_solver["frames"])
 
 
-def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> PlanarSolution:
+def simulate_planar(source: PlanarSlab | Scenario, options: CallOptions) -> PlanarSolution:
     """Run a planar slab from t = 0, with the step that reaches the duration as the last one: see `stickslip.simulate`.
 
     Frames are written to the folder `options.checkpoint` (NAME.zarr) while the run continues, and `resume_planar` continues it.
@@ -155,7 +155,7 @@ def resume_planar(path: Path, duration: float | str | WithUnit | None = None, **
     with PlanarStore.at(path) as store:
         before = store.duration
         asked: Any = before if duration is None else duration
-        options = with_frames("resume", RunOptions(asked, checkpoint=path, **given).checked("resume"), store.frames)
+        options = with_frames("resume", CallOptions(asked, checkpoint=path, **given).checked("resume"), store.frames)
         store.duration = options.duration
         check_duration(store, before)
         solver, here, memory = begun(store.slab, options, store.times[-1])
@@ -185,7 +185,7 @@ def check_duration(store: PlanarStore, before: float) -> None:
     raise InputError(f"{store.path}: the duration of {before:.9g} s cannot become {wanted:.9g} s: {why}")
 
 
-def begun(slab: PlanarSlab, options: RunOptions, time: float) -> tuple[PlanarSolver, tuple[slice, ...], float]:
+def begun(slab: PlanarSlab, options: CallOptions, time: float) -> tuple[PlanarSolver, tuple[slice, ...], float]:
     """Return a solver at t = 0, where the nodes of the contact are in it, and the memory (bytes) that the run needs.
 
     Before that, the run is reported at a time (s). Raises InputError if it needs too much memory, or if JAX is missing.
@@ -205,7 +205,7 @@ def begun(slab: PlanarSlab, options: RunOptions, time: float) -> tuple[PlanarSol
 class PlanarRun:
     """A planar slab in progress and the frames of its motion, an implementation of `run.solver.Solver`."""
 
-    options: RunOptions
+    options: CallOptions
     solver: PlanarSolver
     here: tuple[slice, ...]
     """Where the nodes of the contact are among those of the solver."""

@@ -30,7 +30,7 @@ from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSl
 from stickslip.friction.laws.of_rate import Coulomb
 from stickslip.problem import Problem
 from stickslip.problem.bodies import ElasticSlab
-from stickslip.problem.scenarios import Scenario, library, load_scenario, read_duration_and_problem, read_source
+from stickslip.problem.scenarios import Scenario, library, load_scenario, read_source
 from stickslip.run import TextProgress, telling
 from stickslip.run.simulate import simulate
 
@@ -178,9 +178,9 @@ def judge_series(
         raise InputError("judge_series: needs a series or more")
     if not 0.0 < tolerance < 1.0:
         raise InputError(f"judge_series: tolerance must lie between 0 and 1, got {shown(tolerance)}")
-    source = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem)
-    ends = max(float(one.time[-1]) for one in several) if isinstance(source, Problem) else None
-    lasts, given = read_duration_and_problem("judge_series", source, ends)
+    ends = max(float(one.time[-1]) for one in several) if isinstance(problem, Problem) else None
+    scenario = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem, ends)
+    lasts, given = scenario.duration, scenario.problem
     check_suitable(given)
     for one in several:
         check_length(one, lasts if ends is None else float(one.time[-1]))

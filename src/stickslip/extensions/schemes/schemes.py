@@ -29,7 +29,7 @@ from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem import Problem
-from stickslip.problem.scenarios import read_duration_and_problem
+from stickslip.problem.scenarios import read_source
 from stickslip.run import Study, TextProgress, telling
 from stickslip.solution import Solution
 
@@ -260,7 +260,8 @@ def schemes(
     characteristics     50    0.061670
     characteristics    100    0.030765
     """
-    lasts, given = read_duration_and_problem("schemes", problem, duration)
+    scenario = read_source("schemes", problem, duration)
+    lasts, given = scenario.duration, scenario.problem
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme
     chosen = [_scheme_of(one) for one in several]
     twice = next((one.name for i, one in enumerate(chosen) if one.name in {other.name for other in chosen[:i]}), None)

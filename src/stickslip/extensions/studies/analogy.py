@@ -26,7 +26,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem, block_for
 from stickslip.problem.bodies import BodyWithWaves
-from stickslip.problem.scenarios import read_duration_and_problem
+from stickslip.problem.scenarios import read_source
 from stickslip.run import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
 
@@ -135,7 +135,8 @@ def analogy(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    lasts, given = read_duration_and_problem("analogy", problem, duration)
+    scenario = read_source("analogy", problem, duration)
+    lasts, given = scenario.duration, scenario.problem
     names = two_parameters(given, x, y, "analogy")
     if not 0.0 < within < 1.0:
         raise InputError(f"analogy: within must lie between 0 and 1, got {within!r}")

@@ -18,7 +18,7 @@ from stickslip.foundation.constants import PAPER
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.problem import DURATION, Problem, check_rtol, default_event_rate
+from stickslip.problem import Problem, default_event_rate, read_option
 from stickslip.problem.scenarios import Scenario, load_scenario, solved_by_core
 from stickslip.run import Study, TextProgress, run_source, telling
 from stickslip.solution import Solution
@@ -171,9 +171,8 @@ def compare(
     """
     if len(sources) < 2 and not rules:
         raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}; rules=True runs one under each rule")
-    if rtol is not None:
-        check_rtol(rtol, "compare", "rtol")
-    lasts = None if duration is None else DURATION.check("compare", "duration", duration)
+    rtol = None if rtol is None else read_option("rtol", rtol, "compare")
+    lasts = None if duration is None else read_option("duration", duration, "compare")
     ruled = under_each_rule(sources) if rules else []
     read = [run_source(source, lasts, rtol) for source in ruled or sources]
     called = distinct([source.name for source in read] if names is None else names)

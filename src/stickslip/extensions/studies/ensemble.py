@@ -19,8 +19,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
 from stickslip.problem import Problem, check_event_rate
-from stickslip.problem.scenarios import read_duration_and_problem
-from stickslip.run import RunOptions, RunsCompared, TextProgress, telling, uninterrupted
+from stickslip.problem.scenarios import read_source
+from stickslip.run import CallOptions, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.run.study import MAX_PIECES
 from stickslip.solution import Solution
 from stickslip.solution.observables import LOST, Predictability, is_followed
@@ -262,8 +262,9 @@ def ensemble(
     its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
     `Ensemble.note`.
     """
-    lasts, given = read_duration_and_problem("ensemble", problem, duration)
-    options = RunOptions(lasts, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", given)
+    scenario = read_source("ensemble", problem, duration)
+    given = scenario.problem
+    options = CallOptions(scenario.duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", given)
     pushes = drawn(given, members, size, seed)
     rate = check_event_rate(event_rate, "ensemble")
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces

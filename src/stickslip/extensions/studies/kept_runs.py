@@ -12,7 +12,8 @@ from stickslip.engine import engine_key
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.problem import FULL_HISTORY, INTERRUPTED, STATUSES, UNDER_WAY, Problem
-from stickslip.run import RunOptions, resume_run
+from stickslip.problem.scenarios import Scenario
+from stickslip.run import CallOptions, resume_run
 from stickslip.run.simulate import simulate
 from stickslip.solution import Solution
 from stickslip.solution.files import read_solution
@@ -45,7 +46,7 @@ class KeptRuns:
         with held(folder, f"{who}: checkpoint {folder}: another study is writing into it: choose another name"):
             yield cls(who, folder)
 
-    def run(self, name: str, problem: Problem, options: RunOptions) -> Solution:
+    def run(self, name: str, problem: Problem, options: CallOptions) -> Solution:
         """Return a run from its file, from where it stopped in there, or from the start.
 
         Raises InputError if the file holds another run, or one of another version of the engine.
@@ -55,20 +56,17 @@ class KeptRuns:
         if path.is_symlink():
             raise InputError(f"{path}: is a link: put the file itself there")
         found = read_solution(path)
-        wanted = (problem, options.duration, options.rtol, options.max_events, options.creep_rtol, options.shortest_event)
-        held_there = (found.problem, found.asked_duration, found.rtol, found.max_events, found.creep_rtol, found.shortest_event)
-        if held_there != wanted:
+        if (found.problem, found.options) != (problem, options.options):
             raise InputError(f"{path}: is a run of another {self.who}: choose another folder, or remove this one")
         if found.checkpoint is None or found.checkpoint.engine != engine_key():
             raise InputError(f"{path}: another version of stickslip's engine made it: choose another folder, or remove this one")
         full = found.status == STATUSES[FULL_HISTORY] and len(found.history) < options.most_pieces
         if not full and found.status.name not in STOPPED:
             return found
-        others: dict[str, Any] = {"checkpoint": path, "max_pieces": options.max_pieces}
-        return resume_run(found, path, RunOptions.to_continue(found, options.duration, options.max_events, **others))
+        others: dict[str, Any] = {"checkpoint": path, "max_pieces": options.max_pieces, "max_events": options.max_events}
+        return resume_run(found, path, CallOptions.to_continue(found, options.duration, **others))
 
-    def _begun(self, path: Path | None, problem: Problem, options: RunOptions) -> Solution:
-        limits: dict[str, Any] = {"max_events": options.max_events, "max_pieces": options.max_pieces}
-        limits |= {"creep_rtol": options.creep_rtol, "shortest_event": options.shortest_event}
-        found: Solution = simulate(problem, options.duration, options.rtol, checkpoint=path, **limits)
+    def _begun(self, path: Path | None, problem: Problem, options: CallOptions) -> Solution:
+        limits: dict[str, Any] = {"max_pieces": options.max_pieces, "checkpoint": path}
+        found: Solution = simulate(Scenario(problem, **vars(options.options)), **limits)
         return found

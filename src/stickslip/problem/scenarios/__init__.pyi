@@ -34,24 +34,21 @@ from stickslip.problem.scenarios.schema import (
     TABLES,  # The tables of a scenario; extensions add others.
     # A key of a table: the function that converts and checks its value, its default (MISSING if it must be given), its meaning.
     Key,
-    check_events,  # Return a number of slip events if a run can stop after it.
     check_rule,  # Return the name of a selection rule if there is such a rule.
     # Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history.
     entries_in,
     kind_of,  # Return the class that `kind` names in a table.
     quantities_in,  # Return each quantity of a table with its default (MISSING if there is none).
     read_as,  # Return a value of a key if it is of a type, `wanted` in words.
-    read_duration,  # Return a duration (s) that a user typed, a number or a text with a unit.
     read_part,  # Return the body, law or loading history that a table describes.
     # Return a message without its first words, such as "ElasticSlab: ": the author of a file knows tables, not classes.
     without_owner,
 )
 from stickslip.problem.scenarios.source import (
-    # Return a checked duration (s), by default the scenario's, and the problem that `read_source` finds.
-    read_duration_and_problem,
-    read_source,  # Return a problem or a scenario as it is, or the scenario of a bundled name or a file.
+    read_problem,  # Return a problem itself, or that of a scenario, which may be given as to `read_source`.
+    read_source,  # Return the scenario of a problem with a `duration`, a scenario itself, or that of a bundled name or a file.
     solved_by_core,  # Return a scenario if its own problem is solved, as all but runs need it.
-    under_rule,  # Return a problem, or a scenario, under another selection rule.
+    under_rule,  # Return a scenario under another selection rule.
 )
 from stickslip.problem.scenarios.table import (
     ScenarioTable,  # What a table of an extension holds, and what it means.
@@ -82,7 +79,6 @@ __all__ = [
     "Scenario",
     "ScenarioTable",
     "Source",
-    "check_events",
     "check_rule",
     "describe",
     "document_with",
@@ -98,9 +94,8 @@ __all__ = [
     "put_into",
     "quantities_in",
     "read_as",
-    "read_duration",
-    "read_duration_and_problem",
     "read_part",
+    "read_problem",
     "read_scenario",
     "read_source",
     "read_typed",

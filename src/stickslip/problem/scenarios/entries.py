@@ -12,6 +12,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import Given
 from stickslip.foundation.quantities import (
     Choice,
+    Count,
     Field,
     LawField,
     Named,
@@ -39,7 +40,7 @@ class Source(NamedTuple):
 
 def key_of(name: str, entry: Field) -> str:
     """Return the key of a field in a scenario."""
-    return entry.key if isinstance(entry, NamedNumbers) else name
+    return (entry.key if isinstance(entry, NamedNumbers | Count) else "") or name
 
 
 class DocumentPlace(NamedTuple):
@@ -78,7 +79,7 @@ def read_entry(value: Any, entry: Field, place: DocumentPlace, law: Callable[[di
     a law inside a law. Raises InputError with the place in the document.
     """
     file = place.source.file
-    if isinstance(entry, Quantity):
+    if isinstance(entry, Quantity | Count):
         return entry.check(file, str(place), value)
     if isinstance(entry, NumberSeries):
         if not isinstance(value, list):
@@ -114,7 +115,7 @@ def describe(entry: Field) -> str:
         return f"{entry.item.described}, a list" + (", ascending" if entry.ascending else "")
     if isinstance(entry, Choice):
         return f"{entry.meaning}: {' or '.join(entry.allowed)}"
-    if isinstance(entry, Text):
+    if isinstance(entry, Text | Count):
         return entry.meaning
     return f"{entry.meaning}, a table"
 

@@ -19,12 +19,13 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.fields import STEADY
 from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_options import EVENTS_WANTED
 from stickslip.problem.scenarios.entries import Source
 from stickslip.problem.scenarios.scenario import Scenario, scenario_of
 from stickslip.problem.scenarios.schema import SOFT_TORQUE, WITH_SOFT_TORQUE, quantities_in, without_owner
 from stickslip.problem.selection_rule import names as rules
 
-EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
+EVENTS = Quantity("1", EVENTS_WANTED.meaning, at_least=1)
 SELECTION = "selection rule"
 LISTED = "`stickslip check SCENARIO --parameters` lists all"
 """Where all parameters are."""

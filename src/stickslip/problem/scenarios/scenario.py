@@ -11,17 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from stickslip.extension import tables as tables_of_extensions
-from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
+from stickslip.foundation.arguments import as_path, for_users, shown
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import check_fields, declare
+from stickslip.foundation.quantities import check_fields, declare, fields_of
 from stickslip.foundation.show import html_table, shown_fields
-from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION, check_rtol
+from stickslip.problem.run_options import DURATION, RunOptions
 from stickslip.problem.scenarios import library
-from stickslip.problem.scenarios.entries import Source, as_written, to_table
+from stickslip.problem.scenarios.entries import Source, as_written, key_of, to_table
 from stickslip.problem.scenarios.schema import read_document, read_part, read_table, without_owner
 from stickslip.problem.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
@@ -40,7 +39,14 @@ _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[
 
 
 @dataclass(frozen=True)
-class Scenario(CheckedArguments):
+class OfProblem:
+    """What belongs to a problem, which is given first: `Scenario(problem, 10.0)`."""
+
+    problem: Problem
+
+
+@dataclass(frozen=True)
+class Scenario(RunOptions, OfProblem):
     """A problem, and how long (s, or a text with a unit) and how accurately to run it.
 
     Two scenarios are equal if they differ in `name` and `source`, the TOML text from which it was read, only. After `max_events`
@@ -48,14 +54,7 @@ class Scenario(CheckedArguments):
     `tables` has what tables of extensions say, such as [contact], each with its name.
     """
 
-    problem: Problem
-    duration: Number = declare(DURATION)
-    rtol: float = 1e-10
-    title: str = ""
-    description: str = ""
-    max_events: int | None = None
-    creep_rtol: float | None = None
-    shortest_event: float | None = None
+    duration: Number = declare(DURATION)  # again, as in `BoundedOptions`
     tables: tuple[tuple[str, Any], ...] = ()
     name: str = field(default=UNNAMED, compare=False)
     source: str = field(default="", compare=False, repr=False)
@@ -141,13 +140,8 @@ class Scenario(CheckedArguments):
                     to_table(value) if isinstance(value, LoadingHistory) else as_written(value)
                 )
         tables |= {name: tables_of_extensions()[name].write(value) for name, value in self.tables}
-        run: dict[str, Any] = {
-            "duration": self.duration,
-            "events": self.max_events,
-            "rtol": self.rtol,
-            "creep_rtol": self.creep_rtol,
-        }
-        run |= {"shortest_event": self.shortest_event, "selection": problem.rule}
+        run: dict[str, Any] = {key_of(name, entry): getattr(self, name) for name, (entry, _) in fields_of(RunOptions).items()}
+        run["selection"] = problem.rule
         allowed = run if self.run_keys is None else self.run_keys
         tables["run"] = {name: value for name, value in run.items() if value is not None and name in allowed}
         return tomli_w.dumps(tables, multiline_strings=True)
@@ -210,11 +204,9 @@ def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
         problem = Problem(body, law, **loading, **start, selection=run.pop("selection"))
     except InputError as error:
         raise InputError(f"{file}: {_in_tables(without_owner(error))}") from None
-    check_rtol(run["rtol"], file, "[run] rtol")
-    check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
-    check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
-    limits = {"max_events": run.pop("events")}
-    found = Scenario(problem, **run, **limits, title=document["title"], description=document["description"], name=file)
+    options = {name: run[key_of(name, entry)] for name, (entry, _) in fields_of(RunOptions).items()}
+    found = Scenario(problem, **options, title=document["title"], description=document["description"], name=file)
+    found.check_with(problem, file, lambda option: f"[run] {option}")
     return _with_tables(found, document, source)
 
 

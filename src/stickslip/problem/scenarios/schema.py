@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from stickslip.extension import tables
-from stickslip.foundation.arguments import check_type, check_whole, shown
+from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
@@ -28,8 +28,8 @@ from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
-from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_typed
+from stickslip.problem.run_options import RunOptions
+from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
@@ -45,8 +45,6 @@ SOFT_TORQUE, WITH_SOFT_TORQUE = "soft_torque", "with_soft_torque"
 DRIVE = ("driver_impedance", "driver_inertia", "driver_integral_gain")
 ONE_WAY = "true: the contact never slips backwards"
 """Meaning of the key one_way."""
-MOST_EVENTS = 10**12
-"""Number of slip events that no run reaches."""
 NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
 """Declaration of the initial state for a law without a state: none may be given."""
 
@@ -91,8 +89,7 @@ def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()
     if table in KINDS or table in tables():
         return _declared(tables()[table].kind() if table in tables() else kind)
     if table == "run":
-        automatic = {"creep_rtol": (CREEP_RTOL, None), "shortest_event": (SHORTEST_EVENT, None)}
-        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), **automatic}
+        return _declared(RunOptions)
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
     units = own_units(kind.load_unit) if hasattr(kind, "load_unit") else {}
     found = {name.removeprefix("initial_"): (in_units(declared, units), default) for name, (declared, default) in ours.items()}
@@ -111,6 +108,8 @@ def entries_in(
     """
     if table in tables():
         return dict(fields_of(tables()[table].kind()))
+    if table == "run":
+        return {key_of(name, entry): (entry, default) for name, (entry, default) in fields_of(RunOptions).items()}
     if not has_kind(table):
         return dict(quantities_in(table, kind, states))
     of = table.partition(".")[2]
@@ -138,7 +137,6 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
     if table == "body" and hasattr(kind, WITH_SOFT_TORQUE):
         keys[SOFT_TORQUE] = Key(lambda value, _: value, None, SOFT_TORQUE_MEANS)
     if table == "run":
-        keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
     if table == "loading":
         keys["one_way"] = Key(partial(read_as, bool, "true or false"), False, ONE_WAY)
@@ -232,19 +230,6 @@ def _softened(kind: type, fields: dict[str, Any], raw: Mapping[str, Any]) -> Any
 def without_owner(error: InputError) -> str:
     """Return a message without its first words, such as "ElasticSlab: ": the author of a file knows tables, not classes."""
     return str(error).partition(": ")[2]
-
-
-def read_duration(text: str, where: str, name: str = "duration") -> float:
-    """Return a duration (s) that a user typed, a number or a text with a unit. Raises InputError that begins with `where`."""
-    return read_typed(text, DURATION, where, name)
-
-
-def check_events(value: Any, where: str, name: str = "events") -> int:
-    """Return a number of slip events if a run can stop after it. Raises InputError otherwise."""
-    found = check_whole(f"{where}: {name}", value)
-    if found >= MOST_EVENTS:
-        raise InputError(f"{where}: {name} must be below {MOST_EVENTS:g}, got {shown(value)}")
-    return found
 
 
 def check_rule(value: Any, where: str, name: str) -> str:

@@ -10,7 +10,7 @@ from stickslip.extension import tables
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
-from stickslip.problem.run_quantities import DURATION
+from stickslip.problem.run_options import DURATION
 from stickslip.problem.selection_rule import SelectionRule
 
 if TYPE_CHECKING:
@@ -27,37 +27,35 @@ def solved_by_core(who: str, scenario: Scenario) -> Scenario:
     return scenario
 
 
-def read_source(who: str, source: Problem | Scenario | str | Path, *, any_kind: bool = False) -> Problem | Scenario:
-    """Return a problem or a scenario as it is, or the scenario of a bundled name or a file.
+def read_source(
+    who: str,
+    source: Problem | Scenario | str | Path,
+    duration: float | str | WithUnit | None = None,
+    *,
+    any_kind: bool = False,
+) -> Scenario:
+    """Return the scenario of a problem with a `duration`, a scenario itself, or that of a bundled name or a file.
 
-    Raises InputError, for another type with a message that begins with `who`, and unless it may be of `any_kind` for a scenario
-    whose own problem is not what is solved.
+    A duration (s, or a text with a unit) replaces that of the scenario. Raises InputError, for another type or duration with a
+    message that begins with `who`, and unless it may be of `any_kind` for a scenario whose own problem is not what is solved.
     """
-    if isinstance(source, Problem):
-        return source
     from stickslip.problem.scenarios.scenario import Scenario, load_scenario  # which a problem can do without
 
+    if isinstance(source, Problem):
+        return Scenario(source, DURATION.check(who, "duration", duration))
     found = load_scenario(source) if isinstance(source, str | Path) else source
     if not isinstance(found, Scenario):
         check_problem(who, found, "a Problem, a scenario, or the name of one")
+    if duration is not None:
+        found = replace(found, duration=DURATION.check(who, "duration", duration))
     return found if any_kind else solved_by_core(who, found)
 
 
-def under_rule(source: Problem | Scenario, rule: str | SelectionRule) -> Problem | Scenario:
-    """Return a problem, or a scenario, under another selection rule. Raises InputError for an unknown rule."""
-    problem: Problem = source if isinstance(source, Problem) else source.problem
-    changed = replace(problem, selection=rule)
-    return changed if isinstance(source, Problem) else replace(source, problem=changed)
+def under_rule(scenario: Scenario, rule: str | SelectionRule) -> Scenario:
+    """Return a scenario under another selection rule. Raises InputError for an unknown rule."""
+    return replace(scenario, problem=replace(scenario.problem, selection=rule))
 
 
-def read_duration_and_problem(
-    who: str, source: Problem | Scenario | str | Path, duration: float | str | WithUnit | None
-) -> tuple[float, Problem]:
-    """Return a checked duration (s), by default the scenario's, and the problem that `read_source` finds.
-
-    Raises InputError, which begins with `who`, also if a problem comes without a duration.
-    """
-    found = read_source(who, source)
-    if isinstance(found, Problem):
-        return DURATION.check(who, "duration", duration), found
-    return DURATION.check(who, "duration", found.duration if duration is None else duration), found.problem
+def read_problem(who: str, source: Problem | Scenario | str | Path) -> Problem:
+    """Return a problem itself, or that of a scenario, which may be given as to `read_source`. Raises InputError as that does."""
+    return source if isinstance(source, Problem) else read_source(who, source).problem

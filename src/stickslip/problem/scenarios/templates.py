@@ -174,7 +174,7 @@ def _written(example: dict[str, Any], about: str = "") -> str:
         states = states_in(getattr(kinds["friction"], "state", None))  # a typed state is not that of the class
         lines += _table(table, kind, example[table], kinds["body"].load_unit, states)  # type: ignore[attr-defined] # registered
         if table == "run":
-            given = [f"{key} = {_toml(example[table][key])}" for key in ("events", "selection") if key in example[table]]
+            given = [f"{key} = {_toml(example[table][key])}" for key in ("selection",) if key in example[table]]
             lines += given or [f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}']
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)

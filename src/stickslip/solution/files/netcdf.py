@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -337,7 +338,6 @@ def _solution(tables: Tables, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: tables.array(f"engine_{name}") for name in ARRAYS if name != "waves" or "engine_waves" in has}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (printable(str(attributes.get(name, ""))) for name in ("lumping", "rounding"))
-    named = scenario.title, scenario.description
-    return Solution(scenario.problem, asked, rtol, status, history, checkpoint, *about, lumping, rounding, *named)
+    options = replace(scenario.options, duration=asked, rtol=rtol)
+    return Solution(scenario.problem, options, status, history, checkpoint, lumping, rounding)

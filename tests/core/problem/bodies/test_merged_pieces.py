@@ -13,7 +13,7 @@ import stickslip as ss
 from stickslip.engine.state.layout import NEVER
 from stickslip.problem.loading import Sinusoidal
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import options_of
+from stickslip.run.options import CallOptions
 from stickslip.run.run_loop import WholeHistory, run_to_end
 
 RPM = np.pi / 30
@@ -47,7 +47,7 @@ def layers(draw: np.random.Generator) -> ss.Problem:
 
 def unmerged(problem: ss.Problem, duration: float) -> ss.Solution:
     """Return a run in which nothing is merged."""
-    run = ExactRun.begin(problem, options_of(problem, duration=duration, shortest_event=0.0).check("test", problem))
+    run = ExactRun.begin(problem, CallOptions.of(problem, duration=duration, shortest_event=0.0).check("test", problem))
     run.count.merge_above = run.count.merge_at = NEVER
     return run_to_end(run, WholeHistory(run))
 

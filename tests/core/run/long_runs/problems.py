@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 import stickslip as ss
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.resume import resume_run
 from stickslip.solution.files.netcdf import save_checkpoint
 from tests.core.engine.moving_folds import KINKED, MATCHED, hardening
@@ -99,7 +99,7 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
 def continued(path: Path, duration: float | None = None) -> ss.Solution:
     """Do what `ss.resume` does, but for the file that it would write in the end: that takes longer than the rest."""
     found = ss.open_solution(path)
-    return resume_run(found, path, RunOptions.to_continue(found, duration, None))
+    return resume_run(found, path, CallOptions.to_continue(found, duration))
 
 
 def stopped_and_continued(first: ss.Solution, duration: float, folder: Path) -> ss.Solution:

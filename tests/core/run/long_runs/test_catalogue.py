@@ -20,7 +20,7 @@ from stickslip.engine.state.layout import Floats
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import Interrupts, Monitor, run_loop
@@ -146,7 +146,7 @@ def test_a_number_of_events_stops_a_catalogue_as_it_stops_a_run(events: int, tmp
 def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten thousand cycles, of which the history would be two hundred thousand pieces."""
     problem, duration = bundled("cycles-block", 1500.0)
-    run = ExactRun.begin(problem, RunOptions(duration))
+    run = ExactRun.begin(problem, CallOptions(duration))
     monkeypatch.setattr(EventRows, "record", lambda self, new: (new.tell(), self._remember()))
     monitor = Monitor(run, EventRows(run, RowsInMemory()))
     capacities = {len(run.store.pieces)}

@@ -14,7 +14,7 @@ import stickslip as ss
 from stickslip.problem.run_codes import UNDER_WAY, Stop
 from stickslip.run import catalogue as module
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import Report
 from stickslip.solution.files.netcdf import save_checkpoint
 from tests.core.engine.creep_truth import ROUND, printed
@@ -46,7 +46,7 @@ def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
 
 def begun(name: str) -> ExactRun:
     problem, duration, rtol = RUNS[name]
-    return ExactRun.begin(problem, RunOptions(duration, creep_rtol=rtol))
+    return ExactRun.begin(problem, CallOptions(duration, creep_rtol=rtol))
 
 
 def step(run: ExactRun) -> bool:

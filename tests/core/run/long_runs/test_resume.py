@@ -16,7 +16,7 @@ import stickslip as ss
 from stickslip.engine.history.status import Checkpoint
 from stickslip.problem.run_codes import UNDER_WAY, Stop
 from stickslip.run.exact_run import ExactRun
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import Report
 from stickslip.solution.files.netcdf import save_checkpoint
 from tests.core.run.long_runs.problems import RUNS, continued, differences, differences_of_files, killed
@@ -24,7 +24,7 @@ from tests.core.run.long_runs.problems import RUNS, continued, differences, diff
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
     """Steps (calls of the engine with a budget of one) that a run takes, to 1000 at least."""
-    run = ExactRun.begin(problem, RunOptions(duration))
+    run = ExactRun.begin(problem, CallOptions(duration))
     for steps in range(100_000):
         code = run.advance(1)
         if code == Stop.FULL:
@@ -36,7 +36,7 @@ def steps_of(problem: ss.Problem, duration: float) -> int:
 
 def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Checkpoint:
     """Write the checkpoint of a run that was stopped after so many steps, counted from the first piece of its history."""
-    run = ExactRun.begin(problem, RunOptions(duration))
+    run = ExactRun.begin(problem, CallOptions(duration))
     for step in range(100_000):
         if step >= steps and run.length > 0:
             break
@@ -69,7 +69,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     """At rest, in slip both explicit and implicit, on the way to a fold, within a piece."""
     met = set()
     for problem, duration in RUNS.values():
-        run = ExactRun.begin(problem, RunOptions(duration))
+        run = ExactRun.begin(problem, CallOptions(duration))
         for _ in range(3000):
             if run.advance(1) not in (Stop.NONE, Stop.FULL) or run.length > 400:
                 break

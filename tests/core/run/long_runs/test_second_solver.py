@@ -9,7 +9,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.problem.run_codes import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, Stop
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.progress import Pace
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.run.solver import NewEvents, Solver
@@ -48,7 +48,7 @@ class News(NamedTuple):
 class SmallSteps:
     """A block on a spring under Coulomb friction, by small steps of symplectic Euler."""
 
-    options: RunOptions
+    options: CallOptions
     slip: list[float] = field(default_factory=lambda: [0.0])
     rate: list[float] = field(default_factory=lambda: [0.0])
     room: int = 100
@@ -110,7 +110,7 @@ class SmallSteps:
 
 
 def computed(duration: float, **options: Any) -> Computed:
-    solver: Solver[NewEvents, Computed] = SmallSteps(RunOptions(duration, **options))
+    solver: Solver[NewEvents, Computed] = SmallSteps(CallOptions(duration, **options))
     return run_to_end(solver, WholeHistory(solver))
 
 

@@ -11,7 +11,7 @@ import pytest
 import stickslip as ss
 from stickslip.engine.history.reach import Reach, reach_of
 from stickslip.run.catalogue import catalogue_of
-from stickslip.run.options import RunOptions
+from stickslip.run.options import CallOptions
 from stickslip.run.resume import PausedCatalogue
 
 F = ss.friction
@@ -76,13 +76,13 @@ def test_a_catalogue_remembers_how_far_the_history_went_that_it_discards(tmp_pat
     scenario = ss.load_scenario("reversing-axis")
     whole = ss.simulate(scenario, 3.0)
     problem = scenario.problem
-    options = RunOptions.of(replace(scenario, duration=2.0))
+    options = CallOptions.of(replace(scenario, duration=2.0))
     first = catalogue_of(problem, options, tmp_path / "a.csv")
     assert first.reach.end != whole.reach.end
     paused = PausedCatalogue.read(tmp_path / "a.checkpoint.nc")
     assert len(paused.stopped.history) < len(ss.simulate(scenario, 2.0).history)
     assert abs(reach_of(paused.stopped.history).largest) < abs(first.reach.largest)
-    again = paused.resume(RunOptions.to_continue(paused.stopped, 3.0, None))
+    again = paused.resume(CallOptions.to_continue(paused.stopped, 3.0))
     assert (again.reach.largest, again.reach.time) == (whole.reach.largest, whole.reach.time)
     assert again.reach.end == pytest.approx(whole.reach.end, rel=1e-9, abs=0.0)
 

@@ -23,7 +23,7 @@ from stickslip.engine.state.workspace import counts_in, state_in
 from stickslip.extensions.sweeps.batch import why_not
 from stickslip.friction import LAWS
 from stickslip.friction.formula.bounds import bends_one_way
-from stickslip.problem.run_quantities import default_event_rate
+from stickslip.problem.event_rate import default_event_rate
 from stickslip.problem.scenarios.scenario import Scenario
 
 from .cases import CASES, PULL, SLAB, Case, one

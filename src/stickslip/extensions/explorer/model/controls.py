@@ -13,7 +13,7 @@ from stickslip.extensions.explorer.model.ranges import SliderRange, range_of
 from stickslip.extensions.explorer.model.setting import CONTACT, Setting
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
+from stickslip.foundation.quantities import Choice, Count, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
 from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
@@ -24,7 +24,6 @@ from stickslip.problem.scenarios import (
     ONE_WAY,
     YES_OR_NO,
     ParameterPath,
-    check_events,
     describe,
     entries_in,
     kind_of,
@@ -133,9 +132,10 @@ class Control:
             return text
         if self.kind == "points":
             return [self._number(one) for one in text.replace(";", ",").split(",") if one.strip()]
-        if self.path == "run.events":
+        if isinstance(self.declared, Count):
             number = typed_number(text)
-            return check_events(int(number) if isinstance(number, float) and number.is_integer() else number, self.label, "number")
+            whole = int(number) if isinstance(number, float) and number.is_integer() else number
+            return self.declared.check(self.label, "number", whole)
         number = self._number(text)
         is_whole = self.kind == "whole" and self.path.startswith(CONTACT) and isinstance(number, float) and number.is_integer()
         return int(number) if is_whole else number
@@ -280,9 +280,7 @@ class _Tables:
         rule = self.setting.value("run.selection") or SELECTION_RULES[0]
         meaning = "which slip rate the contact takes where several solve the contact equation"
         rules = Control("run.selection", "selection rule", meaning, "choice", rule, choices=names())
-        most = self.setting.value("run.events")
-        events = Control("run.events", "slip events", "the run ends after so many", "whole", most, empty="no limit", rare=True)
-        return ControlGroup("run", numbers.title, "", (), (*numbers.controls[:1], rules, *numbers.controls[1:], events))
+        return ControlGroup("run", numbers.title, "", (), (*numbers.controls[:1], rules, *numbers.controls[1:]))
 
     @property
     def starts_steadily(self) -> bool:
@@ -311,6 +309,8 @@ class _Tables:
             return Control(path, label, entry.meaning, "choice", value or default, choices=entry.allowed, rare=rare, declared=entry)
         if isinstance(entry, Text):
             return Control(path, label, entry.meaning, "text", value or "", declared=entry)
+        if isinstance(entry, Count):
+            return Control(path, "slip events", entry.meaning, "whole", value, empty="no limit", rare=rare, declared=entry)
         if isinstance(entry, NumberSeries):
             empty = "" if default is MISSING else "none"
             unit, size = unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)

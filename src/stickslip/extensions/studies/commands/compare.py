@@ -61,17 +61,15 @@ def compare(
 
 def _compared(names: list[str], duration: str | None, rtol: float | None, event: int | None, *, rules: bool) -> Comparison:
     """Read all sources before any of them is run, then run them. Raises InputError."""
-    from stickslip.cli.overrides import STDIN, load, read
+    from stickslip.cli.overrides import STDIN, load, typed_option
     from stickslip.extensions.studies.compare import Comparison, distinct, title_of, under_each_rule
-    from stickslip.problem import check_rtol
-    from stickslip.problem.scenarios import read_duration
     from stickslip.run import progress_line, run_source
 
     if len(names) < 2 and not rules:
         cure = "--rules runs one under each selection rule; `stickslip new --list` lists the bundled ones"
         raise InputError(f"compare: needs two runs or more, got {len(names)}; {cure}")
-    length = read(read_duration, duration, "compare", "duration")
-    tolerance = read(check_rtol, rtol, "compare", "rtol")
+    length = typed_option("duration", duration, "compare")
+    tolerance = typed_option("rtol", rtol, "compare")
     given = [load(name, "compare") if name == STDIN else name for name in names]
     chosen = under_each_rule(given) if rules else []
     sources = [run_source(one, length, tolerance) for one in chosen or given]

@@ -58,7 +58,7 @@ def ensemble(
     look = FigureLook(dpi, figure_size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
-    chosen = load_with("ensemble", scenario, changes, duration=duration, events=events, rtol=rtol)
+    chosen = load_with("ensemble", scenario, changes, duration=duration, max_events=events, rtol=rtol)
     study = _study(chosen, members, size, seed, checkpoint)
     show_ensemble(chosen, study)
     announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))

@@ -15,7 +15,7 @@ from stickslip.engine import LAST_THIRD, Floats, Integers, rest_of, time_creepin
 from stickslip.engine.lanes import Reduced, fold_end
 from stickslip.problem import INTERRUPTED, Stop
 from stickslip.problem.scenarios import Scenario
-from stickslip.run import ExactRun, Interrupts, RunOptions
+from stickslip.run import CallOptions, ExactRun, Interrupts
 from stickslip.run.run_loop import run_loop
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     `capacity` is the number of pieces for which the history has room at first. Returns the code of what ended the run.
     """
     problem = scenario.problem
-    run = ExactRun.begin(problem, RunOptions.of(scenario, max_pieces=LARGEST_HISTORY))
+    run = ExactRun.begin(problem, CallOptions.of(scenario, max_pieces=LARGEST_HISTORY))
     run.reserve(capacity)
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0

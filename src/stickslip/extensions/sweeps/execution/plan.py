@@ -19,8 +19,8 @@ from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem import DURATION, Problem
-from stickslip.problem.scenarios import Scenario, load_scenario, read_scenario, solved_by_core
+from stickslip.problem import Problem
+from stickslip.problem.scenarios import Scenario, read_scenario, read_source
 from stickslip.solution import CURVES
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
@@ -102,10 +102,10 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | s
     if not isinstance(given, Problem):
         if duration is not None:
             raise InputError("sweep: duration belongs to a Problem: a scenario has its own, which run.duration varies")
-        return solved_by_core("sweep", given if isinstance(given, Scenario) else load_scenario(given))
+        return read_source("sweep", given)
     if duration is None:
         raise InputError("sweep: a Problem needs a duration (s)")
-    return read_scenario(Scenario(given, DURATION.check("sweep", "duration", duration)).to_toml(), "problem")
+    return read_scenario(read_source("sweep", given, duration).to_toml(), "problem")
 
 
 def read_series(scenario: Scenario, design: Design, curves: Sequence[str], samples: int) -> KeptCurves | None:
