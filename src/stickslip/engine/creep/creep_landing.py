@@ -10,27 +10,16 @@ import numpy as np
 
 from stickslip.engine.creep.averaged import AveragedCreep
 from stickslip.engine.creep.creep_walk import Piece, last_pieces
-from stickslip.engine.creep.landing import continue_after, move
+from stickslip.engine.creep.landing import WrittenMotion, continue_after, move, seen, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.planner import CreepPlan, hermite
-from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece
+from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.problem import Problem
 
 NEAR_SLIP = 4.0
 """A part of the round trip may slip where a leap lands if friction could fall to its load within so many round trips."""
 EDGE = 16.0
 """Number of roundings of an offset within which it is that of an edge."""
-
-
-def seen(load: Floats, strength: float, direction: int) -> Floats:
-    """Convert loads (n, TERMS) minus the reference strength between signed values and values in the direction of slip.
-
-    The conversion is its own inverse.
-    """
-    turned = direction * load
-    if direction < 0:
-        turned[:, 0] -= 2.0 * strength
-    return turned
 
 
 @dataclass(frozen=True)
@@ -147,13 +136,9 @@ class CreepLanding:
         return n
 
     def _write(self, run: LeapingRun, n: int, trip: int, piece: Piece) -> None:
-        store, state = run.store, run.state
-        slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.averaged.strength.sign * piece.slip
-        kept = HistoryPiece(store.pieces[n])
-        kept.trip, kept.mode, kept.law_piece = trip, self.direction * piece.slips, run.count.piece
-        kept.jump, kept.cause, kept.echo_of = 0, 0, -1
-        kept.phase_from, kept.phase_to, kept.speed, kept.bend = piece.phase_from, piece.phase_to, piece.speed, piece.bend
-        kept.slip, kept.law_slip, kept.amplified, kept.gain = slip, law_slip, np.nan, np.nan
-        kept.residual = 0.0  # a leap has an error bound of its own
-        store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
-        store.rate[n] = self.direction * piece.rate
+        store, load = run.store, seen(piece.load, self.problem.strength, self.direction)
+        motion = WrittenMotion(self.direction * piece.slips, run.count.piece, load, self.direction * piece.rate)
+        write_piece(run, n, (trip, piece.phase_from, piece.phase_to), motion)
+        store.speed[n], store.bend[n] = piece.speed, piece.bend
+        store.slip[n] += self.direction * piece.slip
+        store.law_slip[n] += self.averaged.strength.sign * piece.slip

@@ -14,7 +14,7 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from stickslip.engine.creep.landing import SHORTEST_LEAP, continue_after, move_over, write_piece
+from stickslip.engine.creep.landing import SHORTEST_LEAP, WrittenMotion, continue_after, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.slow_landing import ROUNDINGS
 from stickslip.engine.series.polynomial import restrict
@@ -128,7 +128,7 @@ def _rest(last: CyclePart, end: float, load: float) -> CyclePart:
 
 
 @dataclass(frozen=True)
-class CycleLeap:
+class CycleLanding:
     """A leap over whole periods of a block that goes through the same cycle all the time, ready to be written."""
 
     may_rest: ClassVar[bool] = True
@@ -180,14 +180,11 @@ class CycleLeap:
 
     def _write(self, run: LeapingRun, n: int, when: tuple[int, float, float], part: CyclePart) -> None:
         """Write piece n: its round trip and phases (s), and its motion; move the contact to its end."""
-        write_piece(run, n, int(run.count.previous_to) - 1, when)
-        store = run.store
-        store.mode[n], store.law_piece[n] = part.mode, part.law_piece
-        store.load[n], store.rate[n] = part.load, part.rate
+        write_piece(run, n, when, WrittenMotion(part.mode, part.law_piece, part.load, part.rate))
         move_over(run, n)
 
 
-def leap_over_cycles(run: LeapingRun, most: int, tolerance: float) -> CycleLeap | None:
+def leap_over_cycles(run: LeapingRun, most: int, tolerance: float) -> CycleLanding | None:
     """Return a leap over at most so many periods of a block under a law of the slip rate alone; None if it finds no cycles."""
     problem, body, law = run.problem, run.problem.body, run.problem.friction
     if law.states or law.depends_on_slip or law.memory != "all" or most < SHORTEST_LEAP:
@@ -206,7 +203,7 @@ def leap_over_cycles(run: LeapingRun, most: int, tolerance: float) -> CycleLeap 
     error, slip = min(cycle.peak * late, speed * cycle.length), abs(float(run.state.slip_now)) + most * turn * speed
     if abs(cycle.slip) < (1.0 - SAME_CYCLE) * speed * cycle.length or error > tolerance * slip:
         return None
-    return CycleLeap(cycle, most, error, turn, speed, body.stiffness)
+    return CycleLanding(cycle, most, error, turn, speed, body.stiffness)
 
 
 PER_STEP = 0.1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
@@ -53,15 +54,41 @@ class LookedFor(NamedTuple):
     """Of looking, in round trips that could have been computed meanwhile."""
 
 
-def write_piece(run: LeapingRun, n: int, row: int, when: tuple[int, float, float]) -> None:
-    """Write all of piece n but its motion: like another piece, at a round trip and between two phases (s)."""
+class WrittenMotion(NamedTuple):
+    """The motion in a piece, as polynomials of which the last terms may be left out."""
+
+    mode: int
+    law_piece: int
+    load: Sequence[float] | Floats
+    """Pa or N, minus the reference strength."""
+    rate: Sequence[float] | Floats
+    """m/s."""
+    states: Sequence[Sequence[float]] | Floats = ()
+
+
+def write_piece(run: LeapingRun, n: int, when: tuple[int, float, float], motion: WrittenMotion) -> None:
+    """Write piece n: a motion from where the contact is, in a round trip and between two phases (s)."""
     trip, begin, end = when
-    kept, like = HistoryPiece(run.store.pieces[n]), HistoryPiece(run.store.pieces[row])
-    kept.trip, kept.mode, kept.law_piece = trip, like.mode, like.law_piece
+    store, kept = run.store, HistoryPiece(run.store.pieces[n])
+    kept.trip, kept.mode, kept.law_piece = trip, motion.mode, motion.law_piece
     kept.jump, kept.cause, kept.echo_of = 0, 0, -1
     kept.phase_from, kept.phase_to, kept.speed, kept.bend = begin, end, end - begin, 0.0
     kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
     kept.amplified, kept.gain, kept.residual = np.nan, np.nan, 0.0  # a leap has an error bound of its own
+    of_states = zip(store.state[n], motion.states, strict=False)  # behind those of friction may be the rate of a machine
+    for row, terms in ((store.load[n], motion.load), (store.rate[n], motion.rate), *of_states):
+        row[: len(terms)], row[len(terms) :] = terms, 0.0
+
+
+def seen(load: Floats, strength: float, direction: int) -> Floats:
+    """Convert loads (terms last) minus the reference strength between signed values and values in the direction of slip.
+
+    The conversion is its own inverse.
+    """
+    turned = direction * load
+    if direction < 0:
+        turned[..., 0] -= 2.0 * strength
+    return turned
 
 
 def integrals(p: Floats, speed: Floats, bend: Floats) -> Floats:

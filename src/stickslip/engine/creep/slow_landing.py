@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.engine.creep.landing import continue_after, move, move_over, write_piece
+from stickslip.engine.creep.landing import WrittenMotion, continue_after, move, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.slow import BOTH, OFFSETS, PLACES_OF_OFFSETS, RoundTrip, to_powers
 from stickslip.engine.creep.slow_leaps import RATE_SHARE, SlowLeap
@@ -66,7 +66,7 @@ class SlowLanding:
 
     def _write_way(self, run: LeapingRun) -> None:
         """Write the averaged motion, a piece for each step of the integration, and move the contact to its end."""
-        motion, trip, last = self.leap.motion, int(run.count.trip), int(run.count.previous_to) - 1
+        motion, trip = self.leap.motion, int(run.count.trip)
         turn, rows = motion.offsets.period, []
         for step in self.leap.steps:
             moments = [step.between(step.begin + place * (step.end - step.begin))[BOTH] for place in PLACES_OF_OFFSETS]
@@ -77,30 +77,24 @@ class SlowLanding:
         stretch = self._slip(self.leap.landing) / grown.sum()  # that slip has no jump where the averaged motion begins or ends
         for k, (load, rate, states) in enumerate(rows):
             n = int(run.count.length) + k
-            write_piece(run, n, last, (trip, *ends[k]))
-            self._write_motion(run, n, load, stretch * rate, states)
+            write_piece(run, n, (trip, *ends[k]), self._motion(run, load, stretch * rate, states))
             move(run, int(run.count.mode) * (stretch * grown[k]))
 
     def _write_round_trip(self, run: LeapingRun, first: int, trip: int) -> None:
         """Write the round trip on which the leap lands, a piece for each stretch, and move the contact to its end."""
-        motion, last = self.leap.motion, int(run.count.previous_to) - 1
+        motion = self.leap.motion
         there = RoundTrip(motion, self.leap.landing, motion.later(self.leap.landing, 1))
         rate, states = there.with_ripple()
         load = motion.friction(rate, states) + run.problem.body.impedance * rate
         for k, ends in enumerate(pairwise(motion.offsets.edges.tolist())):
             n, here = first + k, slice(k * OFFSETS, (k + 1) * OFFSETS)
-            write_piece(run, n, last, (trip, *ends))
-            self._write_motion(run, n, *(to_powers(one) for one in (load[here], rate[here], states[:, here].T)))
+            own = (to_powers(one) for one in (load[here], rate[here], states[:, here].T))
+            write_piece(run, n, (trip, *ends), self._motion(run, *own))
             move_over(run, n)
 
-    def _write_motion(self, run: LeapingRun, n: int, load: Floats, rate: Floats, states: Floats) -> None:
-        """Write polynomials of load (Pa), slip rate (m/s) and states into piece n; the first two in the direction of slip."""
-        store, sign = run.store, int(run.count.mode)
-        for row, values in (
-            (store.load[n], sign * load),
-            (store.rate[n], sign * rate),
-            *zip(store.state[n], states.T, strict=True),
-        ):
-            row[:] = 0.0
-            row[:OFFSETS] = values
-        store.load[n, 0] -= run.problem.strength
+    def _motion(self, run: LeapingRun, load: Floats, rate: Floats, states: Floats) -> WrittenMotion:
+        """Return the motion of polynomials of load (Pa), slip rate (m/s) and states, the first two in the direction of slip."""
+        sign, last = int(run.count.mode), int(run.count.previous_to) - 1
+        signed = sign * load
+        signed[0] -= run.problem.strength
+        return WrittenMotion(run.store.mode[last], run.store.law_piece[last], signed, sign * rate, states.T)

@@ -8,10 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.engine.creep.landing import continue_after, integrals, move, move_over, write_piece
+from stickslip.engine.creep.landing import WrittenMotion, continue_after, integrals, move, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.pattern import Pattern, monotone_parts
-from stickslip.engine.state.layout import Floats, Store
+from stickslip.engine.state.layout import Floats
 
 
 @dataclass(frozen=True)
@@ -105,14 +105,14 @@ class SteadyLanding:
         store, way, landed_on = run.store, run.length, begun + leap.trips
         sign, turn = math.copysign(1.0, deviation.rate_there), run.problem.round_trip_time
         length = leap.trips * turn
-        write_piece(run, way, last, (begun, 0.0, length + np.spacing(landed_on * turn)))  # no gap before the next round trip
-        steady = deviation.load_there, sign * leap.slip / length, deviation.states_there
-        _write_steady(store, way, *steady)
+        load, states = [deviation.load_there], [[state] for state in deviation.states_there]
+        motion = WrittenMotion(store.mode[last], store.law_piece[last], load, [sign * leap.slip / length], states)
+        write_piece(run, way, (begun, 0.0, length + np.spacing(landed_on * turn)), motion)  # no gap before the next round trip
         move(run, sign * leap.slip)
         for n, row in enumerate(rows, way + 1):
             phases = (float(store.phase_from[row]), float(store.phase_to[row])) if leap.factor else (0.0, turn)
-            write_piece(run, n, row, (landed_on, *phases))
-            _write_steady(store, n, deviation.load_there, deviation.rate_there, deviation.states_there)
+            motion = WrittenMotion(store.mode[row], store.law_piece[row], load, [deviation.rate_there], states)
+            write_piece(run, n, (landed_on, *phases), motion)
             if leap.factor:
                 kept = row - deviation.rows.start
                 store.load[n] += leap.factor * deviation.load[kept]
@@ -127,10 +127,3 @@ class SteadyLanding:
         slip += turn * self.deviation.rate_there
         deviates = turn * abs(self.leap.factor) * self.deviation.largest_rate
         return slip, max(self.leap.error + deviates, tolerance * abs(slip))
-
-
-def _write_steady(store: Store, n: int, load: float, rate: float, states: Floats) -> None:
-    """Write a constant load (Pa or N, minus the reference), a constant rate (m/s) and constant states into piece n."""
-    for row, value in ((store.load[n], load), (store.rate[n], rate), *((store.state[n, k], one) for k, one in enumerate(states))):
-        row[:] = 0.0
-        row[0] = value

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stickslip.engine.creep.averaged import AveragedCreep, Strength
-from stickslip.engine.creep.creep_landing import CreepLanding, seen
-from stickslip.engine.creep.landing import SHORTEST_LEAP, Landing, LookedFor
+from stickslip.engine.creep.creep_landing import CreepLanding
+from stickslip.engine.creep.landing import SHORTEST_LEAP, Landing, LookedFor, seen
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.creep.planner import Planner

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.engine.creep.landing import continue_after, move_over, write_piece
+from stickslip.engine.creep.landing import WrittenMotion, continue_after, move_over, seen, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.planner import hermite
 from stickslip.engine.creep.slow import PLACES_OF_OFFSETS, to_powers
@@ -86,16 +86,13 @@ class SwingLanding:
     def _write(self, run: LeapingRun, n: int, when: tuple[int, float, float], since: float, rate: Floats) -> None:
         """Write piece n: its round trip and phases (s), the time since the leap began (s), and the slip rate, seen forwards."""
         block, way = self.leap.block, self.leap.direction
-        write_piece(run, n, int(run.count.previous_to) - 1, when)
-        store = run.store
-        store.mode[n], store.law_piece[n] = way, run.count.piece
-        length = float(store.speed[n])
+        length = when[2] - when[1]
         load = np.zeros(TERMS)
         load[1:] = -block.spring * length * rate[:-1] / np.arange(1, TERMS)
         load[0] = self._load(run, since)
         load[1] += block.spring * block.speed * length
-        store.rate[n], store.load[n] = way * rate, way * load
-        store.load[n, 0] -= run.problem.strength * (1 - way)
+        motion = WrittenMotion(way, run.count.piece, seen(load, run.problem.strength, way), way * rate)
+        write_piece(run, n, when, motion)
         move_over(run, n)
 
     def _load(self, run: LeapingRun, since: float) -> float:

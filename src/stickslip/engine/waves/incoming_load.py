@@ -54,6 +54,15 @@ def find_echo(run: Run) -> bool:
 
 
 @kernel
+def amplified_at_first(run: Run) -> float:
+    """Return by how much (1) the load of the first round trip multiplies an error of the start; not a number for a block."""
+    if run.counts.is_block == 1:
+        return math.nan
+    reaches_driver = run.state.phase_from >= 0.5 * run.params.round_trip_time  # then the driver has sent the initial state back
+    return abs(sent_back(run)) if reaches_driver else 1.0
+
+
+@kernel
 def bring_first(run: Run) -> None:
     """Bring the piece of load that has been found by `find_first`."""
     first = run.first_load[run.counts.source]
@@ -64,14 +73,7 @@ def bring_first(run: Run) -> None:
         call_part(run.ladder, run, Task.CROSS_CELLS, 0.0)
     if run.counts.is_block == 1 and run.counts.trip > 0:
         run.load[0] = run.state.load_now + trips_leaped(run, run.counts.length - 1) * run.params.ramp
-    # from the phase h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
-    run.state.amplified = (
-        math.nan
-        if run.counts.is_block == 1
-        else 1.0
-        if run.state.phase_from < 0.5 * run.params.round_trip_time
-        else abs(sent_back(run))
-    )
+    run.state.amplified = amplified_at_first(run)
     run.counts.arriving = Cause.NO_CAUSE
     if run.counts.trip == 0 and run.counts.source == 0:
         run.counts.arriving = Cause.START

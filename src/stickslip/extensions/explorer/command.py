@@ -64,7 +64,7 @@ def explore(
     Exit code: 0 ended by Ctrl-C, 2 unusable input.
     """
     from stickslip.cli.overrides import load
-    from stickslip.extensions.explorer.model.setting import Setting, explorable
+    from stickslip.extensions.explorer.model.setting import FIRST_SCENARIO, Setting, explorable
     from stickslip.extensions.explorer.notebook import check_extra
 
     check_extra("explore")

@@ -11,7 +11,7 @@ import pandas as pd
 
 from stickslip.contact import Uniqueness
 from stickslip.engine import largest_of
-from stickslip.extensions.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind, short
+from stickslip.extensions.explorer.model.answer import DIGITS, BodyCurves, KeyNumber, Mark, MarkKind, short
 from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem
