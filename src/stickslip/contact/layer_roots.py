@@ -34,7 +34,7 @@ from stickslip.problem.bodies import OfLayers
 LEAN = 5e-14
 """The axis leans by this much on two sides (1), which may have modes that do not move the contact: these lie on the axis."""
 PLACES_SOUGHT_FROM = 128
-"""Number of places from which roots are sought."""
+"""Seek roots from so many places."""
 SHORT_SPAN = 2000
 """A span of frequencies is short if it has no more than this number of pieces at first."""
 FEWER = 4
@@ -175,7 +175,7 @@ class LayerRoots:
 
     @property
     def matched(self) -> tuple[float, float]:
-        """The numbers a' and b' of a contact from which no wave comes back: k = 0."""
+        """The numbers a' and b' of a contact that sends no wave back: k = 0."""
         return self.body.impedance, 1.0
 
     def spans(self, line: float) -> Spans | None:

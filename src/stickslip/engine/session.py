@@ -53,7 +53,7 @@ WORTH = 1.25
 
 
 class AskedOfRun(Protocol):
-    """Options of a run, of which a session needs only the numbers; `run.options.RunOptions` are such options."""
+    """Options of a run: a session needs only the numbers; `run.options.RunOptions` are such options."""
 
     @property
     def numbers(self) -> RunNumbers:

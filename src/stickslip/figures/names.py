@@ -50,7 +50,7 @@ def _words(name: str, meaning: str) -> str:
         return last
     if name in _INSTRUCTIONS or not meaning:
         return last.replace("_", " ")
-    if name.startswith("loading.") and name.count(".") == 2:  # a number of a loading history, whose meaning does not say of what
+    if name.startswith("loading.") and name.count(".") == 2:  # a number of a loading history: its meaning does not name the history
         return " ".join([*name.partition("[")[0].replace("_", " ").split(".")[1:], *([index] if index else [])])
     return re.split(r"\s*[,;:(]", meaning, maxsplit=1)[0].replace("`", "") + (f" {index}" if index else "")
 

@@ -92,7 +92,7 @@ def with_unit(value: float | None, unit: str) -> str:
 
 
 def _long_time(seconds: float) -> tuple[float, str]:
-    """Return a time in the largest of years, days and seconds of which it has at least a tenth, and the name of the unit."""
+    """Return a time in years, days or seconds, the largest unit that makes it 0.1 or more, and the name of the unit."""
     for name, size in (("years", YEAR), ("days", DAY)):
         if abs(seconds) >= 0.1 * size:
             return seconds / size, name

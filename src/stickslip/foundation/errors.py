@@ -148,7 +148,7 @@ def some_of(allowed: Iterable[str], word: str = "", listed: str = "") -> str:
 def meant(word: str, allowed: Collection[str]) -> list[str]:
     """Return the allowed words that `word` may stand for; none if nothing is near.
 
-    They are those with the same meaning (`synonyms.same`); else one that differs by a slip of the pen; else those of which it is a
+    They are those with the same meaning (`synonyms.same`); else one that differs by a slip of the pen; else those that have it as a
     part, as slab of elastic-slab, or the beginning, or that has all of their words, as block-on-spring those of spring-block; else
     the one that is spelled most alike; else those that a misspelt word of the trades means.
     """

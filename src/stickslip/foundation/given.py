@@ -28,7 +28,7 @@ _TENS = {Fraction(10) ** power for power in range(-18, 19)}
 _TRADES = re.compile(r"bar\b|gal", re.IGNORECASE)
 """Units of trades that are a power of ten in SI, besides torques with a prefix."""
 Units = Mapping[str, tuple[str, float]]
-"""A unit (name, size in SI) by the SI unit in place of which it is shown."""
+"""A unit (name, size in SI) by the SI unit that it replaces."""
 _SHOWN: ContextVar[Units] = ContextVar("units in which results are shown", default=MappingProxyType({}))
 LEAST, MOST = 1e-3, 1e6
 """Results whose largest magnitude, in the unit that was given, is not between these have another unit."""

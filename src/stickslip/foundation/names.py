@@ -60,7 +60,7 @@ KINDS_OF_BODY = {
         "turns",
     ),
 }
-"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's are forces, those of what turns are torques."""
+"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's forces, those of a body that turns torques."""
 
 
 class Name(NamedTuple):
@@ -155,7 +155,7 @@ DECADES = 1e6
 
 @lru_cache(maxsize=1024)
 def si_unit(what: str, *load_units: str) -> str:
-    """Return the SI unit of a quantity, or of what a column names in place of a unit, for bodies whose loads have these units.
+    """Return the SI unit of a quantity, or of a name that a column has in place of a unit, for bodies with loads in these units.
 
     Any other text is a unit already. Different units are joined, as in "Pa or N"; by default they are those of all kinds of bodies.
     """

@@ -150,7 +150,7 @@ class Declared(CheckedArguments):
     """Base of the classes whose fields are declared: these describe themselves in the docstring, and when an object is shown."""
 
     source: ClassVar[str] = ""
-    """Paper and equation from which the class is taken."""
+    """Paper and equation that the class is taken from."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

@@ -110,7 +110,7 @@ def _numbers(value: Any) -> list[Any]:
 
 
 def in_given_units(method: Callable[P, T]) -> Callable[P, T]:
-    """Decorate a method of what belongs to a problem: what it prints or draws is in the units in which the problem was given."""
+    """Decorate a method so that it prints or draws in the units in which the problem was given."""
 
     @wraps(method)
     def inside(*args: P.args, **kwargs: P.kwargs) -> T:

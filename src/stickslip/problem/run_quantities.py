@@ -19,7 +19,7 @@ SHORTEST_EVENT = Quantity(
 CHECKPOINT_INTERVAL = Quantity("s", "wall-clock time between two checkpoints", at_least=0, infinite=True)
 EVENT_RATE = Quantity("m/s", "slip rate above which the contact is in a slip event", at_least=0)
 EVENT_SHARE = 1e-6
-"""Slip rate from which slip is an event by default, as a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z."""
+"""Slip at this rate or above is an event by default: a share of S (range of mu) / Z; for a block sqrt(K m) replaces Z."""
 LARGEST_RTOL = 1e-2
 """Largest relative tolerance of a run."""
 

@@ -35,7 +35,7 @@ REST = " (--all has the rest)"
 ATTRIBUTE_OF_REACH = "reach"
 """Attribute of a catalogue with the slip at the end and the largest displacement, in words."""
 LATE = 1e4
-"""Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
+"""Times from this one (s) on have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
 
 def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:

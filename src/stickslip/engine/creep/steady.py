@@ -124,7 +124,7 @@ class SteadyLeaps(ABC):
 
     @abstractmethod
     def least_slope(self, body: BodyOnCharacteristics) -> float:
-        """Return the slope of friction (Pa s/m or N s/m) from which on the energy of a deviation does not grow."""
+        """Return the least slope of friction (Pa s/m or N s/m) under which the energy of a deviation does not grow."""
 
     @abstractmethod
     def last_slip(self, tried: Tried, energy: float) -> tuple[float, float]:

@@ -135,7 +135,7 @@ class SwingLeaps:
 
     @cached_property
     def fastest(self) -> float:
-        """The slip rate (m/s) from which slip is an event, which no leap passes over."""
+        """Slip at this rate (m/s) or above is an event, and no leap passes over it."""
         return default_event_rate(self.problem)
 
     def leap(self, run: LeapingRun, most: int) -> SwingLeap | None:

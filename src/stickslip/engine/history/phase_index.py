@@ -1,6 +1,6 @@
 """Index of a history by phase: find the piece that was recorded last at a given phase of the round trip.
 
-While the contact rests nothing is recorded: the load is then an echo of what was recorded last at the same phase. Pieces are
+While the contact rests nothing is recorded: the load is then an echo of the last record at the same phase. Pieces are
 intervals of phase in order of time. They are kept in a segment tree over the phases of all ends of pieces; each node
 lists its pieces in order of time (Bentley 1977, unpublished; see de Berg et al. 2008, Computational Geometry, section 10.3).
 """

@@ -29,7 +29,7 @@ NEAR_ZERO = 0.7
 
 @kernel
 def share_of_step(run: Run) -> float:
-    """Return the bound on the residuals of the step as a share of what is allowed; infinite if some part of it has no bound.
+    """Return the bound on the residuals of the step as a share of the allowed one; infinite if some part of it has no bound.
 
     `begin_proof` has begun the proof. Notes the bound, the place up to which the step is proven, and whether a part has no bound
     because the law is singular at the slip rate of zero there.

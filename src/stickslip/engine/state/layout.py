@@ -59,7 +59,7 @@ class Params(MemoryRecord):
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
     tone_frequency: float  # rad/s: angular frequency of the tone in an inflow (`LoadingSegment.tone`)
-    inflow_from: float  # s: phase of the first round trip from which an inflow is added: h/c, or 0 for a slab on moving ground
+    inflow_from: float  # s: an inflow is added from this phase of the first round trip on: h/c, or 0 for a slab on moving ground
     pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
     pressing_frequency: float  # rad/s: angular frequency of that tone
     pressing_phase: float  # rad: phase of that tone at t = 0
@@ -507,7 +507,7 @@ class StepProof(MemoryRecord):
     duration: float  # s: of the step
     force: float  # Pa or N: the part of the load that the step ignores
     rate_allowed: float  # m/s at slip, Pa or N at rest: allowed error of the slip rate, or of the strength
-    rate_rounding: float  # the same unit: rounding of what is missed, which counts as nothing
+    rate_rounding: float  # the same unit: rounding of the defect, which counts as nothing
     width: float  # 1: length of the part, as a share of the step
     walked: float  # m: slip from the start of the step to the middle of the part
     measured: float  # Pa or N: largest residual at places of the part
@@ -517,7 +517,7 @@ class StepProof(MemoryRecord):
     lacks_bound: float  # 1 if a part has no bound, because the law is singular where the slip rate is zero
     rate_yields: float  # m/s over Pa or N, or 1 at rest: error of the slip rate, or of the strength, per residual
     state_allowed: Floats = floats_inside(STATES)  # units of the states: allowed errors
-    state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of what is missed
+    state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of the defect
     state_measured: Floats = floats_inside(STATES)  # units of the states over s: as `measured`, for the rates of change
     state_hidden: Floats = floats_inside(STATES)  # units of the states over s: as `hidden`
     state_yields: Floats = floats_inside(STATES)  # s: error of each state per residual

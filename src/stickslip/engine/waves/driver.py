@@ -101,7 +101,7 @@ def shorten(run: Run, share: float) -> None:
 
 @kernel
 def force_machine(run: Run) -> None:
-    """Write the series of what drives the machine, without its own motion, and of its pull rate, along the piece of load."""
+    """Write the series of the push on the machine, without its own motion, and of its pull rate, along the piece of load."""
     params, segment = run.params, run.loading[run.counts.segment]
     since = (run.counts.trip - segment.trip) * params.round_trip_time + (run.state.phase_from - segment.offset)
     force, pull, met = run.machine_force, run.machine_pull, wave_at_driver(run)

@@ -38,7 +38,7 @@ from stickslip.foundation.kernels.kernels import kernel
 FEW, MANY = 4, 32
 """Nothing is merged in a round trip with no more pieces than the first number (1), and growth counts beyond the second."""
 CROWD = 1024
-"""Pieces of a round trip (1) from which on they are merged as often as they can be."""
+"""Merge pieces as often as possible where a round trip has so many (1) or more."""
 PAUSE = 128
 """Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
 HALVINGS_OF_GROUP = 8

@@ -152,7 +152,7 @@ def place_points(run: Run, group: WaveGroup, ends: Floats, of_point: Floats, pla
 
 @kernel
 def place_in(run: Run, n: int, left: float) -> float:
-    """Return the place xi in piece n of the history from which a time `left` (s) is left of it."""
+    """Return the place xi in piece n of the history after which a time `left` (s) of it is left."""
     piece = run.history[n]
     at_end = max(piece.speed + 2.0 * piece.bend, 0.0)
     root = at_end + math.sqrt(max(at_end * at_end - 4.0 * piece.bend * left, 0.0))

@@ -231,7 +231,7 @@ def warnings_of(study: FittedRecord) -> Iterator[str]:
 
 
 def looks_left(study: FittedRecord) -> Iterator[str]:
-    """Yield a sentence on each look of what is left that is no noise, with what may be done about it."""
+    """Yield a sentence on each look of the residuals that is no noise, with its cure."""
     if study.features is not None:
         return
     free = {one.name for one in study.free}

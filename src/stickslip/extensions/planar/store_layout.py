@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver
 
 SENT = "waves/sent"
-"""Array of what the contact has sent."""
+"""Array of the waves that the contact has sent."""
 CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
 CHANGES = ("duration", "residual", "status", "status_message", "status_ok")

@@ -76,7 +76,7 @@ def period_of(law: FrictionLaw) -> float:
 
 
 def arrest_in(time: Floats, rate: Floats, threshold: float) -> float:
-    """Return the time (s) from which on |v| stays at or below a threshold (m/s); NaN if it never slips or slips at the end."""
+    """Return the time (s) after which |v| stays at or below a threshold (m/s); NaN if it never slips or slips at the end."""
     slips = np.flatnonzero(np.abs(rate) > threshold)
     return float(time[slips[-1] + 1]) if slips.size and slips[-1] + 1 < len(time) else math.nan
 

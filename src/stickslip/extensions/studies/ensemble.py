@@ -231,7 +231,7 @@ def ensemble(
     max_events : int, optional
         Number of slip events after which each run ends.
     seed : int
-        Seed of the random numbers from which signs and sizes of the disturbances are drawn.
+        Seed of the random signs and sizes of the disturbances.
     event_rate : float or str, optional
         Slip rate (m/s, or a text with a unit) above which slip counts as an event, as in `Solution.catalogue`.
     progress : bool or callable, optional

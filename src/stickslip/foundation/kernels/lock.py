@@ -4,7 +4,7 @@ A thread may take it again while it holds it. What has been made is looked up wi
 waits for one that compiles.
 
 Who holds the lock must wait for nothing but the compiler and the disk: above all for no `cached_property` of a problem or a
-solution, each of which has a lock of its own in Python 3.11.
+solution; each has a lock of its own in Python 3.11.
 """
 
 from __future__ import annotations

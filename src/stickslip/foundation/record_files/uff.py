@@ -30,7 +30,7 @@ _NOTHING = ("", "none", "no label", "unknown")
 
 @dataclass
 class _Function:
-    """A dataset 58: names of what was measured, its unit, the numbers, and their times: first and step, or one for each."""
+    """A dataset 58: names of the measured quantity, its unit, the numbers, and their times: first and step, or one for each."""
 
     names: list[str]
     unit: str

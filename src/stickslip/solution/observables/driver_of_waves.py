@@ -63,11 +63,11 @@ class BehindSlab:
 
     @property
     def steps(self) -> tuple[tuple[float, float], ...]:
-        """The times from which it sends back a share of the waves that come to it, the first 0, and these shares."""
+        """When it begins to send back another share of the waves that come to it, the first time 0, and these shares."""
         return self.problem.driver_steps
 
     def share_at(self, time: Floats) -> Floats:
-        """Return the share (1) of a wave that it has sent back of what arrives at the contact at times."""
+        """Return the share (1) that it has sent back of the waves that arrive at the contact at times."""
         return inflow_of(self.problem).reflection_at(time)
 
     def impedance_at(self, time: Floats) -> Floats | float:
@@ -85,7 +85,7 @@ class BehindSlab:
         return 0.0
 
     def work(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
-        """Return its work between two moments, or since the start (J/m^2), net of what is radiated: the sum of its power."""
+        """Return its work between two moments, or since the start (J/m^2), net of radiation: the sum of its power."""
         return passed(first, last)
 
     def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:

@@ -99,7 +99,7 @@ class _InsideOfSlab:
         return np.asarray(of_start + self._sent_back(low, high) + inflow)
 
     def _sent_back(self, low: Floats, high: Floats) -> Floats:
-        """Return the integral of what the driver sends back of the waves that leave the contact between times, Pa s."""
+        """Return the integral of the driver's echo of the waves that leave the contact between times, Pa s."""
         steps = self.waves.driver.steps
         meets = [self.interval.first + start - self.waves.half for start, _ in steps[1:]]
         edges = [-math.inf, *meets, math.inf]

@@ -37,7 +37,7 @@ from stickslip.solution.observables.layer_records import (
 from stickslip.solution.observables.layer_replay import answer, replay
 
 NUMBERS_TOGETHER = 1 << 19
-"""Numbers that are kept together, of cells or of what drivers send: it keeps the memory bounded."""
+"""Keep so many numbers together, of cells or of drivers, so that memory is bounded."""
 PHASES_TOGETHER = 64
 """Phases that are replayed together (1): what they need fits into the fast memory of a processor."""
 

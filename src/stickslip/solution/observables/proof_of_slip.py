@@ -51,7 +51,7 @@ def _of_sums(history: History, n: Places) -> float:
 
 
 def _against(history: History, n: Places) -> float:
-    """Return the longest way that a slip rate goes against the direction of its step, or at rest, to both of which it is zero."""
+    """Return the longest way that a slip rate goes against the direction of its step, or at rest; to both it is zero."""
     store = history.store
     moves = n[store.rate[n].any(axis=1)] if len(n) else n
     rate = store.rate[moves] @ POINTS_OF_STEP ** np.arange(store.rate.shape[1])[:, None]

@@ -90,7 +90,7 @@ def document_of(leaves: Mapping[str, Any]) -> dict[str, Any]:
 class Setting:
     """A scenario as the controls hold it: a TOML document, never changed in place, whose entries can be replaced one by one.
 
-    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file from which
+    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file that
     the friction law was read, one line each; they go with that law.
     """
 

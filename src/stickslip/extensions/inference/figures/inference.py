@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.inference.inference import Inference
 
 MANY, FEW_EVENTS = 200, 50
-"""Number of points from which they are drawn small, and of events up to which they are drawn large."""
+"""Draw so many points, or more, small, and up to so many events large."""
 MOST_PAIRED = 4
 """Largest number of parameters that are drawn against each other."""
 JOINT = 2.4477468306808166

@@ -1,7 +1,7 @@
 """Say in words what the residuals of a fit look like: drift, lag, offset, oscillation, or steps that the samples do not resolve.
 
 Each look is a regression of the residuals, beside which the free numbers may still move and the noise may be correlated. A look is
-told if chance does not explain it and if it makes up a share of what is left that one would see. Residuals far above the noise from
+told if chance does not explain it and if one would see its share of the residuals. Residuals far above the noise from
 sample to sample that do not forget themselves are no noise anyway: there the share alone decides.
 """
 
@@ -45,7 +45,7 @@ AFTER = 0.25
 LARGER = 2.0
 """Residuals near changes must be so many times larger than elsewhere, in the root of the mean square, to be told."""
 ALIKE = 0.7
-"""The more special of two looks is told if it explains at least this share of what the other one does."""
+"""Tell the more special of two looks if it explains at least this share of the other's part."""
 APART_DRIFTS_TOLD = 10.0
 """A drift is told to be with slip, or with time, if twice the log-likelihoods differ by this much: a chance of one in 150."""
 PERIODS, FEWEST = 3.0, 32
@@ -140,7 +140,7 @@ class _Try(NamedTuple):
 
 
 def _next(found: Residuals, total: float, known: set[str], least: float) -> tuple[ResidualLook | None, Residuals | None]:
-    """Return the look that explains most of what is left, if it is no chance or above `least`, and the residuals without it."""
+    """Return the look that explains most residuals, if it is no chance or above `least`, and the residuals without it."""
     tries = [one for one in _tries(found, total) if one.look.kind.partition(" ")[0] not in known and one.look.share >= SHARE_TOLD]
     tries.sort(key=lambda one: -one.look.share)
     special = [one for one in tries if one.look.kind == "steps" and one.look.share > ALIKE * tries[0].look.share]

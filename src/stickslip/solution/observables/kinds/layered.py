@@ -37,7 +37,7 @@ class ObservablesOfLayered(ObservablesOfKind):
         return _of_waves(history, at) | {"heat": heat(history, at, nodes)}
 
     def event_energies(self, history: History, first: Positions, last: Positions) -> dict[str, Floats]:
-        """Return the differences of what the energies are at the end and at the start of each event."""
+        """Return how much the energies change from the start to the end of each event."""
         if not len(first.piece):
             return {name: np.zeros(0) for name in ("released", "work", "damped", "trapped")}
         before, after = (_of_waves(history, at) for at in (first, last))

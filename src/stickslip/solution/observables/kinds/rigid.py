@@ -141,7 +141,7 @@ def _at_rest(history: History, at: Positions) -> Floats:
 
 
 def _in_rests(history: History, at: Positions, gained: Callable[[Positions, Positions], Floats]) -> Floats:
-    """Return the sum of what is gained from position to position, up to each position in rests that were not recorded."""
+    """Return the sum of gains from position to position, up to each position in rests that were not recorded."""
     before = np.flatnonzero(np.diff(history.store.trip) > 1)  # the last pieces before leaps
     whole = np.append(0.0, np.cumsum(gained(Positions.inside(before, 1.0), Positions.inside(before + 1, 0.0))))
     part = np.where(at.at_rest, gained(Positions.inside(at.last, 1.0), at), 0.0)

@@ -1,4 +1,4 @@
-"""The panels of what is given over time: the motion of the ground, the pull rate, a stress or a load that varies."""
+"""The panels of given histories: the motion of the ground, the pull rate, a stress or a load that varies."""
 
 from __future__ import annotations
 
