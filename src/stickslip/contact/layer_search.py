@@ -17,9 +17,9 @@ from stickslip.contact.wave_modes import roots_of
 STRIDES = 12
 """From a root others are sought that lie up to 2^STRIDES periods of the layers away."""
 WINDOWS = 24
-"""Number of places, besides those where friction gives most, in which roots are sought."""
+"""Seek roots in this many places, besides those where friction gives most."""
 SCANNED = 4000
-"""Number of frequencies at which friction's response is looked at."""
+"""Look at friction's response at this many frequencies."""
 SAMPLES_OF_CELL = 8
 """Number of samples for each cell in half of a period."""
 

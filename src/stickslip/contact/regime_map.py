@@ -86,7 +86,7 @@ def regimes_along_slip(problem: Problem) -> tuple[RegimeInterval, ...]:
 
 
 _AT_A_TIME = 100
-"""Number of points that are computed together: enough for numpy, and seldom enough for a progress display."""
+"""Compute this many points together: enough for numpy, and seldom enough for a progress display."""
 
 
 @dataclass(frozen=True)

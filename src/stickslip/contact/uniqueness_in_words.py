@@ -8,7 +8,7 @@ from stickslip.foundation.show import brief, exact_range
 from stickslip.problem import Problem, Resistance
 
 MOST_SHOWN = 6
-"""Largest number of folds, and of jumps, that `repr` and `summary` show."""
+"""`repr` and `summary` show at most this many folds, and jumps."""
 
 
 INERTIA = (

@@ -102,9 +102,9 @@ MOST_NAMED, FEW = 8, 6
 MOST_MEANT = 4
 """A part that more of the allowed words have says nothing about which one is meant."""
 MOST_ABSENT = 2
-"""Largest number of meanings of a word that are named although none of them is allowed."""
+"""Name at most this many meanings of a word even if none of them is allowed."""
 LONGEST_WORD = 80
-"""Largest number of characters of a word that is compared with others."""
+"""Compare at most this many characters of a word with others."""
 MISTYPED = 0.85
 """So much (1) of a mistyped word and of the right one is the same, at least."""
 SHORT, ALIKE = 5, (0.65, 0.6)

@@ -16,9 +16,9 @@ CLOSE_TO_MARK = 0.01
 FACTOR_OF_MARK = 6.0
 """A mark may be off what its neighbours make likely by so much more than half of the other samples are off."""
 AROUND = 16
-"""Number of samples to each side that say how much a column changes from sample to sample."""
+"""This many samples to each side say how much a column changes from sample to sample."""
 MARKS_TOGETHER = 10_000
-"""Number of marks that are looked at together, so that memory is bounded."""
+"""Look at this many marks together, so that memory is bounded."""
 
 
 def marked(values: Floats, declared: float | None = None) -> NDArray[np.bool_]:

@@ -17,9 +17,9 @@ from stickslip.foundation.errors import InputError
 SETTING = "STICKSLIP_MEMORY"
 """Environment variable with the memory to count on, such as "8 GB", in place of the free memory."""
 SHARE_OF_MEMORY = 1.0 / 6.0
-"""Largest share of the free memory that a result may take: its summary and its file take up to four times as much, for a moment."""
+"""A result may take at most this share of the free memory: its summary and its file take up to four times as much, for a moment."""
 SMALL = 64e6
-"""Size (bytes) up to which nobody looks for free memory, which takes half a millisecond."""
+"""For a result up to this size (bytes) nobody looks for free memory: that takes half a millisecond."""
 BYTES_OF_UNITS = {"": 1.0, "B": 1.0, "kB": 1e3, "KB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 BYTES_OF_UNITS |= {"KiB": 2.0**10, "MiB": 2.0**20, "GiB": 2.0**30, "TiB": 2.0**40}
 """Bytes of each unit of a size."""

@@ -35,7 +35,7 @@ MARK = b"\nstickslip sha256 "
 SEAL = len(MARK) + 64 + 1
 """Length of the line with the checksum, in bytes."""
 AT_A_TIME = 2**20
-"""Number of bytes that are read at once for the checksum, so that a large file is never held in memory."""
+"""Read this many bytes at once for the checksum, so that a large file is never held in memory."""
 
 MOST_TABLES, MOST_ATTRIBUTES = 256, 256
 """Largest number of tables in a file, and of attributes of the file or of a table; a run's file has some seventy and thirty. The

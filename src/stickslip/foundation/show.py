@@ -197,7 +197,7 @@ def _described(declared: Field) -> str:
 
 
 MOST_SHOWN = 6
-"""Largest number of entries of a series that are all shown."""
+"""Show all entries of a series that has at most this many."""
 
 
 def brief_repr(owner: Any, units: Mapping[str, str] = MappingProxyType({})) -> str:

@@ -48,7 +48,7 @@ SMALLEST_RATE = 1e-300
 FIRST_RATIO, NEXT_RATIO, STRAIGHT_DISCS = 4.0, 8.0, 9
 """Discs for a bit next to a fold (1): radius of the first in lengths of the bit, factor from one to the next, and their number."""
 ATTEMPTS = 60
-"""Number of times (1) that a step is shortened before the run ends: each time at least to LONGEST of its length."""
+"""Shorten a step this many times (1) before the run ends: each time at least to LONGEST of its length."""
 HOPELESS = 1e100
 """A share above this (1) means that the law has a singularity on the disc, which is therefore too large."""
 SHORTEST, LONGEST = 0.2, 0.9

@@ -71,7 +71,7 @@ class Sight:
 
 
 SLIPS_LOOKED_AT = 65
-"""Number of slips at which the lowest friction of a stride is looked for, and again around the lowest of them."""
+"""Look for the lowest friction of a stride at this many slips, and again around the lowest of them."""
 IN_SIGHT = 10.0
 """Largest factor by which friction may be proven to change more than its slopes suggest: the bound of a smooth law is larger by a
 few."""

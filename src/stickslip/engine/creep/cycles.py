@@ -22,7 +22,7 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.problem import default_event_rate
 
 LOOKED_AT = 400
-"""Number of pieces in which cycles are looked for."""
+"""Look for cycles in this many pieces."""
 SAME_CYCLE = 1e-6
 """Largest difference between two cycles that count as the same, as a share of their length."""
 RECIPROCALS = 1.0 / np.arange(1, TERMS + 1)

@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Floats
 from stickslip.problem import Problem
 
 MOST_OFFSETS = 12_000
-"""Largest number of offsets that are followed: a round trip of more than a thousand pieces is not leaped over."""
+"""Follow at most this many offsets: a round trip of more than a thousand pieces is not leaped over."""
 FASTEST_CHANGE = 0.02
 """Largest relative change of the slip rate in a round trip: above it the motion is not slow."""
 SAFETY_OF_ESTIMATE = 4.0

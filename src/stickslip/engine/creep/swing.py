@@ -150,4 +150,4 @@ class SwingingBlock:
 
 
 ROUNDS_TO_START = 6
-"""Number of rounds that match the slow motion to the load at the start: each gains as many digits as a cycle is short."""
+"""Match the slow motion to the load at the start in this many rounds: each gains as many digits as a cycle is short."""

@@ -25,13 +25,13 @@ FIRST_STRIDE = 64.0
 AGREE = 1e-9
 """Largest relative difference between the angle over a stride and that over its two halves."""
 CLOSE_LANDING = 1e-13
-"""Share of a stride within which the place of the landing is found."""
+"""Find the place of the landing to this share of a stride."""
 LAG = (10.0 * math.pi) ** 1.5 / (6.0 * math.pi)
 """By this times (w'/w^2)^(3/2) the angle of a swing that touches rest lags, as a share of itself: the rest that it includes."""
 MOST_ROUNDS = 30
 """Largest number of rounds of Newton's method to that place."""
 BISECTIONS_OF_STRIDE = 30
-"""Number of bisections that look for the largest k in a stride."""
+"""Look for the largest k in a stride by this many bisections."""
 MOST_STRIDES = 4000
 """Largest number of strides in a leap."""
 

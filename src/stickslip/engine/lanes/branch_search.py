@@ -22,7 +22,7 @@ BELOW, ABOVE = 1e-8, 1e4
 NEVER_RISES, TOO_MANY = 0, -1
 """Results instead of a number of branches: g still falls at the fastest rate, or there are more branches than fit."""
 PROBES = 128
-"""Largest number of slip rates (1) that are tried for one turn: more than the 64 bits that are halved and STEPS together."""
+"""Try at most this many slip rates (1) for one turn: more than the 64 bits that are halved and STEPS together."""
 OCTAVE, STEPS = 2**52, 16
 """A factor of two between slip rates, as a difference of their bits; number of steps of false position after which the search
 returns to halving the bits."""

@@ -16,7 +16,7 @@ from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import kernel
 
 MOST_PARTS = 400
-"""Largest number of parts (1) that are looked at."""
+"""Examine at most this many parts (1)."""
 MISSED = 1e3
 """A step with a share (1) above this is made shorter: no other part of it is looked at."""
 ROUNDING_OF_TIME, LEAST_WIDTH = 5e-16, 2.0**-50

@@ -33,7 +33,7 @@ from stickslip.foundation.kernels.memory.addresses import ahead, call_radii
 from stickslip.foundation.kernels.memory.pointers import numbers_of, record_at
 
 RESIDUAL_PLACES = 18
-"""Number of places (1) of a part where the residual is measured."""
+"""Measure the residual at this many places (1) of a part."""
 PLACE = 0.5 * np.cos(np.pi * (np.arange(RESIDUAL_PLACES) + 0.5) / RESIDUAL_PLACES)
 """These places (1), relative to the middle of the part and in lengths of it."""
 DISCS = np.array([2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
@@ -41,7 +41,7 @@ DISCS = np.array([2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
 FIRST_DISC = 2
 """The first disc to try (1), as an index of DISCS. If it has a bound, larger ones are tried, else smaller ones."""
 FINE = 4001
-"""Number of places (1) of a part or a circle among which extremes are sought."""
+"""Seek extremes among this many places (1) of a part or a circle."""
 MARGIN_OF_RESIDUAL = 1.02
 """Factor (1) that covers rounding, and extremes between those places."""
 ENOUGH = 1e-4

@@ -27,7 +27,7 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 
 HALVINGS_OF_LOAD = 60
-"""Largest number of times (1) that a piece of load is halved."""
+"""Halve a piece of load at most this many times (1)."""
 
 
 @kernel

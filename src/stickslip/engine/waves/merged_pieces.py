@@ -42,7 +42,7 @@ CROWD = 1024
 PAUSE = 128
 """Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
 HALVINGS_OF_GROUP = 8
-"""Number of times (1) that a group of pieces is halved until one series describes it."""
+"""Halve a group of pieces at most this many times (1), until one series describes it."""
 SHORTER = 0.125
 """Steps that come to a fold are at least this much (1) shorter at its end than at first."""
 LARGEST_TURN = 1.0

@@ -24,13 +24,13 @@ from stickslip.foundation.kernels.memory.addresses import room_for
 IN_TIME, TO_FOLD, MEAN = 0, 1, 2
 """Forms of the waves of merged pieces: series in time, series in the root of the time left, or their means."""
 MOST_TOGETHER = 128
-"""Largest number of pieces (1) that are merged to one series."""
+"""Merge at most this many pieces (1) to one series."""
 ENDS = MOST_TOGETHER + 1
 """Largest number of their ends (1)."""
 PIECE_POINTS = 24
 """Number of Chebyshev's points (1) on a new piece."""
 CHECKS = 7
-"""Number of points (1) of each old piece, its ends among them, at which the new series is compared with the old one."""
+"""Compare the new series with the old one at this many points (1) of each old piece, its ends among them."""
 WAVE_ROUNDING = 4e-15
 """Rounding of a wave (1), as a share of the reference strength and of its own size."""
 KEPT_ABOVE = 0.1

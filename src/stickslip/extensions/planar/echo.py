@@ -21,7 +21,7 @@ from scipy.special import j1, roots_legendre
 from stickslip.foundation.arrays import Floats
 
 POINTS_OF_J1 = 1024
-"""Largest number of Gauss points of one step of the integral, where J1 oscillates many times within the step."""
+"""A step of the integral has at most this many Gauss points, where J1 oscillates many times within it."""
 EVALUATIONS_TOGETHER = 100_000
 """Evaluations of J1 at a time."""
 

@@ -74,7 +74,7 @@ class Compiled(NamedTuple):
 
 
 MOST_FORMS = 16
-"""Number of compiled forms of runs that are kept at a time; each takes some 7 MB."""
+"""Keep this many compiled forms of runs at a time; each takes some 7 MB."""
 
 
 @lru_cache(maxsize=MOST_FORMS)

@@ -41,7 +41,7 @@ CHUNK = 4_000_000
 CHANGES = ("duration", "residual", "status", "status_message", "status_ok")
 """Attributes that may change."""
 LONGEST_TITLE = 200
-"""Largest number of characters of a title that is read from a folder."""
+"""Read at most this many characters of a title from a folder."""
 UNTITLED = "stickslip run: PlanarSlab"
 """Beginning of the title in the folder of a run that has none."""
 PLANAR_FORMAT = FolderFormat("stickslip_planar", 1, CHANGES)

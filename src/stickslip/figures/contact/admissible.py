@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from stickslip.solution import Solution
 
 _POINTS = 1201
-"""Number of slip rates at which the curve is evaluated."""
+"""Evaluate the curve at this many slip rates."""
 _ROOM = 1.25
 """The curve ends at this multiple of the largest slip rate of interest, so that all folds, jumps and the run lie inside."""
 _TINY = 1e-3
 """If the loads span less than this share of the static strength, they are drawn as differences from it."""
 _SETS = 8
-"""Number of slips at which the set is drawn if friction depends on slip."""
+"""Draw the set at this many slips if friction depends on slip."""
 _GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """The golden ratio; its multiples, less their whole parts, spread evenly without a period."""
 _ARROWS = 0.3, 14

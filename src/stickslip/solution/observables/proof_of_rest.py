@@ -18,7 +18,7 @@ from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 RECORDED = 1024
 """Largest number of recorded rests whose load is looked at."""
 RESTS = 64
-"""Largest number of rests that were not recorded, but leaped over, whose load is looked at."""
+"""Look at the load in at most this many rests that were not recorded, but leaped over."""
 PLACES_IN_REST = 32
 """Places at which it is looked at in such a rest, and as many again in its last round trip."""
 

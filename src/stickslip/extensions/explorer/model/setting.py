@@ -41,7 +41,7 @@ DEEPEST = 5
 
 
 MOST_NODES = 1024
-"""Largest number of nodes of a fault that a page shows."""
+"""A page shows at most this many nodes of a fault."""
 
 
 def explorable(scenario: Scenario) -> Scenario:

@@ -95,7 +95,7 @@ def script(name: str, number: int, content: Any) -> str:
 
 
 STRIP_PLACES = 25
-"""Number of places of each strip with a stored answer, besides that of the step itself."""
+"""Each strip has a stored answer at this many places, besides that of the step itself."""
 LIBRARY = "bokeh.min.js"
 """The script of Bokeh that draws the plots."""
 READ_ME = """The tour of the stickslip explorer. Open index.html in a browser: it needs no network and no server.

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CURVE = 801
-"""Number of places at which the law is evaluated."""
+"""Evaluate the law at this many places."""
 MANY_POINTS = 5000
-"""Number of points above which they are drawn as an image, so that vector files stay small."""
+"""Draw more points than this as an image, so that vector files stay small."""
 SHADES = ("#F8D9C4", "#F0A879")
 """Colours of the band of two standard errors, and of the band of one above it."""
 

@@ -30,14 +30,14 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 
 CHANCE = 1e-5
-"""Largest probability that noise alone looks like this, for each kind of look."""
+"""Noise alone looks like this with at most this probability, for each kind of look."""
 SHARE_TOLD = 0.08
 """A look is told if it makes up at least this share of the sum of squares that is left."""
 LARGE, FORGETS, PLAIN = 3.0, 0.9, 0.3
 """Residuals are no noise if they exceed LARGE times the noise of neighbouring samples and remember themselves for more than FORGETS
 of the longest time that is considered: looks with a share above PLAIN are then told without asking for chance."""
 LOOKS_TOLD = 3
-"""Largest number of looks that are told."""
+"""Tell at most this many looks."""
 SAMPLES_BESIDE_CHANGE = 2
 """Samples on each side of a change of the pull rate that are unsure if the samples do not resolve the change."""
 AFTER = 0.25

@@ -31,7 +31,7 @@ That of an even distribution is 1/sqrt(12). With it a step at a sample lies 1.7 
 record would pull the numbers.
 """
 TRIED = 100
-"""Number of times of a servo that are tried before the best of them is improved."""
+"""Try this many times of a servo before the best of them is improved."""
 FITS = 1.5
 """A servo is taken if it follows the load point to within this many standard deviations of its noise, on average."""
 SAMPLES_COMPARED = 8.0

@@ -21,7 +21,7 @@ from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
 from stickslip.solution.observables.layers_found_again import loads_of_layers
 
 MOST_REPLAYED = 300_000
-"""Largest number of pieces times cells through which waves are replayed for a note; that takes a tenth of a second."""
+"""Replay waves for a note through at most this many pieces times cells; that takes a tenth of a second."""
 
 
 def of_layers(problem: Problem) -> OfLayers:
