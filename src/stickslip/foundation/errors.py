@@ -98,15 +98,15 @@ def never_show(message: str = "", module: str = "", category: type[Warning] = Wa
 
 
 MOST_NAMED, FEW = 8, 6
-"""So many allowed words a hint names in full; of more it names the few that are spelled most like the word."""
+"""A hint names all allowed words if they are at most MOST_NAMED; of more, the FEW that are spelled most like the word."""
 MOST_MEANT = 4
-"""A part that more of the allowed words have says nothing about which one is meant."""
+"""A part that more than this many allowed words have does not say which one is meant."""
 MOST_ABSENT = 2
 """Name at most this many meanings of a word even if none of them is allowed."""
 LONGEST_WORD = 80
 """Compare at most this many characters of a word with others."""
 MISTYPED = 0.85
-"""So much (1) of a mistyped word and of the right one is the same, at least."""
+"""A mistyped word is the same as the right one in at least this share (1)."""
 SHORT, ALIKE = 5, (0.65, 0.6)
 """Longest word that counts as short, and how much (1) of a short word, and of a longer one, is the same in one spelled alike."""
 

@@ -1,4 +1,4 @@
-"""The units in which a problem was given, for what is printed and drawn of it."""
+"""Print and draw results in the units in which their problem was given."""
 
 from __future__ import annotations
 

@@ -20,9 +20,9 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 NO_RECORDED_PIECE = -1
 """Marks a phase without a recorded piece."""
 HALVINGS_OF_INDEX = 64
-"""Largest number of halvings of an index or of a range of indices: they have 64 bits."""
+"""An index, or a range of indices, is halved at most this many times: it has 64 bits."""
 RECENT_PIECES = 64
-"""Number of recent pieces that are searched first for the waves in the body."""
+"""Search this many recent pieces first for the waves in the body."""
 
 
 @entry
