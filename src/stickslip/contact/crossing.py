@@ -1,4 +1,4 @@
-"""The slip rate at which a mode of layers crosses the axis: found on the root itself, and checked by counts on both sides."""
+"""The slip rate where a mode of layers crosses the axis: found on the root itself, and checked by counts on both sides."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ _MOST_SHOWN = 6
 
 @dataclass(frozen=True)
 class Fold:
-    """A slip rate (m/s) at which g changes between rising and falling, and the load (Pa) there."""
+    """A slip rate (m/s) where g changes between rising and falling, and the load (Pa) there."""
 
     rate: float
     load: float

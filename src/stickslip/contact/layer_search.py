@@ -73,7 +73,7 @@ class LayerSearch(LayerRoots):
         return polished(self.value, np.array(found))
 
     def _peaks(self) -> list[float]:
-        """Return the frequencies (rad/s) at which friction gives most to a wave that it sends back, or takes least of it."""
+        """Return the frequencies (rad/s) where friction gives most to a wave that it sends back, or takes least of it."""
         q = poly.polysub(self.a, self.body.impedance * self.b)
         sizes = np.abs(np.concatenate([roots_of(self.p), roots_of(poly.polytrim(q))]))
         sizes = sizes[sizes > 0.0]

@@ -56,7 +56,7 @@ def _words(name: str, meaning: str) -> str:
 
 
 def _typeset(text: str, show: Callable[[str, str], str], is_users: bool) -> str:
-    """Return a text in which the words that are symbols are replaced by what `show` makes of their letter and index.
+    """Return a text with what `show` makes of letter and index in place of each word that is a symbol.
 
     The name of a number in a formula (`is_users`) is one word.
     """

@@ -1,4 +1,4 @@
-"""Numbers that remember the unit in which they were given, and the units in which results are shown for it.
+"""Numbers that remember their given unit, and the units of results that follow from it.
 
 What was given in rpm, g, inch or kN m is shown in it. `Quantity.check` makes a `Given` of a text such as "60 rpm"; it is a float in
 SI for all that calculates. `problem.given_units` finds what a problem was given in, and `shown_in` tells it to all that is printed

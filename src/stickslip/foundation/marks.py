@@ -22,7 +22,7 @@ MARKS_TOGETHER = 10_000
 
 
 def marked(values: Floats, declared: float | None = None) -> NDArray[np.bool_]:
-    """Return True where a column, in the unit in which it is written, holds a mark of a missing number, in runs of any length.
+    """Return True where a column, in the unit of its file, holds a mark of a missing number, in runs of any length.
 
     `declared` is the mark that the file itself names. The other marks are ordinary numbers, too. One of them is data if its curve
     passes through it: if the last or the next number beside it is within 1 % of it, if it alone lies between the two, or if it is

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 OTHER_FORMATS = (".csv", ".tsv", ".txt", ".dat", ".parquet", ".png", ".pdf", ".svg", ".gif", ".toml", ".json", ".mat", ".xlsx")
-"""Ends of names by which other programs, and people, take a file for something else than netCDF."""
+"""Other programs, and people, take a file for something else than netCDF if its name ends so."""
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file, and so of every netCDF file of this package."""
 MARK = b"\nstickslip sha256 "

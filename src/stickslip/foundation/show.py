@@ -71,7 +71,7 @@ def brief(value: float, unit: str, digits: int = BRIEF_DIGITS) -> str:
 
 
 def exactly(value: float, unit: str, digits: int = 9) -> str:
-    """Format a quantity with many digits in its SI unit, or in the unit in which its kind was given."""
+    """Format a quantity with many digits in its SI unit, or in the given unit of its kind."""
     return exact_range((value,), unit, digits)
 
 

@@ -176,7 +176,7 @@ class Creep:
     rate: float  # d ubar / dn, m per round trip
     bend: float  # d2 ubar / dn2, m per round trip squared
     room: float
-    length: float  # of the part of the round trip in which the contact slips, s
+    length: float  # of the part of the round trip with slip, s
     widening: float  # change of length in a round trip, s
     mean_rate: float  # m/s, where the contact slips
     mean_bend: float  # change of mean_rate in a round trip, m/s

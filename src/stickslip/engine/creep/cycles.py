@@ -114,7 +114,7 @@ class Cycle:
 
 
 ROUNDED = 4.0
-"""Number of roundings of the load by which an onset of slip may be early or late."""
+"""An onset of slip may be early or late by this many roundings of the load."""
 LEAST_ONSETS = 3
 """Two whole cycles are compared."""
 

@@ -19,7 +19,7 @@ from stickslip.problem import Problem, default_event_rate
 SLOWLY = 0.01
 """Largest relative change of the frequency in a radian: nearer to where creep turns dynamic each cycle is computed."""
 TOUCHES = 1e-3
-"""Share by which a swing may be larger than one that touches rest: it has just begun from rest, or is about to touch it."""
+"""A swing may be larger by this share than one that touches rest: it has just begun from rest, or is about to touch it."""
 FIRST_STRIDE = 64.0
 """First stride, in slips of the driver in a radian of the free oscillation."""
 AGREE = 1e-9

@@ -75,7 +75,7 @@ def excess_at(g: MemberResistance, rate: float) -> float:
 
 @kernel
 def turn_between(g: MemberResistance, low: float, high: float, at_low: float, at_high: float) -> float:
-    """Return the slip rate between `low` and `high` at which g' changes sign: the last or the first one at which g still rises.
+    """Return the slip rate between `low` and `high` where g' changes sign: the last or the first one where g still rises.
 
     at_low and at_high are g' at the two ends. The bits of the rates are halved until these differ by less than a factor of two.
     Then false position takes over, with the weights of Anderson & Björck 1973 (BIT 13, 253) so that neither end gets stuck.

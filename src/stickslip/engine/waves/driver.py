@@ -68,7 +68,7 @@ def impedance_at_driver(run: Run) -> float:
 
 @kernel
 def leap(run: Run) -> None:
-    """Carry the echo and the machine over the round trips at rest that were leaped over, in which the machine had settled."""
+    """Carry the echo and the machine over the round trips at rest that were leaped over, after the machine had settled."""
     if run.counts.trip == 0:
         return
     params, before = run.params, run.counts.trip_segment

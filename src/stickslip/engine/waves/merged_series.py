@@ -63,7 +63,7 @@ SPECTRUM, POWERS = _spectrum(), _powers()
 
 
 class WaveGroup(NamedTuple):
-    """Name pieces of the history that follow each other, and the form in which their waves are to be written."""
+    """Name pieces of the history that follow each other, and the form of the waves to be written."""
 
     source: int  # the first of them
     many: int  # their number

@@ -178,7 +178,7 @@ def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | 
 
 
 def check_python(path: Path) -> None:
-    """Refuse a Python without assertions, by which zarr cannot read groups inside a group. Raises InputError."""
+    """Refuse a Python without assertions: with it zarr cannot read groups inside a group. Raises InputError."""
     if not __debug__:
         raise InputError(
             f"{path}: zarr needs the assertions of Python for {PLANAR_FORMAT.what}: unset PYTHONOPTIMIZE, or leave out python -O"

@@ -123,7 +123,7 @@ class MeasuredSeries:
 
     @cached_property
     def away(self) -> NDArray[np.bool_]:
-        """True at times away from the exact shocks, at which slip rate and traction are compared."""
+        """True at times away from the exact shocks, when slip rate and traction are compared."""
         shocks = self.exact.shocks.time.to_numpy(float)
         return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadow).all(axis=1))
 
@@ -145,7 +145,7 @@ class MeasuredSeries:
 
     @property
     def shadow(self) -> float:
-        """Time on either side of a shock in which the slip rate is not compared, s."""
+        """Do not compare the slip rate within this time on either side of a shock, s."""
         return shadow(self.series, self.exact)
 
     @property

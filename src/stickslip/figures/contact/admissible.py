@@ -163,7 +163,7 @@ def draw_admissible(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axe
 
 
 class _Scales:
-    """The units in which slip rates and loads of a dataset are drawn; near the strength loads are differences from it."""
+    """The units of the drawn slip rates and loads of a dataset; near the strength loads are differences from it."""
 
     def __init__(self, dataset: xr.Dataset) -> None:
         names = ("excess", "path_excess", "set_excess", "set_strength")
@@ -182,7 +182,7 @@ class _Scales:
         return (sign * np.asarray(excess) + (sign * self.strength - self.origin)) / self.load[1]
 
     def rates(self, values: Any) -> Floats:
-        """Return slip rates (m/s) in the unit in which they are drawn."""
+        """Return slip rates (m/s) in the unit of the drawing."""
         return np.asarray(values, float) / self.rate[1]
 
 

@@ -64,7 +64,7 @@ THREE, TWO = 5.4, 3.0
 ROW, KEY = 1.1, 0.75
 """Heights (inches) of the lowest row of panels with its labels, and of title and key together."""
 HELD = "\0"
-"""Stands for a space at which no line may end."""
+"""Stands for a space where no line may end."""
 LETTERS_OF_LINE = 17
 """Number of letters in a line of a title or a label of a panel in a narrow figure."""
 

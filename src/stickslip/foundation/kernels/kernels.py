@@ -30,7 +30,7 @@ class Kernel:
 
     @property
     def name(self) -> str:
-        """The name by which its machine code is kept."""
+        """The name of its machine code in the cache."""
         return f"{self.__module__.rsplit('.', 1)[-1]}.{self.__name__}"
 
 

@@ -26,7 +26,7 @@ Made = TypeVar("Made")
 
 
 class _Kept(Generic[Made]):
-    """Something that was made, and the turn (1) in which it was last asked for."""
+    """Something that was made, and the turn (1) when it was last asked for."""
 
     __slots__ = ("asked", "made")
 

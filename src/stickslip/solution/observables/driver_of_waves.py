@@ -75,7 +75,7 @@ class BehindSlab:
         return self.body.driver_impedance
 
     def shears_at(self, time: float) -> float:
-        """Return the rate (m/s) at which it shears the slab in the state without waves: its pull rate while it is rigid, else 0."""
+        """Return how fast (m/s) it shears the slab in the state without waves: its pull rate while it is rigid, else 0."""
         trip = self.body.two_way_time
         rigid = self.share_at(np.array(time - 0.5 * trip) + trip) == RIGID
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
@@ -132,7 +132,7 @@ class BehindLayers:
         return np.full(len(trip), self.history.ramp)
 
     def shears_at(self, time: float) -> float:
-        """Return the rate (m/s) at which it shears the body in the state without waves: 0 unless all drivers are rigid."""
+        """Return how fast (m/s) it shears the body in the state without waves: 0 unless all drivers are rigid."""
         rigid = self.body.is_driven_rigidly & (self.share_at(np.array(time + self.body.inflow_delay)) == RIGID)
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 

@@ -83,7 +83,7 @@ class _InsideOfSlab:
         """
         waves, half = self.waves, self.waves.half
         since = self.time - self.interval.first + away
-        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)  # by which a time is moved to the side that is seen
+        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)  # moves a time to the side that is seen
         left = self.time - (waves.round - away)  # when the wave left the contact
         sent_back = waves.arriving(self.interval.leaving(left, side), left - self.interval.first, slack)
         return np.where(since < half + slack, waves.first_load(since), sent_back)

@@ -81,7 +81,7 @@ class LayerWaves:
             time=self.time,
         )
         self.is_away = np.concatenate([np.arange(count) % 2 == 0 for count in counts])
-        """True for cells in which E travels away from the contact."""
+        """True for cells where E travels away from the contact."""
         self.reference = np.repeat(strength, counts)
         self._inflow = np.array([cells.inflow[self.last], cells.inflow_rate[self.last]], float)
         self._before = np.array(cells.inflow_before[self.last], float)

@@ -46,7 +46,7 @@ def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
 
 
 def _places(history: History, body: OfLayers) -> tuple[NDArray[np.intp], Floats]:
-    """Return pieces and phases (s) in them at which loads are compared: the same phases in every round trip."""
+    """Return pieces and phases (s) in them where loads are compared: the same phases in every round trip."""
     store, cells = history.store, sum(body.cells.counts)
     last = int(history.creep[:, 0].min(initial=store.trip[-1] + 1))
     many = int(np.clip(REPLAYED / (cells * max(last, 1)), LEAST_PHASES, PHASES))

@@ -61,7 +61,7 @@ def _against(history: History, n: Places) -> float:
 
 
 def _of_times(history: History, n: Places) -> float:
-    """Return the longest way that the slip rate goes in the time by which the polynomial of a step misses its end."""
+    """Return the longest way that the slip rate goes in the time that the polynomial of a step misses its end by."""
     store = history.store
     off = np.abs(store.phase_from[n] + store.speed[n] + store.bend[n] - store.phase_to[n])
     return float(np.max(off * np.abs(store.rate[n]).sum(axis=1), initial=0.0))

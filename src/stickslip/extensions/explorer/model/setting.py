@@ -142,7 +142,7 @@ class Setting:
 
     @property
     def load_unit(self) -> str:
-        """The unit of the body's loads: it decides in which units laws and loading are. Raises InputError for an unknown body."""
+        """The unit of the body's loads: it decides the units of laws and loading. Raises InputError for an unknown body."""
         unit: str = kind_of("body", self.value("body") or {}, self.name).load_unit  # type: ignore[attr-defined] # registered
         return unit
 

@@ -79,7 +79,7 @@ def measured_data(result: Fit | Smooth) -> xr.Dataset:
 
 
 def _along(place: Floats) -> Floats:
-    """Return the places at which the law is drawn, from the smallest to the largest: evenly, or by factors over decades."""
+    """Return the places where the law is drawn, from the smallest to the largest: evenly, or by factors over decades."""
     low, high, positive = float(place.min()), float(place.max()), place[place > 0.0]
     even = np.linspace(low, high, CURVE)
     if low < 0.0 or not len(positive) or not spans_decades(positive):

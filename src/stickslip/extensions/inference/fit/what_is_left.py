@@ -60,7 +60,7 @@ class ResidualLook(NamedTuple):
     """One look of residuals (data minus run): its kind, its share of the sum of squares, and its size in the unit of its kind.
 
     Kinds and sizes are "drift with slip" (unit of the residual per metre), "drift with time" and "drift" with either (per second),
-    "lag" (s by which the record is late), "offset" (residual), "oscillation" (its period in s), "steps" (number of changes of the
+    "lag" (s that the record is late), "offset" (residual), "oscillation" (its period in s), "steps" (number of changes of the
     pull rate that the samples do not resolve), and "transients" (how many times larger what is left is after changes).
     """
 

@@ -63,7 +63,7 @@ class Corners:
 
 
 class _Change(NamedTuple):
-    """A change of rate: where it begins and ends (s), the rates before and after, and the time at which a step moves as far."""
+    """A change of rate: where it begins and ends (s), the rates before and after, and when (s) a step moves as far."""
 
     begin: float
     end: float
@@ -234,7 +234,7 @@ def _displacement(rate: Steps, time: Floats) -> Floats:
 
 
 def jumps_of(normal: PiecewiseLinear, clock: Floats) -> tuple[int, ...]:
-    """Return the numbers of the straight parts in which a normal load jumps from one sample to the next."""
+    """Return the numbers of the straight parts where a normal load jumps from one sample to the next."""
     times, values = np.array(normal.times), np.array(normal.values)
     change, lasts = np.abs(np.diff(values)), np.diff(times)
     k = np.clip(np.searchsorted(clock, times[:-1], side="right"), 1, len(clock) - 1)
