@@ -106,7 +106,7 @@ def _version(one: Requirement) -> str | None:
 
 
 def engine() -> Iterator[Finding]:
-    """Yield where the engine's machine code comes from, and the cache of what is compiled here."""
+    """Yield where the engine's machine code comes from, and the cache of machine code made here."""
     from stickslip.foundation.kernels.uncompiled import UNCOMPILED
     from stickslip.foundation.sealed_files import cache_root
 

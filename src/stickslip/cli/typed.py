@@ -22,14 +22,14 @@ CHECKS = (
 )
 """What may be asked of a value beyond its kind: then it is left to typer, unless all is as by default."""
 USUAL = typer.Option()
-"""An option of which nothing is asked."""
+"""An option that is read as it is typed."""
 
 
 class Typed:
     """What options and arguments have in common."""
 
     def process_value(self: Any, ctx: Any, value: Any) -> Any:
-        """Return the value of what was typed."""
+        """Return the value that was typed."""
         several = self.multiple or self.nargs == -1
         kind = get_args(self.type_descriptor.annotation)[0] if several else self.type_descriptor.annotation
         if value is None and not self.required:

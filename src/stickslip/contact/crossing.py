@@ -1,4 +1,4 @@
-"""The slip rate at which a mode of layers crosses the axis: found on the root itself, and checked by counts on both sides."""
+"""The slip rate where a mode of layers crosses the axis: found on the root itself, and checked by counts on both sides."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NARROW_STEP = 1.2
 BESIDE_CROSSING = 1e-8
 """Verdicts are compared at slip rates that differ from the crossing by this share (1)."""
 ROOTS_FOLLOWED = 10
-"""Largest number of roots that are followed."""
+"""Follow at most this many roots."""
 
 
 def crossing(modes_at: Callable[[float], LayerModes], low: float, high: float, stable_above: bool) -> float:

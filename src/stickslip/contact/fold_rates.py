@@ -10,7 +10,7 @@ from stickslip.foundation.kernels.kernels import exact, exact_entry
 from stickslip.friction.formula import SLOPE, AtPoints, change_at
 
 MOST_CUTS = 100
-"""Largest number of times that an interval is cut into parts; it is at rounding long before."""
+"""Cut an interval into parts at most this many times; it is at rounding long before."""
 NEXT = 2.0**-53 * (1.0 + 2.0**-52)
 """A number that is increased by this share (1) of itself is rounded to the next larger one, unless it is tiny."""
 

@@ -21,14 +21,14 @@ Verdict = Literal["proven", "not decided"]
 Interval = tuple[float, float]
 
 MOST_FOLDS = 1024
-"""Largest number of folds that a contact may have. Friction that rises and falls with the slip rate for ever has any number."""
+"""A contact may have at most this many folds. Friction that rises and falls with the slip rate for ever has any number."""
 _MOST_SHOWN = 6
-"""Largest number of folds that a sentence names; more would make it unreadable."""
+"""A sentence names at most this many folds; more would make it unreadable."""
 
 
 @dataclass(frozen=True)
 class Fold:
-    """A slip rate (m/s) at which g changes between rising and falling, and the load (Pa) there."""
+    """A slip rate (m/s) where g changes between rising and falling, and the load (Pa) there."""
 
     rate: float
     load: float

@@ -27,7 +27,7 @@ WIDEST = 1.2
 MOST_PIECES = 1 << 17
 """Largest number of pieces of a line, unless it is given."""
 CUTS_OF_PIECE = 22
-"""Largest number of times that pieces are cut."""
+"""Cut pieces at most this many times."""
 SMALL, CUTS = 0.9, 6
 """Pieces are cut so that the angle (rad) becomes this small, but into no more than so many."""
 LOWEST_FREQUENCY = 80

@@ -39,7 +39,7 @@ class Bound(NamedTuple):
 
     @property
     def angle(self) -> Floats:
-        """The angle (rad) by which the phase may differ from that in the middle; inf if the function may be 0."""
+        """The phase may differ by this angle (rad) from that in the middle; inf if the function may be 0."""
         return _seen(self.radius, np.abs(self.middle))
 
     @property
@@ -64,7 +64,7 @@ class _Side(NamedTuple):
     radius: Floats
     """Half the radius of the disc that holds the smaller wave over the larger one."""
     turned: Floats
-    """Angle (rad) by which the phase of the larger wave may differ from that in the middle."""
+    """The phase of the larger wave may differ by this angle (rad) from that in the middle."""
     impedance: float
     """Impedance at the contact (Pa s/m)."""
 
@@ -144,7 +144,7 @@ class LinePieces:
 
     @property
     def turned(self) -> Floats:
-        """The angle (rad) by which the phase of the factor that both sides have may differ from that in the middle."""
+        """The phase of the factor that both sides have may differ by this angle (rad) from that in the middle."""
         return np.asarray(sum((one.turned for one in self._sides), np.zeros(self.half.shape)))
 
     def polynomial(self, p: Polynomial) -> Bound:

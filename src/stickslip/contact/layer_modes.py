@@ -23,7 +23,7 @@ from stickslip.contact.wave_modes import Growth
 GONE = 25.0
 """A disturbance that fades by exp(-GONE) within a two-way travel time through all cells is gone at once."""
 NEARER = 20
-"""Number of lines that come nearer to the crowd, each half as far from it as the one before."""
+"""This many lines come nearer to the crowd, each half as far from it as the one before."""
 SAME_GROWTH = 1e-8
 """A growth rate counts as that of the crowd if it differs by no more than this share (1)."""
 

@@ -146,7 +146,7 @@ def sides_of(body: OfLayers) -> SidesJoined:
 
 
 def driven_steadily(body: OfLayers) -> SteadyDrive:
-    """Return what drives a contact of layers at a steady rate, at which all of a side moves alike."""
+    """Return what drives a contact of layers at a steady rate, when all of a side moves alike."""
     drivers = [math.inf if one.driver_gain > 0.0 else one.driver_impedance for one in body.stacks]
     resists = [driver + float(one.drags.sum()) for driver, one in zip(drivers, body.stacks, strict=True)]
     return sides_of(body).driven(drivers, resists)
@@ -155,7 +155,7 @@ def driven_steadily(body: OfLayers) -> SteadyDrive:
 def taken_by_layers(body: OfLayers) -> float:
     """Return the steepest fall of friction with the slip rate (Pa s/m) that layers without a mass at the contact withstand.
 
-    It is the smallest W = Z (1 - R) / (1 + R) at frequencies at which it is real: there a disturbance keeps its size.
+    It is the smallest W = Z (1 - R) / (1 + R) at frequencies where it is real: there a disturbance keeps its size.
     """
     period, number = math.pi / body.cells.time, SAMPLES_OF_FREQUENCY * sum(body.cells.counts)
 

@@ -8,7 +8,7 @@ drivers give no energy: abs(R) <= 1 for Re s >= 0. Nyquist's criterion counts th
 winds around 0; k is 0, or that of a contact without mass and states which responds as this one does at high frequencies. Where
 abs(q/p - k) abs(d / (u + k d)) < 1 it does not, so a few intervals of the frequency are left, in which `layer_count` follows H.
 
-Two sides may have modes in which the contact rests. They are no disturbance of its sliding, and are left out.
+Two sides may have modes with the contact at rest. They are no disturbance of its sliding, and are left out.
 
 Source: Nyquist 1932, Bell Syst. Tech. J. 11, 126.
 """
@@ -34,7 +34,7 @@ from stickslip.problem.bodies import OfLayers
 LEAN = 5e-14
 """The axis leans by this much on two sides (1), which may have modes that do not move the contact: these lie on the axis."""
 PLACES_SOUGHT_FROM = 128
-"""Number of places from which roots are sought."""
+"""Seek roots from so many places."""
 SHORT_SPAN = 2000
 """A span of frequencies is short if it has no more than this number of pieces at first."""
 FEWER = 4
@@ -175,7 +175,7 @@ class LayerRoots:
 
     @property
     def matched(self) -> tuple[float, float]:
-        """The numbers a' and b' of a contact from which no wave comes back: k = 0."""
+        """The numbers a' and b' of a contact that sends no wave back: k = 0."""
         return self.body.impedance, 1.0
 
     def spans(self, line: float) -> Spans | None:
@@ -208,7 +208,7 @@ def _square(p: Polynomial, line: float) -> Polynomial:
 
 
 def _open(ring: Polynomial) -> list[tuple[float, float]]:
-    """Return the intervals of frequencies (rad/s) in which a polynomial in their squares is below 0; the last may be endless."""
+    """Return the intervals of frequencies (rad/s) where a polynomial in their squares is below 0; the last may be endless."""
     edges, found = [0.0, *WaveModes.edges(ring).tolist(), math.inf], []
     for low, high in pairwise(edges):
         inside = 0.5 * (low + high) if math.isfinite(high) else 2.0 * low + 1.0

@@ -17,9 +17,9 @@ from stickslip.contact.wave_modes import roots_of
 STRIDES = 12
 """From a root others are sought that lie up to 2^STRIDES periods of the layers away."""
 WINDOWS = 24
-"""Number of places, besides those where friction gives most, in which roots are sought."""
+"""Seek roots in this many places, besides those where friction gives most."""
 SCANNED = 4000
-"""Number of frequencies at which friction's response is looked at."""
+"""Look at friction's response at this many frequencies."""
 SAMPLES_OF_CELL = 8
 """Number of samples for each cell in half of a period."""
 
@@ -73,7 +73,7 @@ class LayerSearch(LayerRoots):
         return polished(self.value, np.array(found))
 
     def _peaks(self) -> list[float]:
-        """Return the frequencies (rad/s) at which friction gives most to a wave that it sends back, or takes least of it."""
+        """Return the frequencies (rad/s) where friction gives most to a wave that it sends back, or takes least of it."""
         q = poly.polysub(self.a, self.body.impedance * self.b)
         sizes = np.abs(np.concatenate([roots_of(self.p), roots_of(poly.polytrim(q))]))
         sizes = sizes[sizes > 0.0]

@@ -1,4 +1,4 @@
-"""Regime over two parameters of a problem, with the critical curve, and regimes along the slip of a law of both."""
+"""Find the regime over two parameters of a problem, with the critical curve, and along the slip of a law of slip and slip rate."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from stickslip.friction import FrictionLaw
 from stickslip.problem import Parameter, Problem, put_many
 
 _POINTS = 65
-"""Number of equally spaced slips for samples of the regime; each sample costs a search over all slip rates."""
+"""Sample the regime at this many equally spaced slips; each sample costs a search over all slip rates."""
 _UNKNOWN = 10.0
 """Longest slip (m) assumed for a law whose parameters name none; user expressions are checked up to the same slip."""
 
@@ -86,7 +86,7 @@ def regimes_along_slip(problem: Problem) -> tuple[RegimeInterval, ...]:
 
 
 _AT_A_TIME = 100
-"""Number of points that are computed together: enough for numpy, and seldom enough for a progress display."""
+"""Compute this many points together: enough for numpy, and seldom enough for a progress display."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from stickslip.contact.layer_count import NotCountedError
 from stickslip.contact.layer_response import Complex
 
 MOST_LINES = 100
-"""Largest number of lines that are looked at."""
+"""Examine at most this many lines."""
 MOST_UNKNOWN = 4
 """Largest number of lines without a count."""
 MANY_ROOTS = 8

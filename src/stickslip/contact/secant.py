@@ -18,7 +18,7 @@ BESIDE, ROOT = 1e-6, 1e-3
 
 
 def polished(of: Callable[[Complex], Complex], begin: Complex) -> list[complex]:
-    """Return the roots of a function that the secant method reaches from places; those from which it reaches none are left out."""
+    """Return the roots of a function that the secant method reaches from places; where it reaches none, none is returned."""
     s: Complex = np.asarray(begin, complex)
     if not s.size:
         return []

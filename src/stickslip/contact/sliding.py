@@ -120,7 +120,7 @@ class FromRest:
     stopped_at: float | None = None
     """The pull rate (m/s) of a run that met its limit before its end, so that nothing is known there; None if none did."""
     fastest: float | None = None
-    """The pull rate (m/s) at which the body would slide as fast as its waves run, if the runs went up to it; else None."""
+    """The pull rate (m/s) that would make the body slide as fast as its waves run, if the runs went up to it; else None."""
 
     units: ClassVar = dict.fromkeys(("sticks_at", "slides_at", "stopped_at", "fastest"), "slip_rate") | {"duration": "s"}
     __repr__ = brief_repr

@@ -36,7 +36,7 @@ CELLS_OF_DECADE = 64
 NARROW_PROOF_CELL = 1e-9
 """Cells narrower than this (relative) are not halved any more."""
 MOST_CELLS = 80_000
-"""Largest number of cells that are examined at a time, a second of work; beyond it nothing is proven."""
+"""Examine at most this many cells at a time, a second of work; beyond it nothing is proven."""
 NEWTON_STEPS = 3
 """Number of Newton's steps from the law's steady state to that of its formula."""
 LEAST_CHANGE = 1e-3

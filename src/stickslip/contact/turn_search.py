@@ -175,7 +175,7 @@ def turns_at_knots(of: Contacts, search: Search, found: Floats, ends: Integers) 
 
 @exact
 def search_contact(of: Contacts, search: Search, tables: tuple[Floats, Floats], ends: Integers, left: Integers) -> int:
-    """Find all turns of one contact; return the next row of the table of what is found, more than it has if there is no room.
+    """Find all turns of one contact; return the next row of the table of turns, more than it has if there is no room.
 
     The cells that wait are those of the other table, the slowest ones last. `left` is the number of bounds that may be worked out.
     """

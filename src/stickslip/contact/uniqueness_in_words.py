@@ -19,9 +19,9 @@ Line = tuple[str, str]
 """The name of a line, and its text."""
 
 MOST_SHOWN = 6
-"""Largest number of folds, and of jumps, that `repr` and `summary` show."""
+"""`repr` and `summary` show at most this many folds, and jumps."""
 MOST_UNDECIDED = 10
-"""Largest number of intervals of slip rates that are listed as undecided, because they may or may not hold a fold."""
+"""At most this many intervals of slip rates are listed as undecided, because they may or may not hold a fold."""
 
 
 INERTIA = (

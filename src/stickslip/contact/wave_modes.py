@@ -24,7 +24,7 @@ Polynomial = NDArray[Any]
 _HALVINGS = 200
 """Largest number of halvings of an interval of growth rates: its ends are then neighbouring floats."""
 MOST_STEPS = 50
-"""Largest number of Newton's steps to a root from the place where it was found to lie."""
+"""Take at most this many of Newton's steps to a root from the place where it was found to lie."""
 _DOUBLINGS = 2000
 """Largest number of doublings of a growth rate: from the smallest float to the largest."""
 

@@ -38,7 +38,7 @@ _at_hand = np.zeros(len(PART_MODULES), np.int64)
 
 
 def function_of(part: EnginePart) -> Any:
-    """Return the kernel of a part, from its module, which is imported for it: not under the lock of what is made on first use."""
+    """Return the kernel of a part, from its module; do not hold the lock of things made on first use while it is imported."""
     return getattr(import_module(f"stickslip.engine.{PART_MODULES[part]}"), part.name.lower())
 
 

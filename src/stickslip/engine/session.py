@@ -49,7 +49,7 @@ FREE = 1024
 """Number of pieces, 0.5 MB, for which nobody asks whether there is memory: most runs need no more, and take a tenth of a
 millisecond."""
 WORTH = 1.25
-"""Factor by which a history must grow at least where memory is short: less is not worth a copy of all."""
+"""A history must grow at least by this factor where memory is short: less is not worth a copy of all."""
 
 
 Options = TypeVar("Options", bound=BoundedOptions)

@@ -50,13 +50,13 @@ def _words(name: str, meaning: str) -> str:
         return last
     if name in _INSTRUCTIONS or not meaning:
         return last.replace("_", " ")
-    if name.startswith("loading.") and name.count(".") == 2:  # a number of a loading history, whose meaning does not say of what
+    if name.startswith("loading.") and name.count(".") == 2:  # a number of a loading history: its meaning does not name the history
         return " ".join([*name.partition("[")[0].replace("_", " ").split(".")[1:], *([index] if index else [])])
     return re.split(r"\s*[,;:(]", meaning, maxsplit=1)[0].replace("`", "") + (f" {index}" if index else "")
 
 
 def _typeset(text: str, show: Callable[[str, str], str], is_users: bool) -> str:
-    """Return a text in which the words that are symbols are replaced by what `show` makes of their letter and index.
+    """Return a text with what `show` makes of letter and index in place of each word that is a symbol.
 
     The name of a number in a formula (`is_users`) is one word.
     """

@@ -59,7 +59,7 @@ def save_figure(path: Path, figure: Figure) -> bytes:
 
 
 def symbols(text: str) -> Markup:
-    """Return a text as HTML in which the indices of symbols are subscripts and powers of ten are written as such."""
+    """Return a text as HTML: the indices of symbols are subscripts, and powers of ten are written as such."""
     text = POWER.sub(lambda found: "10" + superscript(int(found["power"])), text)
     return Markup(SYMBOL.sub(r"\g<letter><sub>\g<index></sub>", str(escape(text))))
 
@@ -81,7 +81,7 @@ def number(value: float) -> str:
 
 
 def with_unit(value: float | None, unit: str) -> str:
-    """Return a number with a unit in which it can be read: loads and energies with a prefix, times in years, days or seconds."""
+    """Return a number with a readable unit: loads and energies with a prefix, times in years, days or seconds."""
     if value is None:
         return "–"
     unit, size = readable_unit(unit, value, plain=True)
@@ -92,7 +92,7 @@ def with_unit(value: float | None, unit: str) -> str:
 
 
 def _long_time(seconds: float) -> tuple[float, str]:
-    """Return a time in the largest of years, days and seconds of which it has at least a tenth, and the name of the unit."""
+    """Return a time in years, days or seconds, the largest unit that makes it 0.1 or more, and the name of the unit."""
     for name, size in (("years", YEAR), ("days", DAY)):
         if abs(seconds) >= 0.1 * size:
             return seconds / size, name

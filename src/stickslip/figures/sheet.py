@@ -32,7 +32,7 @@ T = TypeVar("T")
 KEYWORDS = ("ax", "figure", "size", "dpi")
 """The keywords of `Place`."""
 INCHES = {"mm": 1.0 / 25.4, "cm": 1.0 / 2.54, "in": 1.0, "inch": 1.0, "inches": 1.0}
-"""Units in which a size can be written, and their length in inches."""
+"""Units for sizes, and their length in inches."""
 WIDTHS_OF_COLUMNS = {"single column": 3.5, "double column": 7.2}
 """Widths (inches) of one and of two columns of most journals; the height stays that of the figure."""
 SIDES = (0.8, 80.0)

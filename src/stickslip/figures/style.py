@@ -52,7 +52,7 @@ T = TypeVar("T")
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 # Neutral colours for text and lines, for secondary marks, and for areas without a value.
 INK, GREY, PALE = "#222222", "#7A7A7A", "#D9D9D9"
-# Colours of lines, in the order in which they are taken.
+# Colours of lines, in the order of their use.
 LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
 # Colour of large areas.
 LIGHT_BLUE = "#D6E6F4"
@@ -141,7 +141,7 @@ def curve_quantity(dims: str | Sequence[str], values: Any, curve: str, load_unit
 
 
 def readable(variable: Any, *values: Any, log: bool = False) -> tuple[str, float]:
-    """Return the unit (name, size in SI units) in which a variable is readable: that in which it was given, if any."""
+    """Return the readable unit (name, size in SI units) of a variable: the given one, if any."""
     si, given = str(variable.attrs.get("units", "1")), str(variable.attrs.get("shown_in", ""))
     if given:
         with suppress(InputError):  # from a file of anybody
@@ -150,7 +150,7 @@ def readable(variable: Any, *values: Any, log: bool = False) -> tuple[str, float
 
 
 def unit_shown(*variables: xr.DataArray | Numbers) -> tuple[str, float]:
-    """Return the unit (name, size in SI units) in which variables that share an axis are drawn."""
+    """Return the unit (name, size in SI units) of variables that share an axis."""
     return readable(variables[0], *(variable.values for variable in variables))
 
 
@@ -197,7 +197,7 @@ def clock(readings: Readings) -> str:
 
 
 def time_unit(span: float) -> tuple[str, float]:
-    """Return the unit (name, size in s) in which times over the given span (s) are readable."""
+    """Return the readable unit (name, size in s) of times over the given span (s)."""
     return readable_unit("s", span)
 
 

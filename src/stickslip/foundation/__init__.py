@@ -3,7 +3,7 @@
 - `errors`, `arguments`: `InputError`, the one error that users see, with what was probably meant; what functions are given.
 - `quantities`: a field of a body, a law or a loading is declared once, with its unit, its range and its meaning.
 - `conversion`, `units`, `meant`: a number, a text with a unit or a quantity of pint becomes a number in SI.
-- `names`, `given`: what each quantity is called, its symbol and unit, and the units in which results are shown.
+- `names`, `given`: what each quantity is called, its symbol and unit, and the units of shown results.
 - `show`: numbers with units, tables and dataclasses as text for people.
 - `axis`, `other_values`: a parameter with its range, and problems with other numbers.
 - `atomic_write`, `netcdf_file`, `zarr_folder`, `locks`, `sealed_files`: files and folders that are whole or not there.

@@ -17,7 +17,7 @@ import numpy as np
 from stickslip.foundation.errors import ArgumentError, InputError, UnknownAttributeError, nearest
 
 LONGEST_VALUE = 60
-"""Largest number of characters of a value that a message repeats."""
+"""A message repeats at most this many characters of a value."""
 EXACT_WHOLE_NUMBERS = 10**15
 """Whole numbers below this are shown with all digits."""
 

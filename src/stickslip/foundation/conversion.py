@@ -16,7 +16,7 @@ from stickslip.foundation.meant import probably_meant
 from stickslip.foundation.units import LONGEST_TEXT, split_quantity, to_si
 
 LARGEST_INTEGER = 10**300
-"""Largest magnitude of a whole number that is converted to a float."""
+"""Convert a whole number to a float up to this magnitude."""
 ONE_UNIT = 1e-12
 """Definitions of a unit in two libraries that differ by less than this (relative) count as the same."""
 NO_UNIT = "dimensionless"

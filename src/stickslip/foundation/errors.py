@@ -98,15 +98,15 @@ def never_show(message: str = "", module: str = "", category: type[Warning] = Wa
 
 
 MOST_NAMED, FEW = 8, 6
-"""So many allowed words a hint names in full; of more it names the few that are spelled most like the word."""
+"""A hint names all allowed words if they are at most MOST_NAMED; of more, the FEW that are spelled most like the word."""
 MOST_MEANT = 4
-"""A part that more of the allowed words have says nothing about which one is meant."""
+"""A part that more than this many allowed words have does not say which one is meant."""
 MOST_ABSENT = 2
-"""Largest number of meanings of a word that are named although none of them is allowed."""
+"""Name at most this many meanings of a word even if none of them is allowed."""
 LONGEST_WORD = 80
-"""Largest number of characters of a word that is compared with others."""
+"""Compare at most this many characters of a word with others."""
 MISTYPED = 0.85
-"""So much (1) of a mistyped word and of the right one is the same, at least."""
+"""A mistyped word is the same as the right one in at least this share (1)."""
 SHORT, ALIKE = 5, (0.65, 0.6)
 """Longest word that counts as short, and how much (1) of a short word, and of a longer one, is the same in one spelled alike."""
 
@@ -148,7 +148,7 @@ def some_of(allowed: Iterable[str], word: str = "", listed: str = "") -> str:
 def meant(word: str, allowed: Collection[str]) -> list[str]:
     """Return the allowed words that `word` may stand for; none if nothing is near.
 
-    They are those with the same meaning (`synonyms.same`); else one that differs by a slip of the pen; else those of which it is a
+    They are those with the same meaning (`synonyms.same`); else one that differs by a slip of the pen; else those that have it as a
     part, as slab of elastic-slab, or the beginning, or that has all of their words, as block-on-spring those of spring-block; else
     the one that is spelled most alike; else those that a misspelt word of the trades means.
     """

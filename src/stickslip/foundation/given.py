@@ -1,4 +1,4 @@
-"""Numbers that remember the unit in which they were given, and the units in which results are shown for it.
+"""Numbers that remember their given unit, and the units of results that follow from it.
 
 What was given in rpm, g, inch or kN m is shown in it. `Quantity.check` makes a `Given` of a text such as "60 rpm"; it is a float in
 SI for all that calculates. `problem.given_units` finds what a problem was given in, and `shown_in` tells it to all that is printed
@@ -28,7 +28,7 @@ _TENS = {Fraction(10) ** power for power in range(-18, 19)}
 _TRADES = re.compile(r"bar\b|gal", re.IGNORECASE)
 """Units of trades that are a power of ten in SI, besides torques with a prefix."""
 Units = Mapping[str, tuple[str, float]]
-"""A unit (name, size in SI) by the SI unit in place of which it is shown."""
+"""A unit (name, size in SI) by the SI unit that it replaces."""
 _SHOWN: ContextVar[Units] = ContextVar("units in which results are shown", default=MappingProxyType({}))
 LEAST, MOST = 1e-3, 1e6
 """Results whose largest magnitude, in the unit that was given, is not between these have another unit."""

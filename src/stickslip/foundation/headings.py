@@ -136,7 +136,7 @@ OF_SCEC = {"t": "s", "slip": "m", "slip-rate": "m/s", "shear-stress": "MPa"}
 MOST_COLUMNS = 1000
 """Largest number of columns of a table."""
 LONGEST_HEADING = 120
-"""Largest number of characters of a heading that is understood."""
+"""A heading that is understood has at most this many characters."""
 PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless", "unitless")
 """What people write in place of a unit for a pure number."""
 ONE_WORD = 5

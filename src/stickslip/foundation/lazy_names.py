@@ -1,4 +1,4 @@
-"""The names of packages: imported when they are first used, and answered with the nearest one where there is none."""
+"""Import the names of a package when they are first used, and answer a wrong name with the nearest one."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _missing(package: str, name: str, home: str) -> AttributeError:
 
 
 def other_names(package: str) -> Get:
-    """Return the `__getattr__` of a module that has its names, but for those that extensions add to it.
+    """Return the `__getattr__` of a module: it finds the names that extensions add to it.
 
     It answers any other name with the nearest one.
     """

@@ -16,13 +16,13 @@ CLOSE_TO_MARK = 0.01
 FACTOR_OF_MARK = 6.0
 """A mark may be off what its neighbours make likely by so much more than half of the other samples are off."""
 AROUND = 16
-"""Number of samples to each side that say how much a column changes from sample to sample."""
+"""This many samples to each side say how much a column changes from sample to sample."""
 MARKS_TOGETHER = 10_000
-"""Number of marks that are looked at together, so that memory is bounded."""
+"""Look at this many marks together, so that memory is bounded."""
 
 
 def marked(values: Floats, declared: float | None = None) -> NDArray[np.bool_]:
-    """Return True where a column, in the unit in which it is written, holds a mark of a missing number, in runs of any length.
+    """Return True where a column, in the unit of its file, holds a mark of a missing number, in runs of any length.
 
     `declared` is the mark that the file itself names. The other marks are ordinary numbers, too. One of them is data if its curve
     passes through it: if the last or the next number beside it is within 1 % of it, if it alone lies between the two, or if it is

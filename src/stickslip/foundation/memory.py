@@ -15,11 +15,11 @@ from pathlib import Path
 from stickslip.foundation.errors import InputError
 
 SETTING = "STICKSLIP_MEMORY"
-"""Environment variable with the memory to count on, such as "8 GB", in place of what is free."""
+"""Environment variable with the memory to count on, such as "8 GB", in place of the free memory."""
 SHARE_OF_MEMORY = 1.0 / 6.0
-"""Largest share of the free memory that a result may take: its summary and its file take up to four times as much, for a moment."""
+"""A result may take at most this share of the free memory: its summary and its file take up to four times as much, for a moment."""
 SMALL = 64e6
-"""Size (bytes) up to which nobody looks for free memory, which takes half a millisecond."""
+"""For a result up to this size (bytes) nobody looks for free memory: that takes half a millisecond."""
 BYTES_OF_UNITS = {"": 1.0, "B": 1.0, "kB": 1e3, "KB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 BYTES_OF_UNITS |= {"KiB": 2.0**10, "MiB": 2.0**20, "GiB": 2.0**30, "TiB": 2.0**40}
 """Bytes of each unit of a size."""
@@ -36,7 +36,7 @@ is short: of the second version, and of the first, where memory has a folder of 
 
 
 def granted(wanted: float, taken: float) -> float:
-    """Return how much memory a result may take (bytes): what is wanted, or a share of what is free and of what it has taken so far.
+    """Return how much memory a result may take (bytes): the wanted amount, or a share of free memory and what it has taken so far.
 
     Raises InputError as `chosen_memory` does.
     """
@@ -75,7 +75,7 @@ def _of_system() -> Iterator[float]:
             if line.startswith("MemAvailable:"):
                 yield 1024.0 * int(line.split()[1])
                 return
-    with suppress(OSError, ValueError, AttributeError):  # not Linux: half of what there is may be taken
+    with suppress(OSError, ValueError, AttributeError):  # not Linux: half of all memory may be taken
         yield 0.5 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 

@@ -1,4 +1,4 @@
-"""What quantities are called, in one place: name, symbol, unit and meaning of each, and the units in which numbers are readable.
+"""What quantities are called, in one place: name, symbol, unit and meaning of each, and readable units for numbers.
 
 Files, figures, tables, the explorer and records read this. A unit may depend on the body: `KINDS_OF_BODY` has a row for each unit
 of loads (`Body.load_unit`), and a body whose loads have another unit needs one more row there.
@@ -60,7 +60,7 @@ KINDS_OF_BODY = {
         "turns",
     ),
 }
-"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's are forces, those of what turns are torques."""
+"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's forces, those of a body that turns torques."""
 
 
 class Name(NamedTuple):
@@ -155,7 +155,7 @@ DECADES = 1e6
 
 @lru_cache(maxsize=1024)
 def si_unit(what: str, *load_units: str) -> str:
-    """Return the SI unit of a quantity, or of what a column names in place of a unit, for bodies whose loads have these units.
+    """Return the SI unit of a quantity, or of a name that a column has in place of a unit, for bodies with loads in these units.
 
     Any other text is a unit already. Different units are joined, as in "Pa or N"; by default they are those of all kinds of bodies.
     """
@@ -227,7 +227,7 @@ def sizes_of(unit: str) -> tuple[tuple[float, str], ...]:
 
 
 def readable_unit(unit: str, *values: Any, log: bool = False, plain: bool = False, of: str = "") -> tuple[str, float]:
-    """Return the unit (name, size in SI units) in which values (SI) are readable together: the largest that fits.
+    """Return the readable unit (name, size in SI units) of values (SI) together: the largest that fits.
 
     Where quantities of this kind were given in a unit of a trade, such as rpm or inch, it is that one (`given.preferred`); `of` is
     "place" for lengths inside a body, which are of another kind than slip.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 OTHER_FORMATS = (".csv", ".tsv", ".txt", ".dat", ".parquet", ".png", ".pdf", ".svg", ".gif", ".toml", ".json", ".mat", ".xlsx")
-"""Ends of names by which other programs, and people, take a file for something else than netCDF."""
+"""Other programs, and people, take a file for something else than netCDF if its name ends so."""
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file, and so of every netCDF file of this package."""
 MARK = b"\nstickslip sha256 "
@@ -35,7 +35,7 @@ MARK = b"\nstickslip sha256 "
 SEAL = len(MARK) + 64 + 1
 """Length of the line with the checksum, in bytes."""
 AT_A_TIME = 2**20
-"""Number of bytes that are read at once for the checksum, so that a large file is never held in memory."""
+"""Read this many bytes at once for the checksum, so that a large file is never held in memory."""
 
 MOST_TABLES, MOST_ATTRIBUTES = 256, 256
 """Largest number of tables in a file, and of attributes of the file or of a table; a run's file has some seventy and thirty. The

@@ -33,7 +33,7 @@ LARGEST, SMALLEST = 1e50, 1e-50
 Within these limits products of several quantities neither overflow nor underflow.
 """
 LARGEST_SERIES = 10_000
-"""Largest number of points in a series: a limit for scenario files, which are untrusted."""
+"""A series has at most this many points: a limit for scenario files, which are untrusted."""
 
 
 @dataclass(frozen=True)

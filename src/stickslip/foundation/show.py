@@ -71,7 +71,7 @@ def brief(value: float, unit: str, digits: int = BRIEF_DIGITS) -> str:
 
 
 def exactly(value: float, unit: str, digits: int = 9) -> str:
-    """Format a quantity with many digits in its SI unit, or in the unit in which its kind was given."""
+    """Format a quantity with many digits in its SI unit, or in the given unit of its kind."""
     return exact_range((value,), unit, digits)
 
 
@@ -169,7 +169,7 @@ class Declared(CheckedArguments):
     """Base of the classes whose fields are declared: these describe themselves in the docstring, and when an object is shown."""
 
     source: ClassVar[str] = ""
-    """Paper and equation from which the class is taken."""
+    """Paper and equation that the class is taken from."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -216,7 +216,7 @@ def _described(declared: Field) -> str:
 
 
 MOST_SHOWN = 6
-"""Largest number of entries of a series that are all shown."""
+"""Show all entries of a series that has at most this many."""
 
 
 def brief_repr(owner: Any, units: Mapping[str, str] = MappingProxyType({})) -> str:

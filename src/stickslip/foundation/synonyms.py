@@ -17,7 +17,7 @@ TABLE = "trade_words.txt"
 
 
 def plain(word: str) -> str:
-    """Return a word without capitals, hyphens, dots, underscores and blanks, in which spellings differ."""
+    """Return a word without what spellings differ in: capitals, hyphens, dots, underscores and blanks."""
     return "".join(_latin(letter) for letter in word.casefold() if letter.isalnum())
 
 

@@ -31,7 +31,7 @@ from stickslip.foundation.record_files.sheet import PREAMBLE, Asked, Lines, Shee
 from stickslip.foundation.unit_doubts import doubts_of
 
 FIRST_BYTES = 4096
-"""Number of bytes that tell what a file is."""
+"""This many bytes tell what a file is."""
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
 NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")

@@ -99,7 +99,7 @@ def check_folder(path: Path) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Refuse to write into a folder that is a link, or in which anything is one, at whatever depth. Raises InputError."""
+    """Refuse to write into a folder that is a link, or has one in it, at whatever depth. Raises InputError."""
     check_folder(path)
     try:
         link = next(_links_in(path), None) if path.is_dir() else None

@@ -205,7 +205,7 @@ class LawContract(Declared, ABC):
 
     @property
     def slips_in(self) -> str:
-        """The unit of slip, "m" or "rad", in which numbers of the law were given with a unit; "" if none was.
+        """The unit of slip, "m" or "rad", of numbers of the law that were given with a unit; "" if none was.
 
         A law of plain numbers fits a contact that slides, where they are in m and m/s, and one that turns: in rad and rad/s.
         """

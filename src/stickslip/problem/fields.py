@@ -37,7 +37,7 @@ CONSTANT = {
     "normal_load": "a constant one is normal_stress or normal_force of the body",
     "driver_reflection": "a constant one follows from driver_impedance of the body",
 }
-"""Hints for a number in place of what is nothing but a history."""
+"""Hints for a number where only a history may stand."""
 SAME_DRIVER = 1e-6
 """Difference (1) between two reflection coefficients that is rounding by people."""
 STEADY = "steady"
@@ -278,7 +278,7 @@ class ProblemFields(CheckedArguments):
 
     @property
     def _felt(self) -> tuple[str, ...]:
-        """The names of what varies and acts on the body: a far stress behind a driver that stays rigid does not."""
+        """The names of the histories that act on the body: a far stress behind a driver that stays rigid does not."""
         return tuple(name for name in self._varying if name != "far_stress" or not self.is_driven_rigidly)
 
     @cached_property
@@ -288,7 +288,7 @@ class ProblemFields(CheckedArguments):
 
     @cached_property
     def driver_steps(self) -> tuple[tuple[float, float], ...]:
-        """The times (s) from which the driver has a reflection coefficient, the first 0, and these coefficients (1).
+        """When (s) the driver takes a reflection coefficient, the first time 0, and these coefficients (1).
 
         Steps to the same coefficient are left out. The body's own is exact, and that of a history may be rounded.
         """
@@ -415,7 +415,7 @@ class ProblemFields(CheckedArguments):
     def strength(self) -> float:
         """The static strength S mu_static(u0) at the start (Pa, N or N m).
 
-        It is the reference from which loads are stored as differences. For a law that sticks and has a state it is the strength
+        Loads are stored as differences from it. For a law that sticks and has a state it is the strength
         in the healed state 0. For a law that never sticks it is 0.
         """
         return self.normal * float(self.friction.static_coefficient(self.law_slip))

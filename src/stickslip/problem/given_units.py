@@ -1,4 +1,4 @@
-"""The units in which a problem was given, for what is printed and drawn of it."""
+"""Print and draw results in the units of the numbers that a user gave."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LOADS = ("initial_load", "initial_excess", "far_stress", "normal_load")
 
 
 def units_given(problem: Problem) -> Units:
-    """Return the units in which results of a problem are shown because something of their kind was given in them.
+    """Return the units to show results of a problem in, because something of their kind was given in them.
 
     What is nearest to the result decides: the pull rate before the slip rates of the law, the load of the start before the normal
     load. If it was given in SI, or numbers equally near have several units, results are in SI.
@@ -90,7 +90,7 @@ def _in_law(law: Any, unit: str) -> Iterator[Any]:
 
 
 def _units(values: list[Any]) -> list[str]:
-    """Return the units in which numbers were given, each once: "" for SI. Zeros say nothing of a unit."""
+    """Return the given units of numbers, each once: "" for SI. Zeros say nothing of a unit."""
     found: dict[str, None] = {}
     for value in values:
         own = _numbers(value)
@@ -110,7 +110,7 @@ def _numbers(value: Any) -> list[Any]:
 
 
 def in_given_units(method: Callable[P, T]) -> Callable[P, T]:
-    """Decorate a method of what belongs to a problem: what it prints or draws is in the units in which the problem was given."""
+    """Decorate a method so that it prints or draws in the given units of the problem."""
 
     @wraps(method)
     def inside(*args: P.args, **kwargs: P.kwargs) -> T:

@@ -16,14 +16,14 @@ from stickslip.problem.problem import Problem
 MOST_ROUND_TRIPS = 2**53
 """Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps."""
 LARGEST_RTOL = 1e-2
-"""Largest creep_rtol that is accepted."""
+"""No larger creep_rtol is accepted."""
 PER_ROOT_RTOL = 0.1
 """Automatic creep_rtol divided by the square root of rtol: the time of the first pulse then has a relative error of about rtol."""
 TIGHTEST, LOOSEST = 1e-6, 1e-3
 """Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
 
 EXACT_TRIPS = 200
-"""Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and
+"""Compute this many round trips with slip before automatic leaps may begin: on the printed slab 40 000 pieces and
 0.1 s.
 """
 MOST_PIECES = 4096

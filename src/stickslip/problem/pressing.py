@@ -15,7 +15,7 @@ from stickslip.problem.problem import Problem
 class Pressing(NamedTuple):
     """A normal load that varies, as growth since the start, as a share of the normal load there (1)."""
 
-    start: Floats  # s: times at which its straight parts begin
+    start: Floats  # s: when its straight parts begin
     value: Floats
     slope: Floats  # 1/s
     tone: Tone

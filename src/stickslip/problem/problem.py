@@ -191,7 +191,7 @@ class Problem(ProblemFields):
 
     @property
     def loading_texts(self) -> dict[str, str]:
-        """Short descriptions of the pull rate and of what else is given of the loading, by field name."""
+        """Short descriptions of the pull rate and of the rest of the loading, by field name."""
         given = {name: getattr(self, name) for name in quantities_of(Problem) if not name.startswith("initial_")}
         given["far_stress_rate"] = self.far_stress_rate or None
         return {name: self._loading_text(value, self.unit_of(name)) for name, value in given.items() if value is not None}

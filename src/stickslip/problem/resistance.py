@@ -1,7 +1,7 @@
 """The resistance g(s) = Z s + S mu(u, s) of a contact that slips at rate s, and its branches.
 
 A branch is an interval of slip rates on which g rises. Loads are stored as excesses over the static strength. Selection rules,
-which a problem may bring, are functions of what this page defines; proofs and searches for branches are in `contact`.
+which a problem may bring, are functions of the terms of this page; proofs and searches for branches are in `contact`.
 """
 
 from __future__ import annotations

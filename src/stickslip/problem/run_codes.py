@@ -1,4 +1,4 @@
-"""Codes of what ended a run, or made its solver return; `run_status` says what each means, with cures.
+"""Codes that say what ended a run, or made its solver return; `run_status` says what each means, with cures.
 
 The engine's are those of `Stop`, which are not negative but for the one that ends nothing. The others come from around it.
 """

@@ -27,7 +27,7 @@ TOO_MANY = "too many pieces"
 SHORT_OF_MEMORY = "memory is short"
 """How the message of that status begins where memory is short."""
 MOST_WORTH_ASKING = 10_000_000
-"""Largest number of pieces that a message proposes to allow: 4 GB."""
+"""A message proposes to allow at most this many pieces: 4 GB."""
 GROWING = 2.0
 """If a history grows faster in its second half than in its first by more than this factor, its size cannot be foretold."""
 SHORTER = 0.98

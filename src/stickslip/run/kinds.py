@@ -1,4 +1,4 @@
-"""The kinds of runs, each with its solver and the options that it takes; and the readers of what runs leave.
+"""The kinds of runs, each with its solver and the options that it takes; and the readers of results.
 
 What is solved says of which kind a run is: a `Problem`, which the exact solver of the core takes, or what the table of an extension
 makes of a scenario, or an object of an extension. It is asked once, here, by the source of a run or by the path of its results.

@@ -66,7 +66,7 @@ class Readings(NamesAttributes):
 
     Slip, slip rate, traction, load and state are methods of the same form: they take times (s since `history.epoch`), a scalar or
     an array of any shape, and the `side` of the limit at a shock, "right" or "left", and return an array of that shape. Without a
-    time they return the last value: that at the end of the run, or of what a window shows. They raise InputError for times outside
+    time they return the last value: that at the end of the run or of its window. They raise InputError for times outside
     the run.
     """
 

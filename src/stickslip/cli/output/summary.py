@@ -34,7 +34,7 @@ REST = " (--all has the rest)"
 SENTENCES = "slip", "status"
 """Lines of a run that say what they are without their names."""
 LATE = 1e4
-"""Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
+"""Times from this one (s) on have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
 
 def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:

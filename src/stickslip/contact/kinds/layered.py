@@ -17,7 +17,7 @@ from stickslip.problem import driver_impedance
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 
 PATIENT = 1 << 20
-"""Largest number of pieces in which the roots of one motion are counted, a second or two of work."""
+"""Count the roots of one motion in at most this many pieces, a second or two of work."""
 BELOW = 1e-4
 """What layers withstand is checked by a count of roots under a fall of friction that is smaller by this share (1)."""
 

@@ -28,7 +28,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem import Branch, Problem, Resistance, SelectionRule, SelectionTable, registered
 
 MOST_COMPARED = 150
-"""Largest number of branches that Maxwell's rule compares: a minute's work."""
+"""Maxwell's rule compares at most this many branches: a minute's work."""
 
 _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
 

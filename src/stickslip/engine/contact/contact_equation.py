@@ -249,7 +249,7 @@ def choose_branch(run: Run, load: float) -> None:
 
 @kernel
 def settle_branch(run: Run, load: float) -> None:
-    """Set the branch from which a contact in slip meets a jump of the normal load, to `load` (Pa, minus the reference).
+    """Set the branch on which a contact in slip meets a jump of the normal load, to `load` (Pa, minus the reference).
 
     The slip rate moves towards the load. If the new branches leave out the present one, it comes to the nearest branch on its way.
     """

@@ -76,7 +76,7 @@ def is_implicit(run: Run) -> bool:
 
 @kernel
 def settling_rate(run: Run) -> float:
-    """Return the rate (1/s) at which the slip rate settles: (Z + S dmu/dv) / M with mass, S dmu/du / (Z + S dmu/dv) without."""
+    """Return how fast (1/s) the slip rate settles: (Z + S dmu/dv) / M with mass, S dmu/du / (Z + S dmu/dv) without."""
     contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
     resistance = run.params.damping + run.params.normal * run.value.by_rate
     if run.counts.has_inertia == 1:

@@ -42,17 +42,17 @@ MARGIN_OF_BOUNDS = 1.01
 RATIOS = np.array([8.0, 6.4, 5.2, 4.4, 3.8, 3.3, 2.9, 2.5, 2.2, 1.9, 1.65, 1.45, 1.3, 1.2])
 """Radii of the discs to try, in lengths of the step (1)."""
 SHRUNK, SHRUNK_SLOPE = RATIOS ** -float(TERMS), RATIOS ** -float(TERMS - 1)
-"""Factors (1) by which g is smaller on the step than on each of the discs, without and with inertia."""
+"""On the step g is smaller than on each of the discs by these factors (1), without and with inertia."""
 SMALLEST_RATE = 1e-300
 """Least slip rate times tolerance (m/s) in a share's denominator: a contact may slip at a rate of exactly zero for a while."""
 FIRST_RATIO, NEXT_RATIO, STRAIGHT_DISCS = 4.0, 8.0, 9
 """Discs for a bit next to a fold (1): radius of the first in lengths of the bit, factor from one to the next, and their number."""
 ATTEMPTS = 60
-"""Number of times (1) that a step is shortened before the run ends: each time at least to LONGEST of its length."""
+"""Shorten a step this many times (1) before the run ends: each time at least to LONGEST of its length."""
 HOPELESS = 1e100
 """A share above this (1) means that the law has a singularity on the disc, which is therefore too large."""
 SHORTEST, LONGEST = 0.2, 0.9
-"""Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
+"""Shorten a step without a proof at a time by a factor (1) between these two."""
 SAFETY_OF_LENGTH = 0.98
 """Safety factor (1): the estimated length tends to be 2 % too long."""
 NEARLY_SMALL = LONGEST ** (1.0 - TERMS)

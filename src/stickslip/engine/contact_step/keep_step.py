@@ -47,7 +47,7 @@ def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> N
 
 @kernel
 def note_gain(run: Run, rate: Floats) -> None:
-    """Note the factor |2 Z / g'(v) - 1| by which slip multiplies an error of the load.
+    """Note that slip multiplies an error of the load by the factor |2 Z / g'(v) - 1|.
 
     It follows from Z v + S mu(v) = load, and from the wave 2 Z v - load that goes back to the driver. The gain is NaN if friction
     or motion also depends on slip, inertia or a state, or the normal load varies, because the fate of an error then depends on more

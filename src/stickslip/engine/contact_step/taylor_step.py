@@ -49,7 +49,7 @@ SHORTEST_GUESS = 1e-16
 """Least unit, as a share of the way to go (1). After a last step of almost no length the unit would be so small that high orders
 vanish or overflow."""
 HALVINGS_OF_STEP = 40
-"""A step with friction below zero is halved at most this many times (1): 2^-40 of a step is next to nothing."""
+"""Halve a step with friction below zero at most this many times (1): 2^-40 of a step is next to nothing."""
 
 
 @kernel

@@ -71,7 +71,7 @@ class Sight:
 
 
 SLIPS_LOOKED_AT = 65
-"""Number of slips at which the lowest friction of a stride is looked for, and again around the lowest of them."""
+"""Look for the lowest friction of a stride at this many slips, and again around the lowest of them."""
 IN_SIGHT = 10.0
 """Largest factor by which friction may be proven to change more than its slopes suggest: the bound of a smooth law is larger by a
 few."""
@@ -176,7 +176,7 @@ class Creep:
     rate: float  # d ubar / dn, m per round trip
     bend: float  # d2 ubar / dn2, m per round trip squared
     room: float
-    length: float  # of the part of the round trip in which the contact slips, s
+    length: float  # of the part of the round trip with slip, s
     widening: float  # change of length in a round trip, s
     mean_rate: float  # m/s, where the contact slips
     mean_bend: float  # change of mean_rate in a round trip, m/s

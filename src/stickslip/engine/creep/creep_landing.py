@@ -119,7 +119,7 @@ class CreepLanding:
         """Write the round trip on which the leap lands, or what slips of it, from piece n on. Return where the next piece goes.
 
         `edges` are the offsets (s) at which pieces of the pattern begin or end: where one of them is meant, it is taken to the
-        last digit, so that no piece of the pattern is overlapped and no gap is left. A piece of which nothing is left is not kept:
+        last digit, so that no piece of the pattern is overlapped and no gap is left. An empty piece is not kept:
         the queue of echoes could not tell it from the piece that begins there.
         """
         store, close, first = run.store, EDGE * float(np.spacing(self.problem.round_trip_time)), n

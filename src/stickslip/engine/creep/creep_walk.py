@@ -47,7 +47,7 @@ class Walk:
 
     Slip begins at rate 0 where the load has just reached the strength, and one round trip later it is twice as fast as the mean.
     After that, rates above and below the mean alternate from one round trip to the next and from place to place. Nothing depends
-    on them, so the mean replaces them, and the many pieces become one. `core_from` is the offset (s) at which such full creep
+    on them, so the mean replaces them, and the many pieces become one. `core_from` is the offset (s) where such full creep
     began, or None outside it.
     """
 

@@ -22,7 +22,7 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.problem import default_event_rate
 
 LOOKED_AT = 400
-"""Number of pieces in which cycles are looked for."""
+"""Look for cycles in this many pieces."""
 SAME_CYCLE = 1e-6
 """Largest difference between two cycles that count as the same, as a share of their length."""
 RECIPROCALS = 1.0 / np.arange(1, TERMS + 1)
@@ -114,7 +114,7 @@ class Cycle:
 
 
 ROUNDED = 4.0
-"""Number of roundings of the load by which an onset of slip may be early or late."""
+"""An onset of slip may be early or late by this many roundings of the load."""
 LEAST_ONSETS = 3
 """Two whole cycles are compared."""
 

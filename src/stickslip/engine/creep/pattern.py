@@ -54,7 +54,7 @@ class Parts:
         return np.asarray(horner(self.load[part, 1:] * np.arange(1, TERMS), xi) / self.pace(part, xi))
 
     def crossing(self, part: int, level: float) -> float:
-        """Return the place in [0, 1] at which a part that straddles a level (Pa) crosses it."""
+        """Return the place in [0, 1] where a part that straddles a level (Pa) crosses it."""
         shifted, places = self.load[part].copy(), np.empty(MOST_CROSSINGS)
         shifted[0] -= level
         if crossings(shifted, places, np.empty(TERMS)):
@@ -183,7 +183,7 @@ class Pattern:
         return np.asarray(self.parts.speed + self.parts.bend)
 
     def _row(self, ends: Floats) -> NDArray[np.intp]:
-        """Return the number of the stretch, of those that end at `ends` (s), in which each part lies."""
+        """Return for each part the number of its stretch, of those that end at `ends` (s)."""
         return np.searchsorted(ends, self.parts.phase_from + 0.5 * self.width)
 
     def rows_above(self, level: float, ends: Floats) -> NDArray[np.bool_]:

@@ -29,7 +29,7 @@ SMOOTH = 0.05
 is not smooth there.
 """
 INTERPOLATION = 0.1
-"""Share of the tolerance that the interpolation between two states may use."""
+"""The interpolation between two states may use this share of the tolerance."""
 
 
 @dataclass(frozen=True)

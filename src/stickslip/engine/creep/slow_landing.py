@@ -15,7 +15,7 @@ from stickslip.engine.creep.slow_leaps import RATE_SHARE, SlowLeap
 from stickslip.engine.state.layout import Floats
 
 ROUNDINGS = 64.0
-"""Number of roundings of the slip within which a round trip after the landing is compared with the leap."""
+"""A round trip after the landing may differ from the leap by this many roundings of the slip."""
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Floats
 from stickslip.problem import Problem
 
 MOST_OFFSETS = 12_000
-"""Largest number of offsets that are followed: a round trip of more than a thousand pieces is not leaped over."""
+"""Follow at most this many offsets: a round trip of more than a thousand pieces is not leaped over."""
 FASTEST_CHANGE = 0.02
 """Largest relative change of the slip rate in a round trip: above it the motion is not slow."""
 SAFETY_OF_ESTIMATE = 4.0
@@ -31,7 +31,7 @@ BISECTIONS_OF_STEP = 8
 STEP_COST, STRETCH_COST = 400, 10
 """Cost of a step of the integration, in pieces of history that are computed meanwhile, and what each stretch adds to it."""
 FEWEST_STEPS, MOST_STEPS = 10, 250
-"""Number of steps that a leap takes at least, about, and at most: they take a second or two, in which a run cannot be stopped."""
+"""Number of steps that a leap takes at least, about, and at most: they take a second or two, and nothing stops a run meanwhile."""
 RESOLVED = 0.1
 """Share of the tolerance to which slip rates are resolved where several pieces of a round trip are followed as one."""
 PUSHED = 1.0

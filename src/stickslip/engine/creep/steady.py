@@ -44,7 +44,7 @@ from stickslip.problem import DRIVER_KINDS, Problem, Resistance
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 BELOW_REST = 1e-6
-"""Largest share of the slip rate by which a deviation may reach below rest: the contact then rests for a moment of that size."""
+"""A deviation may reach below rest by this share of the slip rate: the contact then rests for a moment of that size."""
 ROOM = 1.001
 """Slopes of friction are bounded over a range of slip rates that reaches this much farther than the deviation."""
 
@@ -124,7 +124,7 @@ class SteadyLeaps(ABC):
 
     @abstractmethod
     def least_slope(self, body: BodyOnCharacteristics) -> float:
-        """Return the slope of friction (Pa s/m or N s/m) from which on the energy of a deviation does not grow."""
+        """Return the least slope of friction (Pa s/m or N s/m) under which the energy of a deviation does not grow."""
 
     @abstractmethod
     def last_slip(self, tried: Tried, energy: float) -> tuple[float, float]:
@@ -147,7 +147,7 @@ class SteadyLeaps(ABC):
 
 
 def _near(run: LeapingRun) -> Iterator[Sliding]:
-    """Return the steady sliding motions, all in the direction in which the whole last round trip has slipped."""
+    """Return the steady sliding motions, all in the direction of slip throughout the last round trip."""
     store, rows = run.store, slice(int(run.count.previous_from), int(run.count.previous_to))
     modes, pieces, mode = store.mode[rows], store.law_piece[rows], int(run.count.mode)
     turns, changes = (modes == -mode).any(), (pieces != pieces[0]).any()

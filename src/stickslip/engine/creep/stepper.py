@@ -1,4 +1,4 @@
-"""Leap over creep: at ends of round trips, from the exact engine into it, with a check where the leap lands."""
+"""Leap over creep. A leap begins where the exact engine has ended a round trip; after the landing the engine checks it."""
 
 from __future__ import annotations
 
@@ -21,32 +21,31 @@ from stickslip.engine.state.layout import NEVER, Counts, Floats
 from stickslip.problem import Problem, Stop, leaps_over
 
 LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
-"""Largest number of round trips between two attempts that found no leap: an attempt takes some milliseconds, as much as thousands
+"""After an attempt that found no leap, wait at most this many round trips: an attempt takes some milliseconds, as long as thousands
 of pieces.
 
-A run that leaps automatically may slide for ever and never creep, so attempts must not take most of its time until there is a
-first leap. After that they are frequent again: if 128 round trips of the creep after a pulse are computed exactly, the run ends
-in an event storm.
+A run that leaps automatically may slide for ever and never creep, so before the first leap attempts must not take most of its time.
+After it they are frequent again: a run that computes 128 round trips of the creep after a pulse exactly ends in an event storm.
 """
 LONGEST_SPENT = 4096
-"""Largest number of round trips that are waited for because a search for a leap took as long as they do."""
+"""Wait at most this many round trips before the next search, however long the last search took."""
 FAST = 1000.0
-"""A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
+"""Attempt a leap only if the contact slips at most this many times as fast as it is pulled: no tolerance accepts faster creep."""
 TRIPS_CHECKED = 1
-"""Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
+"""Compute this many exact round trips after the landing; the last of them must slip as the continued leap predicts."""
 STEPS_OF_CALL = 10_000
-"""Number of steps in one call of the engine."""
+"""The engine takes at most this many steps in one call."""
 
 
 @dataclass
 class LeapStepper:
-    """The leaps of one run from the ends of its round trips, which `schedule.CreepLeaps` hands on when the engine has paused."""
+    """The leaps of one run. `schedule.CreepLeaps` calls it at the end of a round trip, when the engine has paused."""
 
     problem: Problem
     tolerance: float
     patient: bool
     taken: list[tuple[float, ...]]
-    """The rows of `History.creep`, one for each leap: those of `CreepLeaps`, which also restores and shows them."""
+    """The rows of `History.creep`, one for each leap. They belong to `CreepLeaps`, which restores and shows them."""
 
     def __post_init__(self) -> None:
         self.impedance, self.speed = self.problem.body.impedance, abs(self.problem.first_pull_rate)
@@ -54,9 +53,9 @@ class LeapStepper:
         self.over = leaps_over(self.problem)
 
     def at_row_end(self, run: LeapingRun) -> None:
-        """Leap if there is creep, and set when to try again.
+        """Leap if the contact creeps, and say when to try again.
 
-        The run is at the end of a round trip; round trip `pause_at` comes next.
+        The run has just ended a round trip; round trip `pause_at` comes next.
         """
         count = run.count
         if self.over != "creep":
@@ -80,9 +79,9 @@ class LeapStepper:
         count.pause_for = min(2 * count.pause_for, LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
 
     def _leap_while_sliding(self, run: LeapingRun) -> None:
-        """Leap if the contact slides steadily or slowly, and set after how many round trips with slip to look again.
+        """Leap if the contact slides steadily or slowly, and say after how many round trips with slip to look again.
 
-        The engine does not pause meanwhile, so that it may pass over echoes under which nothing slips.
+        The engine does not pause until then, so that it can skip echoes that make nothing slip.
         """
         count = run.count
         found, at_end, cost = self._look(run, int(run.last[0] - TRIPS_CHECKED - 2 - count.trip))
@@ -95,7 +94,7 @@ class LeapStepper:
         count.pause_for = max(1 if lands else min(2 * count.pause_for, again), spent)
 
     def _look(self, run: LeapingRun, most: int) -> LookedFor:
-        """Look for a leap over at most so many round trips of what may be leaped over."""
+        """Look for a leap of at most `most` round trips over the motion that this run may leap over."""
         if self.over == "swinging creep":
             swings = SwingLeaps(self.problem, self.tolerance)
             swing = swings.leap(run, most)
@@ -110,7 +109,7 @@ class LeapStepper:
         return LookedFor(None if slow is None else SlowLanding(slow), leaps.at_end, leaps.cost)
 
     def _lands(self, run: LeapingRun, found: Landing) -> bool:
-        """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
+        """Leap, compute exact round trips after the landing, and return True if they go on as predicted; else undo the leap."""
         count = run.count
         before, begun = run.snapshot(), int(count.trip)
         found.write(run)
@@ -126,7 +125,7 @@ class LeapStepper:
         return False
 
     def _goes_on(self, run: LeapingRun, row: int, *, may_rest: bool) -> bool:
-        """Compute exact round trips up to a row; return False if a failure comes first, or a rest that is leaped over."""
+        """Compute exact round trips up to a row; return False if the run fails before it, or rests and leaps over the rest."""
         while (code := run.step(STEPS_OF_CALL)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
                 run.reserve(2 * len(run.store.pieces))
@@ -138,7 +137,7 @@ class LeapStepper:
         return slice(int(count.previous_from), int(count.previous_to))
 
     def _creeps(self, run: LeapingRun) -> bool:
-        """Return True if the last round trip came just before this one and slipped slowly, in the direction of the driver only."""
+        """Return True if the contact slipped in the last round trip, just before this one, slowly and only as the driver pulls."""
         rows = self._previous(run.count)
         modes, rate = run.store.mode[rows], run.store.rate[rows]
         slow = np.abs([rate[:, 0], rate.sum(axis=1)]).max() <= FAST * self.speed
@@ -150,7 +149,7 @@ class LeapStepper:
         )
 
     def _planner(self, run: LeapingRun, most: int) -> Planner:
-        """Return the planner of a leap of at most the given number of round trips from the coming one on."""
+        """Return the planner of a leap that begins with the next round trip and spans at most `most` of them."""
         averaged = self._averaged(run)
         fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
         return Planner(averaged, abs(float(run.state.slip_now)), self.tolerance, fastest, self._before(run), most)
@@ -162,7 +161,7 @@ class LeapStepper:
         return np.stack([store.phase_to[rows], self.direction * (slip[1:] - slip[0])])
 
     def _averaged(self, run: LeapingRun) -> AveragedCreep:
-        """Return the averaged creep from the coming round trip on."""
+        """Return the averaged creep from the next round trip on."""
         rows, store = run.standing(), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
         load[:, 0] += 2.0 * self.impedance * self.speed * (int(run.count.trip) - store.trip[rows])

@@ -46,7 +46,7 @@ class CreepPlace(NamedTuple):
     slip: float  # U, m
     stiffness: float  # k, N/m
     frequency: float  # w, rad/s; NaN where k is not positive
-    fades: float  # rate at which a swing fades, 1/s
+    fades: float  # rate of fading of a swing, 1/s
     swings: bool  # False if the block is damped so much that it does not swing
     rate: float  # U', m/s
     bend: float  # F'', N/m^2
@@ -115,7 +115,7 @@ class SwingingBlock:
         return math.sqrt(2.0 * action / (self.mass * place.frequency))
 
     def time(self, place: CreepPlace, amplitude: float) -> float:
-        """Return the time (s) at which the slow motion reaches a place."""
+        """Return when (s) the slow motion reaches a place."""
         inertia = -self.mass * place.bend * place.rate**2 / place.stiffness
         small = self.damping * place.rate + inertia + 0.25 * place.bend * amplitude**2
         excess = self.strength(place.slip) + self.spring * place.slip - self.load
@@ -150,4 +150,4 @@ class SwingingBlock:
 
 
 ROUNDS_TO_START = 6
-"""Number of rounds that match the slow motion to the load at the start: each gains as many digits as a cycle is short."""
+"""Match the slow motion to the load at the start in this many rounds: each gains as many digits as a cycle is short."""

@@ -18,7 +18,7 @@ from stickslip.engine.creep.swing_leaps import LastPeriods, SwingLeap, nodes_of,
 from stickslip.engine.state.layout import TERMS, Floats
 
 CONTINUES = 1e-6
-"""Share of the slip of a period by which the period after the landing may differ from what the leap predicts."""
+"""The period after the landing may differ from the leap's prediction by this share of its slip."""
 
 
 @dataclass(frozen=True)

@@ -19,19 +19,19 @@ from stickslip.problem import Problem, default_event_rate
 SLOWLY = 0.01
 """Largest relative change of the frequency in a radian: nearer to where creep turns dynamic each cycle is computed."""
 TOUCHES = 1e-3
-"""Share by which a swing may be larger than one that touches rest: it has just begun from rest, or is about to touch it."""
+"""A swing may be larger by this share than one that touches rest: it has just begun from rest, or is about to touch it."""
 FIRST_STRIDE = 64.0
 """First stride, in slips of the driver in a radian of the free oscillation."""
 AGREE = 1e-9
 """Largest relative difference between the angle over a stride and that over its two halves."""
 CLOSE_LANDING = 1e-13
-"""Share of a stride within which the place of the landing is found."""
+"""Find the place of the landing to this share of a stride."""
 LAG = (10.0 * math.pi) ** 1.5 / (6.0 * math.pi)
 """By this times (w'/w^2)^(3/2) the angle of a swing that touches rest lags, as a share of itself: the rest that it includes."""
 MOST_ROUNDS = 30
 """Largest number of rounds of Newton's method to that place."""
 BISECTIONS_OF_STRIDE = 30
-"""Number of bisections that look for the largest k in a stride."""
+"""Look for the largest k in a stride by this many bisections."""
 MOST_STRIDES = 4000
 """Largest number of strides in a leap."""
 
@@ -135,7 +135,7 @@ class SwingLeaps:
 
     @cached_property
     def fastest(self) -> float:
-        """The slip rate (m/s) from which slip is an event, which no leap passes over."""
+        """Slip at this rate (m/s) or above is an event, and no leap passes over it."""
         return default_event_rate(self.problem)
 
     def leap(self, run: LeapingRun, most: int) -> SwingLeap | None:

@@ -29,7 +29,7 @@ OF_LLVM = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor"}
 """Functions that processors have, and LLVM's names of them."""
 OF_LIBRARY = {name: f"llvm.{name}.f64" for name in ("sin", "cos", "exp", "log")}
 OF_LIBRARY |= {name: name for name in ("expm1", "log1p", "tanh", "asinh", "sinh", "cosh")}
-"""Functions of the mathematical library, and the names by which numba calls them."""
+"""Functions of the mathematical library, and numba's names for them."""
 OPERATORS: dict[type, str] = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 SIGNS: dict[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 

@@ -46,7 +46,7 @@ OFFSET_ROUNDING = 1e-13
 """Rounding of the offsets of consecutive pieces, relative to the length of a round trip."""
 
 PIECES_IN_CACHE = 1024
-"""Number of pieces that are integrated together: it keeps the memory bounded, and the data in the cache."""
+"""Integrate this many pieces together: it keeps the memory bounded, and the data in the cache."""
 
 START = Epoch(0, 0.0)
 """t = 0, the start of the run."""

@@ -41,7 +41,7 @@ class MachineNumbers(NamedTuple):
 
 @entry
 def walk(series: Floats3, pace: Floats2, machine: MachineNumbers, start: Floats1) -> None:
-    """Write the series of rate and push of a machine along parts of its time, each of which begins where the last one ended.
+    """Write the series of rate and push of a machine along parts of its time; each begins where the last one ended.
 
     `series` holds force, pull rate, rate and push (4, parts, TERMS): the first two are given, the others found. A row of `pace`
     holds dt/dxi at the start of a part, half its change, and what the push gains before the part. `start` holds rate and push at

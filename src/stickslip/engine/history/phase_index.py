@@ -1,6 +1,6 @@
 """Index of a history by phase: find the piece that was recorded last at a given phase of the round trip.
 
-While the contact rests nothing is recorded: the load is then an echo of what was recorded last at the same phase. Pieces are
+While the contact rests nothing is recorded: the load is then an echo of the last record at the same phase. Pieces are
 intervals of phase in order of time. They are kept in a segment tree over the phases of all ends of pieces; each node
 lists its pieces in order of time (Bentley 1977, unpublished; see de Berg et al. 2008, Computational Geometry, section 10.3).
 """
@@ -20,9 +20,9 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 NO_RECORDED_PIECE = -1
 """Marks a phase without a recorded piece."""
 HALVINGS_OF_INDEX = 64
-"""Largest number of halvings of an index or of a range of indices: they have 64 bits."""
+"""An index, or a range of indices, is halved at most this many times: it has 64 bits."""
 RECENT_PIECES = 64
-"""Number of recent pieces that are searched first for the waves in the body."""
+"""Search this many recent pieces first for the waves in the body."""
 
 
 @entry

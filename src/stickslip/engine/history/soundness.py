@@ -124,7 +124,7 @@ def _no_interval(begin: Any, end: Any, round_trip: float) -> bool:
 
 
 def check_checkpoint(checkpoint: Checkpoint, history: History, path: Path, *, rtol: float, shortest_event: float | None) -> None:
-    """Refuse a checkpoint from which the engine would read or write outside its tables, or never return. Raises InputError.
+    """Refuse a checkpoint that would have the engine read or write outside its tables, or never return. Raises InputError.
 
     `rtol` and `shortest_event` (s) are those of the run, which its numbers follow from.
     """

@@ -86,7 +86,7 @@ END_ROUNDING = 1e-15
 
 
 def _error_of(history: History, slip: float, time: float) -> str:
-    """Return a few words on the error of leaps: of slip, in its unit, and of time (s), neither of which is known below rounding."""
+    """Return a few words on the error of leaps: of slip, in its unit, and of time (s); both are known up to rounding."""
     least = END_ROUNDING * abs(float(history.slipped(Positions.inside(len(history) - 1, 1.0))[0])), END_ROUNDING * history.duration
     if slip <= least[0] and time <= least[1]:
         return "error no larger than rounding"

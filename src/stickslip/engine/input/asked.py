@@ -34,7 +34,7 @@ class Shaken(Protocol):
 
     @property
     def start(self) -> Floats:
-        """Times (s) at which segments begin."""
+        """When (s) segments begin."""
         ...
 
     @property

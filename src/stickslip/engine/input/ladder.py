@@ -26,7 +26,7 @@ class StartingSide(NamedTuple):
     contact_rate: float
     driver_rate: float
     pulled_at: float
-    """Rate at which the driver is pulled: not the rate of the slab there if the driver gives way."""
+    """Pull rate of the driver: not the rate of the slab there if the driver gives way."""
     stress: float
     far_stress: float | None
     """None for that behind the last layer."""

@@ -92,7 +92,7 @@ class GroundUnderLayers:
 
     @property
     def start(self) -> Floats:
-        """Times (s) at which pieces of its motion begin."""
+        """When (s) pieces of its motion begin."""
         return self.ground.start
 
     def put(self, segments: Any, start: Floats) -> None:

@@ -22,7 +22,7 @@ BELOW, ABOVE = 1e-8, 1e4
 NEVER_RISES, TOO_MANY = 0, -1
 """Results instead of a number of branches: g still falls at the fastest rate, or there are more branches than fit."""
 PROBES = 128
-"""Largest number of slip rates (1) that are tried for one turn: more than the 64 bits that are halved and STEPS together."""
+"""Try at most this many slip rates (1) for one turn: more than the 64 bits that are halved and STEPS together."""
 OCTAVE, STEPS = 2**52, 16
 """A factor of two between slip rates, as a difference of their bits; number of steps of false position after which the search
 returns to halving the bits."""
@@ -75,7 +75,7 @@ def excess_at(g: MemberResistance, rate: float) -> float:
 
 @kernel
 def turn_between(g: MemberResistance, low: float, high: float, at_low: float, at_high: float) -> float:
-    """Return the slip rate between `low` and `high` at which g' changes sign: the last or the first one at which g still rises.
+    """Return the slip rate between `low` and `high` where g' changes sign: the last or the first one where g still rises.
 
     at_low and at_high are g' at the two ends. The bits of the rates are halved until these differ by less than a factor of two.
     Then false position takes over, with the weights of Anderson & Björck 1973 (BIT 13, 253) so that neither end gets stuck.

@@ -53,7 +53,7 @@ class LaneBlock(MemoryRecord):
     in_piece: float  # m: the same with its sign, from what the step leaves in the history
     rate_end: float  # m/s: slip rate at its end
     at_end: Floats = floats_inside(2)  # m, m/s: slip of the law and slip rate there
-    to: float  # 1: place xi at which it ends
+    to: float  # 1: place xi where it ends
     nowhere: Floats = floats_inside(HistoryPiece.total // SIMD_WIDTH + 1)  # room for the history of a lane that takes no step
     targets: float  # addresses of each lane's next free piece of the history
     constants: Floats = floats_inside(0)  # constants of the law, as many as it has

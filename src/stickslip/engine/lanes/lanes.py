@@ -1,9 +1,9 @@
 """Take one explicit step of slip for several members at once, side by side in lanes of the processor's registers.
 
-The series of a step is a long chain in which each coefficient waits for those before it, so that one run alone leaves most of a
+The series of a step is a long chain: each coefficient waits for those before it, so that one run alone leaves most of a
 processor idle. Arithmetic runs on all lanes at once, with the functions of single runs and identical bits, and so does what a step
 leaves in the history. Only what few steps need runs per member: the search for a length that can be proven, and the force that a
-step from rest ignores. A step in which slip may end, or which meets a knot of the law, is left to the engine.
+step from rest ignores. The engine takes a step where slip may end, or that meets a knot of the law.
 """
 
 from __future__ import annotations
@@ -379,7 +379,7 @@ def keep(lanes: LaneBlock, kept: int) -> None:
 
 @inlined
 def inspect(lanes: LaneBlock) -> tuple[int, int]:
-    """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall.
+    """Return the lanes where the slip rate is proven to rise throughout the step, and those where it is proven to fall.
 
     Calculates the slip in the step from what it leaves in the history, as `reduction.grown` does.
     """

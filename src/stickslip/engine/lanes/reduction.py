@@ -298,7 +298,7 @@ def fold_whole(history: HistoryPiece, length: int, round_trip_time: float, end: 
 
 @entry
 def fold_end(table: Integers2, round_trip_time: float, duration: float, code: int, numbers: Floats1) -> None:
-    """Do what `fold_whole` does for a history of which only the last pieces are known, but keep what all pieces determine.
+    """Do what `fold_whole` does for a history whose last pieces alone are known, but keep what all pieces determine.
 
     The run was to last `duration` s and ended with the given code.
     """

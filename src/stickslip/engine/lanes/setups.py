@@ -161,7 +161,7 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     """Return the branches of each member's resistance g(v) = Z v + S mu(v), and what follows from them.
 
     The results are `Setups.branch_table`, the number of branches, 1 for members for which some load has several solutions,
-    and the load minus strength (Pa) at which stick ends.
+    and the load minus strength (Pa) that ends stick.
     """
     branches, one = np.ones(count, np.int64), group.problem
     if group.counts.is_algebraic == 0:

@@ -1,7 +1,7 @@
 """The problems of many members as one `Problem`, whose varied numbers are arrays with one element for each member.
 
 The formulas of bodies, laws and setup accept arrays. Only conditions on a number ("if") cannot. Members are therefore first sorted
-into groups in which every such condition has the same outcome. Scenarios that cannot be treated so are refused (`why_not`).
+into groups with the same outcome of every such condition. Scenarios that cannot be treated so are refused (`why_not`).
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     """Yield the groups of members that differ in numbers only: the kind of a group, and the indices and values of its members.
 
     The kind encodes what the members of a group have in common: whether their drivers are rigid, whether their contacts have mass,
-    and the piece of the law in which they start.
+    and the piece of the law where they start.
     """
     problem, count = _members(scenario, values), len(next(iter(values.values())))
     body, rigid = problem.body, driven_rigidly(problem.body)

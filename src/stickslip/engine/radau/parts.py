@@ -16,7 +16,7 @@ from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import kernel
 
 MOST_PARTS = 400
-"""Largest number of parts (1) that are looked at."""
+"""Examine at most this many parts (1)."""
 MISSED = 1e3
 """A step with a share (1) above this is made shorter: no other part of it is looked at."""
 ROUNDING_OF_TIME, LEAST_WIDTH = 5e-16, 2.0**-50
@@ -29,7 +29,7 @@ NEAR_ZERO = 0.7
 
 @kernel
 def share_of_step(run: Run) -> float:
-    """Return the bound on the residuals of the step as a share of what is allowed; infinite if some part of it has no bound.
+    """Return the bound on the residuals of the step as a share of the allowed one; infinite if some part of it has no bound.
 
     `begin_proof` has begun the proof. Notes the bound, the place up to which the step is proven, and whether a part has no bound
     because the law is singular at the slip rate of zero there.

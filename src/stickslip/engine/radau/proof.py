@@ -33,7 +33,7 @@ from stickslip.foundation.kernels.memory.addresses import ahead, call_radii
 from stickslip.foundation.kernels.memory.pointers import numbers_of, record_at
 
 RESIDUAL_PLACES = 18
-"""Number of places (1) of a part where the residual is measured."""
+"""Measure the residual at this many places (1) of a part."""
 PLACE = 0.5 * np.cos(np.pi * (np.arange(RESIDUAL_PLACES) + 0.5) / RESIDUAL_PLACES)
 """These places (1), relative to the middle of the part and in lengths of it."""
 DISCS = np.array([2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
@@ -41,11 +41,11 @@ DISCS = np.array([2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
 FIRST_DISC = 2
 """The first disc to try (1), as an index of DISCS. If it has a bound, larger ones are tried, else smaller ones."""
 FINE = 4001
-"""Number of places (1) of a part or a circle among which extremes are sought."""
+"""Seek extremes among this many places (1) of a part or a circle."""
 MARGIN_OF_RESIDUAL = 1.02
 """Factor (1) that covers rounding, and extremes between those places."""
 ENOUGH = 1e-4
-"""A hidden residual below this share (1) of what is allowed is small enough: no better disc is sought."""
+"""Seek no better disc if the hidden residual is below this share (1) of the allowed one."""
 CRUDE = 1e-4
 """A residual above this share (1) of the normal load is too large however slow slip is: under rate and state, friction at a slip
 rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
@@ -54,7 +54,7 @@ LONG_STEP = 1e-11
 FAINT = 1e-290
 """And for slip rates (m/s) above this: below, floats lose their digits."""
 MOST_HIDDEN = 0.02
-"""A part that may hide more than this share (1) of what is allowed has no bound: its parts, or a shorter step, hide far less."""
+"""A part that may hide more than this share (1) of the allowed residual has no bound: its parts, or a shorter step, hide less."""
 HOPELESS = 1e100
 """A share (1) above this is infinite: the law has a singularity on the disc."""
 PROVEN = 0.02
@@ -106,7 +106,7 @@ def state_from_middle(run: Run, n: int) -> Floats:
 
 @kernel
 def step_proof(run: Run) -> StepProof:
-    """Return the record of what is proven of the step: it lies behind these polynomials."""
+    """Return the record of the step's proof: it lies behind these polynomials."""
     return step_proof_at(ahead(run.matrix, WIDTH_OF_ROW * STAGES + TERMS * STATES))
 
 
@@ -119,7 +119,7 @@ def begin_proof(run: Run, h: float, force: float) -> None:
 
 @kernel
 def share_of_part(run: Run, start: float, width: float) -> float:
-    """Return the bound on the residuals of a part, as a share of what is allowed, and note that on the contact equation.
+    """Return the bound on the residuals of a part, as a share of the allowed one, and note that on the contact equation.
 
     The polynomials of the step are in run.jet and run.state_jet, or the strength in run.jet at rest. The share is infinite if no
     disc around the part has a bound that is small enough: the residual is not measured then.
@@ -195,7 +195,7 @@ def missing_at(run: Run, rate: float, slope: float, walked: float, load: float) 
 
 @kernel
 def hide(run: Run) -> float:
-    """Bound what may be hidden between RESIDUAL_PLACES, by the best of DISCS; return it as a share of what is allowed.
+    """Bound what may be hidden between RESIDUAL_PLACES, by the best of DISCS; return it as a share of the allowed residual.
 
     run.value and run.ball belong to the middle of the part.
     """
@@ -223,7 +223,7 @@ def hide(run: Run) -> float:
 
 @kernel
 def hide_by_disc(run: Run, disc: int, centre: float) -> float:
-    """Bound what may be hidden by one of DISCS, and keep the least bounds; return their share of what is allowed.
+    """Bound what may be hidden by one of DISCS, and keep the least bounds; return their share of the allowed residual.
 
     `centre` is the residual in the middle of the part, that of the states is in `state_measured`.
     """

@@ -24,7 +24,7 @@ LARGEST_EXPONENT = 1000.0
 TINIEST = 1e-300
 """Number that replaces zero where a disc reaches a singularity, or where a value underflows."""
 MARGIN_OF_PARABOLA = 1.005
-"""Factor (1) by which the parabola for 2^x on [0, 1] is raised to lie above it; it is accurate to 0.3 %."""
+"""Raise the parabola for 2^x on [0, 1] by this factor (1), so that it lies above it; it is accurate to 0.3 %."""
 
 
 def exp_above(x: float) -> float:

@@ -80,7 +80,7 @@ _VANDERMONDE = np.vander(POINT, increasing=True)
 TO_POWERS = np.linalg.inv(_VANDERMONDE)
 """Matrix from values at the points to the coefficients of the polynomial through them."""
 TO_POWERS_SUM = abs(TO_POWERS).sum(axis=1)
-"""Largest factor (1), for each coefficient, by which rounding of the values at the points grows in it."""
+"""In each coefficient, rounding of the values at the points grows by at most this factor (1)."""
 
 
 @kernel

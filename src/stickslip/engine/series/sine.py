@@ -19,7 +19,7 @@ BITS = 33
 ROUNDER = 1.5 * 2.0**52
 """Number (1) that rounds a float to the nearest whole number if it is added and subtracted again."""
 SPLIT = 2.0**20
-"""Unit (1) by which the number of multiples of pi is split into a high and a low part: products with parts of pi are exact."""
+"""Split the number of multiples of pi by this unit (1) into a high and a low part: products with parts of pi are exact."""
 
 
 def _parts(number: Fraction, count: int) -> tuple[float, ...]:

@@ -59,7 +59,7 @@ class Params(MemoryRecord):
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
     tone_frequency: float  # rad/s: angular frequency of the tone in an inflow (`LoadingSegment.tone`)
-    inflow_from: float  # s: phase of the first round trip from which an inflow is added: h/c, or 0 for a slab on moving ground
+    inflow_from: float  # s: an inflow is added from this phase of the first round trip on: h/c, or 0 for a slab on moving ground
     pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
     pressing_frequency: float  # rad/s: angular frequency of that tone
     pressing_phase: float  # rad: phase of that tone at t = 0
@@ -92,7 +92,7 @@ class State(MemoryRecord):
     new_since: float  # s: pieces of the present round trip from this phase on are in no tree of echoes yet
     taken_to: float  # s: echoes of earlier round trips up to this phase have been taken out of the tree that is ahead
     amplified: float  # 1: size in the present piece of load of an error of 1 in the load at the start; NaN if not known
-    gain: float  # 1: factor abs(2 Z / g' - 1) by which the last step of slip multiplies an error of the load; NaN if not known
+    gain: float  # 1: the last step of slip multiplies an error of the load by abs(2 Z / g' - 1); NaN if not known
     slip_since: float  # s: phase when slip began, in round trip `Counts.slip_trip`
     taken: float  # 1: how far (xi) a varying loading has delivered the present source piece; 0 if a new source piece is next
     taken_to_phase: float  # s: phase that belongs to `taken`
@@ -160,7 +160,7 @@ class Counts(MemoryRecord):
     ahead: int  # root of the tree of echoes that it has yet to meet, or -1
     new_from: int  # first piece of the history that is in no tree yet
     lumped: int  # 1 if the present piece of load was replaced by its mean
-    slip_trip: int  # round trip in which slip last began
+    slip_trip: int  # round trip when slip last began
     unresolved_slips: int  # number of slips too short to be resolved, less the number of other slips, never below 0
     pause_at: int  # `run_until` returns before this round trip
     pause_for: int  # number of round trips that the next pause waits, set by the caller
@@ -176,7 +176,7 @@ class Counts(MemoryRecord):
     lumped_since: int  # short pieces are lumped from this round trip on
     unproven: int  # number of implicit steps without a bound
     disc: int  # disc of the last explicit step's proof, as an index of `contact_step.certificate.RATIOS`
-    rough: int  # number of steps in which rounding in the law hides more than the tolerance
+    rough: int  # number of steps where rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
     given: int  # number of states, the last ones, that follow from time alone (`contact.pressing`)
     driven: int  # 1 if the driver is a machine (`waves.driver`)
@@ -311,7 +311,7 @@ class Task(IntEnum):
     NEXT_ECHO = 4
     """Find the next echo that must be met."""
     END_TRIP = 5
-    """Close a round trip in which only such echoes are met."""
+    """Close a round trip that meets only such echoes."""
     BUILD_QUEUE = 6
     """Build the queue of echoes."""
     LOOK_FOR_FOLD = 7
@@ -507,7 +507,7 @@ class StepProof(MemoryRecord):
     duration: float  # s: of the step
     force: float  # Pa or N: the part of the load that the step ignores
     rate_allowed: float  # m/s at slip, Pa or N at rest: allowed error of the slip rate, or of the strength
-    rate_rounding: float  # the same unit: rounding of what is missed, which counts as nothing
+    rate_rounding: float  # the same unit: rounding of the defect, which counts as nothing
     width: float  # 1: length of the part, as a share of the step
     walked: float  # m: slip from the start of the step to the middle of the part
     measured: float  # Pa or N: largest residual at places of the part
@@ -517,7 +517,7 @@ class StepProof(MemoryRecord):
     lacks_bound: float  # 1 if a part has no bound, because the law is singular where the slip rate is zero
     rate_yields: float  # m/s over Pa or N, or 1 at rest: error of the slip rate, or of the strength, per residual
     state_allowed: Floats = floats_inside(STATES)  # units of the states: allowed errors
-    state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of what is missed
+    state_rounding: Floats = floats_inside(STATES)  # units of the states: rounding of the defect
     state_measured: Floats = floats_inside(STATES)  # units of the states over s: as `measured`, for the rates of change
     state_hidden: Floats = floats_inside(STATES)  # units of the states over s: as `hidden`
     state_yields: Floats = floats_inside(STATES)  # s: error of each state per residual

@@ -96,7 +96,7 @@ class Run(MemoryRecord):
     saved: State = inside(State, 2 * TERMS)  # the first SAVED fields of the state that belong to it
     trial: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
     spare: Floats = floats_inside(TERMS)  # further room of this kind
-    machine_force: Floats = floats_inside(TERMS)  # Pa: series of what moves a driver that is a machine, but for its own motion
+    machine_force: Floats = floats_inside(TERMS)  # Pa: series of the push on a driver that is a machine, but for its own motion
     machine_pull: Floats = floats_inside(TERMS)  # m/s: of its pull rate
     machine_rate: Floats = floats_inside(TERMS)  # m/s: of its rate
     machine_push: Floats = floats_inside(TERMS)  # Pa: of the force of its integral gain
@@ -219,7 +219,7 @@ def with_more_rows(waves: Floats, counts: Counts, rows: int) -> Floats:
 
 
 def count_from(counts: Counts, place: Integers, dropped: int) -> None:
-    """Have counts refer to a history without its first pieces, of which so many are dropped; `place` is the new place of each."""
+    """Have counts refer to a history without its first pieces, so many of them; `place` is the new place of each."""
     counts.echo_of = place[counts.echo_of]
     for name in ("length", "trip_from", "previous_from", "previous_to", "new_from", "smooth_to"):
         setattr(counts, name, getattr(counts, name) - dropped)

@@ -27,7 +27,7 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 
 HALVINGS_OF_LOAD = 60
-"""Largest number of times (1) that a piece of load is halved."""
+"""Halve a piece of load at most this many times (1)."""
 
 
 @kernel
@@ -68,7 +68,7 @@ def impedance_at_driver(run: Run) -> float:
 
 @kernel
 def leap(run: Run) -> None:
-    """Carry the echo and the machine over the round trips at rest that were leaped over, in which the machine had settled."""
+    """Carry the echo and the machine over the round trips at rest that were leaped over, after the machine had settled."""
     if run.counts.trip == 0:
         return
     params, before = run.params, run.counts.trip_segment
@@ -101,7 +101,7 @@ def shorten(run: Run, share: float) -> None:
 
 @kernel
 def force_machine(run: Run) -> None:
-    """Write the series of what drives the machine, without its own motion, and of its pull rate, along the piece of load."""
+    """Write the series of the push on the machine, without its own motion, and of its pull rate, along the piece of load."""
     params, segment = run.params, run.loading[run.counts.segment]
     since = (run.counts.trip - segment.trip) * params.round_trip_time + (run.state.phase_from - segment.offset)
     force, pull, met = run.machine_force, run.machine_pull, wave_at_driver(run)

@@ -1,6 +1,6 @@
 """A driver that is a machine, while the contact rests for long: its steady rate, and how long the contact then stays at rest.
 
-The waves of the slab die against the proportional gain, and the driver tends to a rate Vd at which the slab is strained evenly:
+The waves of the slab die against the proportional gain, and the driver tends to a rate Vd that strains the slab evenly:
 the stress grows by G Vd / h, which the integral gain and the far stress make up for, G Vd / h = ki (V0 - Vd) + ds/dt.
 """
 

@@ -1,4 +1,4 @@
-"""Waves in a body of layers: a ladder of cells, each of which a wave crosses in the same time T (Goupillaud 1961).
+"""Waves in a body of layers: a ladder of cells; a wave crosses each in the same time T (Goupillaud 1961).
 
 A round trip of the engine lasts 2 T here, after which the first cell answers. In units of load, f = Z v - sigma travels away from
 the contact and g = Z v + sigma towards it. Where two cells meet, with r = (Z - Z') / (Z + Z'), the nearer cell gets r f + (1 + r) g

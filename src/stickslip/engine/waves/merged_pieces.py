@@ -6,7 +6,7 @@ else from time to time, the waves of the next one are expanded anew as they come
 in xi can describe in every cell are brought as one piece of load. Jumps of the load, and folds, stay where they are.
 
 Up to a fold the slip rate goes as the root of the time left. Steps that come to it in another variable get shorter and shorter;
-the waves are then written in that root, up to the jump in which such steps end. `waves.merged_series` makes the series.
+the waves are then written in that root, up to the jump where such steps end. `waves.merged_series` makes the series.
 
 Where a round trip has too many pieces even so, because the load has as many jumps, short pieces are lumped: the waves of a group
 that is as long as the shortest event are replaced by their means.
@@ -38,11 +38,11 @@ from stickslip.foundation.kernels.kernels import kernel
 FEW, MANY = 4, 32
 """Nothing is merged in a round trip with no more pieces than the first number (1), and growth counts beyond the second."""
 CROWD = 1024
-"""Pieces of a round trip (1) from which on they are merged as often as they can be."""
+"""Merge pieces as often as possible where a round trip has so many (1) or more."""
 PAUSE = 128
 """Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
 HALVINGS_OF_GROUP = 8
-"""Number of times (1) that a group of pieces is halved until one series describes it."""
+"""Halve a group of pieces at most this many times (1), until one series describes it."""
 SHORTER = 0.125
 """Steps that come to a fold are at least this much (1) shorter at its end than at first."""
 LARGEST_TURN = 1.0

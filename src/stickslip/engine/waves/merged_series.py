@@ -24,13 +24,13 @@ from stickslip.foundation.kernels.memory.addresses import room_for
 IN_TIME, TO_FOLD, MEAN = 0, 1, 2
 """Forms of the waves of merged pieces: series in time, series in the root of the time left, or their means."""
 MOST_TOGETHER = 128
-"""Largest number of pieces (1) that are merged to one series."""
+"""Merge at most this many pieces (1) to one series."""
 ENDS = MOST_TOGETHER + 1
 """Largest number of their ends (1)."""
 PIECE_POINTS = 24
 """Number of Chebyshev's points (1) on a new piece."""
 CHECKS = 7
-"""Number of points (1) of each old piece, its ends among them, at which the new series is compared with the old one."""
+"""Compare the new series with the old one at this many points (1) of each old piece, its ends among them."""
 WAVE_ROUNDING = 4e-15
 """Rounding of a wave (1), as a share of the reference strength and of its own size."""
 KEPT_ABOVE = 0.1
@@ -63,7 +63,7 @@ SPECTRUM, POWERS = _spectrum(), _powers()
 
 
 class WaveGroup(NamedTuple):
-    """Name pieces of the history that follow each other, and the form in which their waves are to be written."""
+    """Name pieces of the history that follow each other, and the form of the waves to be written."""
 
     source: int  # the first of them
     many: int  # their number
@@ -152,7 +152,7 @@ def place_points(run: Run, group: WaveGroup, ends: Floats, of_point: Floats, pla
 
 @kernel
 def place_in(run: Run, n: int, left: float) -> float:
-    """Return the place xi in piece n of the history from which a time `left` (s) is left of it."""
+    """Return the place xi in piece n of the history after which a time `left` (s) of it is left."""
     piece = run.history[n]
     at_end = max(piece.speed + 2.0 * piece.bend, 0.0)
     root = at_end + math.sqrt(max(at_end * at_end - 4.0 * piece.bend * left, 0.0))

@@ -82,7 +82,7 @@ def enter_segment(run: Run) -> bool:
 
 @kernel
 def next_change(run: Run) -> float:
-    """Return the phase (s) at which the next segment arrives; inf if in a later round trip, -inf if in an earlier one."""
+    """Return the phase (s) when the next segment arrives; inf if in a later round trip, -inf if in an earlier one."""
     following = run.counts.segment + 1
     if following >= run.segments or run.loading[following].trip > run.counts.trip:
         return math.inf

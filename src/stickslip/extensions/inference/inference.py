@@ -48,7 +48,7 @@ MANY_DEVIATIONS = 1.5
 
 
 def in_shown_unit(name: str, row: Any) -> Any:
-    """Return the row of a searched number in the unit in which numbers of its kind were given, or as it is, in SI."""
+    """Return the row of a searched number in the given unit of numbers of its kind, or as it is, in SI."""
     is_place = name.startswith("body.") and row.unit == "m"
     given = preferred(PLACE if is_place else row.unit, abs(row.value))
     if given is None:
@@ -231,7 +231,7 @@ def warnings_of(study: FittedRecord) -> Iterator[str]:
 
 
 def looks_left(study: FittedRecord) -> Iterator[str]:
-    """Yield a sentence on each look of what is left that is no noise, with what may be done about it."""
+    """Yield a sentence on each look of the residuals that is no noise, with its cure."""
     if study.features is not None:
         return
     free = {one.name for one in study.free}

@@ -20,7 +20,7 @@ from stickslip.problem import in_given_units
 PAGE = "report.html"
 """Name of the page in the folder of a report."""
 MOST_PAIRED = 6
-"""Largest number of numbers that are drawn against each other."""
+"""Draw at most this many numbers against each other."""
 
 
 @in_given_units

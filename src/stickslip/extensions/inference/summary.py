@@ -31,7 +31,7 @@ def show_inference(scenario: Scenario, found: Inference) -> None:
 
 
 def as_options(text: str) -> str:
-    """Return a text in which an argument of `infer` in Python, such as held_out=0.3, is the option of the command line."""
+    """Return a text with the option of the command line in place of an argument of `infer` in Python, such as held_out=0.3."""
     return _ARGUMENT.sub(lambda one: f"--{one[1].replace('_', '-')}{'' if one[2] == 'True' else ' ' + one[2]}", text)
 
 

@@ -47,7 +47,7 @@ def typed(value: object, kind: type[T]) -> T:
 
 
 class Runs:
-    """Runs at one relative tolerance, each of which is made once and shared by figures, tables and claims."""
+    """Runs at one relative tolerance, each made once and shared by figures, tables and claims."""
 
     def __init__(self, rtol: float = 1e-10) -> None:
         self.rtol = rtol

@@ -91,7 +91,7 @@ COMPILED_BEFORE = CompiledBefore()
 
 @cache
 def usable_folder(root: Path) -> Path | None:
-    """Return our folder in the cache, in which only sound files are left, or None if it cannot be used."""
+    """Return our folder in the cache, rid of damaged files, or None if it cannot be used."""
     if Version(jaxlib.version.__version__) < QUIET_SINCE:
         return None
     try:

@@ -79,7 +79,7 @@ class Contact:
     """A grid along the contact of a slab, with the fields of `stickslip.PlanarSlab`, and what varies along it.
 
     A run keeps so many `frames` of each two-way travel time; None stands for the default of `stickslip.simulate`. `along` has a
-    profile for the name of what varies. Later `patches` are on top of earlier ones and of `along`.
+    profile for the name of the number that varies. Later `patches` are on top of earlier ones and of `along`.
     """
 
     nodes: int = declare(*_DECLARED["nodes"])

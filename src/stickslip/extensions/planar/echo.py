@@ -21,7 +21,7 @@ from scipy.special import j1, roots_legendre
 from stickslip.foundation.arrays import Floats
 
 POINTS_OF_J1 = 1024
-"""Largest number of Gauss points of one step of the integral, where J1 oscillates many times within the step."""
+"""A step of the integral has at most this many Gauss points, where J1 oscillates many times within it."""
 EVALUATIONS_TOGETHER = 100_000
 """Evaluations of J1 at a time."""
 
@@ -61,7 +61,7 @@ def echo_weights(frequencies: Floats, steps_per_round_trip: int, two_way_time: f
 
 
 def kernel_spectra(weights: Weights, steps_per_round_trip: int, unique: NDArray[np.intp]) -> NDArray[np.complex128]:
-    """Return Fourier transforms of the weights, in segments of two round trips of which each overlaps the next by one.
+    """Return Fourier transforms of the weights, in segments of two round trips; each overlaps the next by one.
 
     The weights are those of a whole number of round trips. `unique` has for each wavenumber of the contact the column of the
     weights that belongs to it. The result has the shape (round trips, 2, steps_per_round_trip + 1, *unique.shape): late and early.

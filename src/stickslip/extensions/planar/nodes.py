@@ -23,7 +23,7 @@ from stickslip.problem import LOAD, Problem, put_many
 NODES_ALL_CHECKED = 256
 """Up to this many different nodes are all checked as problems of their own; of more, the extremes and some others are."""
 MAY_VARY = ("friction.", "body.normal_stress", "initial.")
-"""Beginnings of the names of what may vary along the contact."""
+"""How names of numbers begin that may vary along the contact."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def _extremes(rows: Floats) -> list[int]:
 
 
 def _of_many(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:
-    """Return what `_of_problems` returns of the problems with these values, each of which is allowed, from arrays."""
+    """Return what `_of_problems` returns of the problems with these values, all allowed, from arrays."""
     count, law = len(next(iter(rows.values()))), problem.friction
     of_law = {name.removeprefix("friction."): values for name, values in rows.items() if name.startswith("friction.")}
     laws, which = [law], np.zeros(count, int)

@@ -47,7 +47,7 @@ COUNTS = ("nodes", "width_nodes")
 MOST_STEPS = 1e12
 """Largest number of time steps of a run: the fastest take some years."""
 MOST_NODES = 2**22
-"""Largest number of nodes: more do not fit into the memory that a run may take."""
+"""A slab has at most this many nodes: more do not fit into the memory that a run may take."""
 WIDEST_STEP = 2.5
 """The steps were seen to be stable up to this phase w dt of the shortest wave in one time step."""
 ENOUGH_NODES = 5.0

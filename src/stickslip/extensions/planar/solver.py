@@ -74,7 +74,7 @@ class Compiled(NamedTuple):
 
 
 MOST_FORMS = 16
-"""Number of compiled forms of runs that are kept at a time; each takes some 7 MB."""
+"""Keep this many compiled forms of runs at a time; each takes some 7 MB."""
 
 
 @lru_cache(maxsize=MOST_FORMS)
@@ -216,7 +216,7 @@ class PlanarSolver:
             return taken
 
     def _turn(self, sent: Any) -> Any:
-        """Return what arrives in the next round trip, of what was sent in this one, and keep the echoes of those after it."""
+        """Return what this round trip sends to the next one, and keep the echoes for those after it."""
         arriving, self.echo = self.functions.turn(sent, self.echo, self.spectra, self.body.reflection)
         return arriving
 

@@ -174,7 +174,7 @@ class PlanarStore(Frames):
             array[first:end] = values
             for chunk in range(first // size, -(-end // size)):
                 file = self.path / name / ".".join(["c", str(chunk), *["0"] * (array.ndim - 1)])
-                if file.exists():  # zarr writes no file for a chunk in which nothing differs from its fill value
+                if file.exists():  # zarr writes no file for a chunk that holds its fill value only
                     sync(file)
 
     @override

@@ -35,13 +35,13 @@ if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver
 
 SENT = "waves/sent"
-"""Array of what the contact has sent."""
+"""Array of the waves that the contact has sent."""
 CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
 CHANGES = ("duration", "residual", "status", "status_message", "status_ok")
 """Attributes that may change."""
 LONGEST_TITLE = 200
-"""Largest number of characters of a title that is read from a folder."""
+"""Read at most this many characters of a title from a folder."""
 UNTITLED = "stickslip run: PlanarSlab"
 """Beginning of the title in the folder of a run that has none."""
 PLANAR_FORMAT = FolderFormat("stickslip_planar", 1, CHANGES)
@@ -178,7 +178,7 @@ def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | 
 
 
 def check_python(path: Path) -> None:
-    """Refuse a Python without assertions, by which zarr cannot read groups inside a group. Raises InputError."""
+    """Refuse a Python without assertions: with it zarr cannot read groups inside a group. Raises InputError."""
     if not __debug__:
         raise InputError(
             f"{path}: zarr needs the assertions of Python for {PLANAR_FORMAT.what}: unset PYTHONOPTIMIZE, or leave out python -O"

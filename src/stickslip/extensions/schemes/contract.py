@@ -118,7 +118,7 @@ class SchemeContact(Protocol):
 class Energies(NamedTuple):
     """The balance of a scheme's own energy since t = 0, J/m^2: stored + friction + damped - driver is constant.
 
-    Each scheme counts in the way in which the balance of its discrete equations closes to rounding: with velocities of half steps,
+    Each scheme counts so that the balance of its discrete equations closes to rounding: with velocities of half steps,
     the norm of its differences, or means of two tractions. All of these tend to the energies of the exact slab.
     """
 

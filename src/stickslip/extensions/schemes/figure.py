@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 MOST_CURVES = 4
 """Largest number of schemes whose curves are drawn."""
 EXACT_TIMES = 2000
-"""Number of times at which each exact curve is evaluated."""
+"""Evaluate each exact curve at this many times."""
 STYLES = ("-", "--", ":", "-.")
 """Styles of the lines of schemes, and of the exact solutions of rules other than the problem's own."""
 

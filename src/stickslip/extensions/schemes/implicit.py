@@ -42,7 +42,7 @@ class Elements(ABC):
         self.contact_rate, self.traction, self.excess_before = 0.0, grid.stress, 0.0
 
     def solver(self, matrix: csc_matrix, weight: float) -> None:
-        """Factorise the matrix of a step for the velocities at its end, in which the new traction has a weight."""
+        """Factorise the matrix of a step for the velocities at its end; the new traction has a weight in them."""
         system = csc_matrix(matrix).tolil()
         if self.grid.is_rigid:
             system[-1, :] = 0.0

@@ -16,9 +16,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 
 TOLERANCE = 0.05
-"""Largest share of the exact values by which a series may be off, if no other is given."""
+"""A series may be off by this share of the exact values, if no other is given."""
 EXPLAINS = 0.2
-"""Factor by which a convention must lessen the distance from the exact series to be named."""
+"""Name a convention if it lessens the distance from the exact series by this factor."""
 QUANTITIES_JUDGED = {"slip": "m", "slip rate": "m/s", "traction": "Pa"}
 """What a series has, with units."""
 SIDES = "of two elastic sides each slips by half, and the jump between them counts"
@@ -29,12 +29,12 @@ CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {
     "twice the exact": ("divide by 2", lambda own, exact: 0.5 * own),
     ZERO: ("subtract", lambda own, exact: own - float(np.median(own - exact))),
 }
-"""Conventions in which a right series may be written: what it then has, the cure, and the series in the convention used here."""
+"""A right series may be written in other conventions: what it then has, the cure, and the series in the convention used here."""
 
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """A series beside the exact solution under the problem's own selection rule, and the largest share by which it may be off."""
+    """A series beside the exact solution under the problem's own selection rule, and the largest share that it may be off by."""
 
     measured: MeasuredSeries
     paths: RulePaths

@@ -76,7 +76,7 @@ def period_of(law: FrictionLaw) -> float:
 
 
 def arrest_in(time: Floats, rate: Floats, threshold: float) -> float:
-    """Return the time (s) from which on |v| stays at or below a threshold (m/s); NaN if it never slips or slips at the end."""
+    """Return the time (s) after which |v| stays at or below a threshold (m/s); NaN if it never slips or slips at the end."""
     slips = np.flatnonzero(np.abs(rate) > threshold)
     return float(time[slips[-1] + 1]) if slips.size and slips[-1] + 1 < len(time) else math.nan
 
@@ -123,7 +123,7 @@ class MeasuredSeries:
 
     @cached_property
     def away(self) -> NDArray[np.bool_]:
-        """True at times away from the exact shocks, at which slip rate and traction are compared."""
+        """True at times away from the exact shocks, when slip rate and traction are compared."""
         shocks = self.exact.shocks.time.to_numpy(float)
         return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadow).all(axis=1))
 
@@ -145,7 +145,7 @@ class MeasuredSeries:
 
     @property
     def shadow(self) -> float:
-        """Time on either side of a shock in which the slip rate is not compared, s."""
+        """Do not compare the slip rate within this time on either side of a shock, s."""
         return shadow(self.series, self.exact)
 
     @property

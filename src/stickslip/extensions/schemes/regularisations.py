@@ -1,6 +1,6 @@
 """Regularisations as schemes of the lab: the exact contact with the little inertia or memory that its selection rule replaces.
 
-Their *size* is the small time (s) in which the slip rate settles; here it is the step of the mesh. A contact mass of Z size and a
+Their *size* is the small settling time (s) of the slip rate; here it is the step of the mesh. A contact mass of Z size and a
 lag of `size` obey the same equation, Z size dy/dt = load - g(y), with y the slip rate v for the mass, and for the lag the delayed
 rate w on which friction depends. At Courant number 1/2 the mass is rho dx/2, that of the contact node of a grid with lumped masses.
 Sources: Campillo et al. 1996, section 3; for the lag Hess & Soom 1990, J. Tribol. 112, 147.

@@ -1,7 +1,7 @@
 """List the numerical schemes, and run one on a grid, with the friction of a problem at its contact node.
 
 If friction falls fast enough with the slip rate, several slip rates solve the contact equation `impedance v + S mu(u, v) = load` of
-a step. A program then takes one of them, by the way in which it searches. `SEARCHES` has the usual ways.
+a step. A program then takes one of them, by its way of searching. `SEARCHES` has the usual ways.
 """
 
 from __future__ import annotations

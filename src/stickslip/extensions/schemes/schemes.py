@@ -48,7 +48,7 @@ SETTLES = f"{NONE}, but tends to an answer of its own"
 class Schemes(Study):
     """The result of `schemes` and `judge_series`: the exact run under each selection rule, and the series that were finished.
 
-    `interrupted` is True if Ctrl-C ended the study before all meshes were done. `tolerance` is the largest share by which a series
+    `interrupted` is True if Ctrl-C ended the study before all meshes were done. `tolerance` is the largest share that a series
     of another program may be off, None if the series are those of schemes.
     """
 

@@ -47,7 +47,7 @@ def read_series(path: str | Path, *, cells: int = 0, columns: Mapping[str, str |
         found[name] = values
     if in_mpa and not is_of_scec(table.header):  # else its unit is known already
         found["shear_stress"] = 1e6 * found["shear_stress"]
-    if not in_mpa:  # the benchmarks say in which units their columns are
+    if not in_mpa:  # the benchmarks name the units of their columns
         table.warned()
     last = np.append(np.diff(found["time"]) != 0.0, True)
     time, slip, rate, traction = (values[last] for values in found.values())

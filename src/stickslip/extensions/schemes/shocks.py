@@ -17,7 +17,7 @@ from stickslip.solution import Solution
 NEAR_POWER = 1.5
 """A number whose ratio to the expected one lies within this factor of a power of 1000 has a wrong unit."""
 SMALLER = {1e-6: "M", 1e-3: "k", 1e3: "m", 1e6: "micro"}
-"""The prefix of the unit in which a number must have been written, by the factor by which it is wrong."""
+"""The prefix of the unit that a number must have been written in, by the factor that it is wrong by."""
 
 
 def check_length(series: Series, duration: float, whose: str = "the run") -> None:
@@ -67,7 +67,7 @@ def _refuse(series: Series, what: str) -> NoReturn:
 CELLS_NEAR_SHOCK = 4.0
 """Travel time, in cells, on either side of a shock over which a grid spreads it."""
 MADE = 0.5
-"""Smallest share of the exact change of slip rate at which a shock counts as made."""
+"""A shock counts as made if the slip rate changes by at least this share of the exact change."""
 
 SHOCK_COLUMNS = {
     "scheme": ("", "name of the scheme, or of the program"),
@@ -150,7 +150,7 @@ def _beside(shock: Shock, series: tuple[Floats, Floats], how: tuple[Solution, fl
 
 
 def _middle(time: Floats, rate: Floats, turned: np.ndarray[tuple[int], np.dtype[np.intp]], level: float) -> Floats:
-    """Return the times at which the slip rate passes a level before each of some samples."""
+    """Return when (s) the slip rate passes a level before each of some samples."""
     before = np.maximum(turned - 1, 0)
     rise = rate[turned] - rate[before]
     share = np.divide(level - rate[before], rise, out=np.zeros_like(rise), where=rise != 0.0)

@@ -44,7 +44,7 @@ STRICT = 0.125
 SAME_PATH = 1e-8
 """Paths whose distance is below this share of the largest mean slip, and of the largest mean slip rate, are the same."""
 UNIFORM = 20_001
-"""Number of evenly spaced times at which exact paths are compared; the breaks of their histories are added."""
+"""Compare exact paths at this many evenly spaced times; the breaks of their histories are added."""
 NONE, UNTOLD = "none", "cannot tell"
 """Verdicts on a series that follows no rule, and on one that could follow all of them."""
 

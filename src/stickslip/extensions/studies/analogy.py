@@ -45,7 +45,7 @@ WITHIN = 0.1
 RTOL_OF_ANALOGY = 1e-8
 """Default relative tolerance of the runs, far below `WITHIN`."""
 REFUSED, NO_EVENT = "refused", "no slip event"
-"""Status at points at which the problem is not valid, and of runs in which nothing slips."""
+"""Status at points where the problem is not valid, and of runs without slip."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,7 +53,7 @@ class Analogy(StudyWithDataset):
     """The result of `analogy`: the runs of slab and block over two parameters of a problem, x and y.
 
     The `table` has one row for each point, x varying fastest. Columns: the two parameters (SI); weakening_slip = -S (dmu/du) h/G at
-    the start, and weakening_rate = -S (dmu/dv)/Z at the slip rate at which it is largest; for the first slip event ``slip_`` (m),
+    the start, and weakening_rate = -S (dmu/dv)/Z at the slip rate that makes it largest; for the first slip event ``slip_`` (m),
     ``peak_rate_`` (m/s), ``duration_`` (s), ``pulses_``, ``shocks_`` and ``status_``, each for slab and block; slip_ratio,
     peak_rate_ratio and duration_ratio, slab over block; stands, True if the block represents the slab, with ratios `within` their
     tolerance. Values are NaN if there is no event, and the duration also if the event does not end in the run.

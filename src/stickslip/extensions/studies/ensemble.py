@@ -159,7 +159,7 @@ class Ensemble(RunsCompared):
 
     @property
     def predicted_exponent(self) -> float:
-        """The slope (1/s) of the predicted growth, at those times of `exponent` at which it is small too; NaN if unknown."""
+        """The slope (1/s) of the predicted growth, at those times of `exponent` when it is small too; NaN if unknown."""
         largest = self.separation.saturation / np.abs(self.pushes).max()
         small = self.growth[self.growth.small & (self.growth.predicted < largest)]
         return slope(small.time.to_numpy(), small.predicted.to_numpy())
@@ -231,7 +231,7 @@ def ensemble(
     max_events : int, optional
         Number of slip events after which each run ends.
     seed : int
-        Seed of the random numbers from which signs and sizes of the disturbances are drawn.
+        Seed of the random signs and sizes of the disturbances.
     event_rate : float or str, optional
         Slip rate (m/s, or a text with a unit) above which slip counts as an event, as in `Solution.catalogue`.
     progress : bool or callable, optional
@@ -241,7 +241,7 @@ def ensemble(
         Largest number of pieces of history of one run; default 200 000, and 2 000 000 for all runs together. A run that needs more
         ends early, and all runs are compared up to that time.
     checkpoint : str or Path, optional
-        Folder in which the runs are kept, one file each. If the program is killed, the same call takes them up from there, and its
+        Folder that keeps the runs, one file each. If the program is killed, the same call takes them up from there, and its
         result is the same, bit for bit.
 
     Returns

@@ -82,7 +82,7 @@ class Separation(NamedTuple):
     """Separation of the members' loads from the undisturbed load.
 
     `apart` (Pa or N) has one row for each member and one column for each interval of time. Each value is exceeded at a tenth of the
-    times in its interval: it is close to the largest one, but leaves out the times at which a shock is late. `time` (s) is the end
+    times in its interval: it is close to the largest one, but leaves out the times when a shock is late. `time` (s) is the end
     of each interval. A separation of `saturation` (Pa or N), a tenth of the range of the undisturbed load, or more is no longer
     small; one up to `noise` (Pa or N) is rounding.
     """
@@ -94,7 +94,7 @@ class Separation(NamedTuple):
 
     @property
     def small(self) -> NDArray[np.bool_]:
-        """True for the intervals before the first in which the separation of a member is saturated or only rounding."""
+        """True for the intervals before a member's separation is first saturated or only rounding."""
         fine = ((self.apart < self.saturation) & (self.apart > self.noise)).all(axis=0)
         return np.logical_and.accumulate(fine)
 

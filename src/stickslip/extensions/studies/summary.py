@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from stickslip.problem.scenarios import Scenario
 
 EVENTS_SHOWN = 12
-"""Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
+"""Show this many events of an ensemble: the first ones, or those around the first event where members differ."""
 
 
 def show_comparison(found: Comparison) -> None:

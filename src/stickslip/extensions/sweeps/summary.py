@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 REASONS_SHOWN = 5
-"""Number of reasons for failures, and of slow members, that are shown."""
+"""Show this many reasons for failures, and slow members."""
 LARGEST_COUNT = 12
 """Largest number of distinct values of a quantity that is reported case by case; one with more is a number, not a case."""
 SLOW, NOTICED = 20.0, 0.5

@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from stickslip.solution import Solution
 
 _POINTS = 1201
-"""Number of slip rates at which the curve is evaluated."""
+"""Evaluate the curve at this many slip rates."""
 _ROOM = 1.25
 """The curve ends at this multiple of the largest slip rate of interest, so that all folds, jumps and the run lie inside."""
 _TINY = 1e-3
 """If the loads span less than this share of the static strength, they are drawn as differences from it."""
 _SETS = 8
-"""Number of slips at which the set is drawn if friction depends on slip."""
+"""Draw the set at this many slips if friction depends on slip."""
 _GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 """The golden ratio; its multiples, less their whole parts, spread evenly without a period."""
 _ARROWS = 0.3, 14
@@ -163,7 +163,7 @@ def draw_admissible(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axe
 
 
 class _Scales:
-    """The units in which slip rates and loads of a dataset are drawn; near the strength loads are differences from it."""
+    """The units of the drawn slip rates and loads of a dataset; near the strength loads are differences from it."""
 
     def __init__(self, dataset: xr.Dataset) -> None:
         names = ("excess", "path_excess", "set_excess", "set_strength")
@@ -182,7 +182,7 @@ class _Scales:
         return (sign * np.asarray(excess) + (sign * self.strength - self.origin)) / self.load[1]
 
     def rates(self, values: Any) -> Floats:
-        """Return slip rates (m/s) in the unit in which they are drawn."""
+        """Return slip rates (m/s) in the unit of the drawing."""
         return np.asarray(values, float) / self.rate[1]
 
 

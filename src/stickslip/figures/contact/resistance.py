@@ -94,7 +94,7 @@ def draw_resistance(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 
 def load_unit(dataset: xr.Dataset) -> tuple[str, float]:
-    """Return the unit (name, size in Pa) in which the loads of all cases are drawn."""
+    """Return the unit (name, size in Pa) of the drawn loads of all cases."""
     return unit_shown(*(values for name, values in dataset.data_vars.items() if str(name).endswith("_resistance")))
 
 

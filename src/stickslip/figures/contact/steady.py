@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 RATES_DRAWN = 801
-"""Number of slip rates at which friction is drawn."""
+"""Draw friction at this many slip rates."""
 AROUND, FAST = 10.0, 10.0
-"""Factor by which the drawn slip rates go beyond those that are named; and the rate (m/s) they reach if no rate is critical."""
+"""Draw slip rates beyond those that are named, by this factor; and the rate (m/s) they reach if no rate is critical."""
 
 
 def steady_data(found: SteadySlidings, title: str = "") -> xr.Dataset:

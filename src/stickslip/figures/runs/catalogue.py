@@ -60,11 +60,11 @@ TITLES_OF_ZOOMS |= {"E": "slips", "F": "recurrence times", "G": "return map"}
 WHOLE_WIDTH = 7.0
 """Width (inches) of a figure below which it is narrow: letters are smaller, and labels have several lines."""
 THREE, TWO = 5.4, 3.0
-"""Widths (inches) of a figure from which three, or two, panels and their labels stand side by side."""
+"""A figure of these widths (inches) or more has three, or two, panels and their labels side by side."""
 ROW, KEY = 1.1, 0.75
 """Heights (inches) of the lowest row of panels with its labels, and of title and key together."""
 HELD = "\0"
-"""Stands for a space at which no line may end."""
+"""Stands for a space where no line may end."""
 LETTERS_OF_LINE = 17
 """Number of letters in a line of a title or a label of a panel in a narrow figure."""
 
@@ -183,7 +183,7 @@ def _make_small(axes: Axes, line: int) -> None:
 
 
 def _in_lines(text: str, length: int) -> str:
-    """Return a text in lines of so many letters, none of which begins inside a formula."""
+    """Return a text in lines of so many letters; none begins inside a formula."""
     joined = re.sub(r"\$[^$]*\$", lambda found: found[0].replace(" ", HELD), text)
     return textwrap.fill(joined, length, break_long_words=False).replace(HELD, " ")
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def edge_data(found: Edge) -> xr.Dataset:
-    """Return the runs in the order in which they were made (parameter in SI, and what they gave) and the last bracket."""
+    """Return the runs in the order that they were made in (parameter in SI, and what they gave) and the last bracket."""
     values = found.table.iloc[:, 0].to_numpy(float)
     words = parameter_name(found.parameter, found.meaning)
     given = quantity("run", found.table.iloc[:, 1].to_numpy().astype(float), found.what, "", "1")
@@ -36,7 +36,7 @@ def edge_data(found: Edge) -> xr.Dataset:
 
 @styled
 def draw_edge(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
-    """Draw what each run gave against the parameter, and the bracket in which it changes."""
+    """Draw what each run gave against the parameter, and the bracket where it changes."""
     axes = one_panel((5.6, 3.0), **place)
     unit = unit_shown(dataset["parameter"])
     values, low_high = shown(dataset["parameter"], unit), shown(dataset["bracket"], unit)

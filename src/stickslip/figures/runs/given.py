@@ -1,4 +1,4 @@
-"""The curves of what is given over time: loading histories as they are drawn."""
+"""Loading histories as they are drawn."""
 
 from __future__ import annotations
 

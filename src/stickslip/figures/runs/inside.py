@@ -246,7 +246,7 @@ def contact_variables(readings: Readings, start: float, end: float, names: Seque
 
 
 class Scales:
-    """The units in which times, distances and stresses of a dataset are drawn.
+    """The units of the drawn times, distances and stresses of a dataset.
 
     Stresses that hardly change are drawn as changes from the first one.
     """
@@ -272,7 +272,7 @@ class Scales:
         return f"{what}{name} ({self.stress_unit})"
 
     def stresses(self, values: Any) -> Floats:
-        """Return stresses (Pa) in the unit, and from the origin, in which they are drawn."""
+        """Return stresses (Pa) in the unit, and from the origin, of the drawing."""
         return np.asarray((np.asarray(values, float) - self.offset) / self.stress)
 
     def set_places(self, axes: Axes, *, named: bool = True) -> None:

@@ -64,7 +64,7 @@ def _draw_packed(axes: Axes, place: Floats, height: Floats, turns: NDArray[np.in
 
 
 def _turns(values: Floats, least: float) -> NDArray[np.intp]:
-    """Return the places at which values turn between swings of at least `least`."""
+    """Return the places where values turn between swings of at least `least`."""
     found, way, end = list[int](), 0, 0
     low = high = 0
     numbers = values.tolist()

@@ -1,1 +1,1 @@
-"""Kernels: functions of which machine code is made when the package is built, how they see memory, and how they are called."""
+"""Kernels: functions that become machine code when the package is built, how they see memory, and how they are called."""

@@ -1,4 +1,4 @@
-"""Kernels: functions of which machine code is made when the package is built (`engine.build`).
+"""Kernels: functions that become machine code when the package is built (`engine.build`).
 
 Compiled code calls them by name. Python calls those that are an `entry`, through ctypes, which lets other threads go on meanwhile.
 """
@@ -30,7 +30,7 @@ class Kernel:
 
     @property
     def name(self) -> str:
-        """The name by which its machine code is kept."""
+        """The name of its machine code in the cache."""
         return f"{self.__module__.rsplit('.', 1)[-1]}.{self.__name__}"
 
 

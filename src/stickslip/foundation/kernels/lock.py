@@ -4,7 +4,7 @@ A thread may take it again while it holds it. What has been made is looked up wi
 waits for one that compiles.
 
 Who holds the lock must wait for nothing but the compiler and the disk: above all for no `cached_property` of a problem or a
-solution, each of which has a lock of its own in Python 3.11.
+solution; each has a lock of its own in Python 3.11.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Made = TypeVar("Made")
 
 
 class _Kept(Generic[Made]):
-    """Something that was made, and the turn (1) in which it was last asked for."""
+    """Something that was made, and the turn (1) when it was last asked for."""
 
     __slots__ = ("asked", "made")
 

@@ -1,4 +1,4 @@
-"""Formats of text in which records come: each is recognised by its first lines, and read as headings and rows of cells.
+"""Formats of text for records: each is recognised by its first lines, and read as headings and rows of cells.
 
 To add one, write a module with `begins` and `sheet`, and name it in `FORMS`. `foreign` names the files that are no text.
 """

@@ -96,7 +96,7 @@ class _Segment(NamedTuple):
 
     @property
     def begun(self) -> datetime | None:
-        """The time of day at which the segment begins, if its header says so."""
+        """The time of day when the segment begins, if its header says so."""
         date, time = ((self.listed(key) or [""])[0] for key in ("Date", "Time"))
         whole, _, rest = time.replace(",", ".").partition(".")
         try:

@@ -68,7 +68,7 @@ class Asked(NamedTuple):
     most: int
 
     def count(self, cells: Sequence[str]) -> int:
-        """Return how many cells may be headings of what is looked for."""
+        """Return how many cells may be headings of the columns that are looked for."""
         few = cells[:MOST_COLUMNS]
         return count_named(few, self.wanted) + self.named.among(few)
 

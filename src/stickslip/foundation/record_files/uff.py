@@ -12,7 +12,7 @@ from stickslip.foundation.headings import MOST_COLUMNS
 from stickslip.foundation.record_files.sheet import Asked, Lines, Sheet, number_in, whole_in
 
 MOST_NUMBERS = 50_000_000
-"""Largest number of numbers that are read from a file: they are kept until all functions are there."""
+"""Read at most this many numbers from a file: they are kept until all functions are there."""
 _EDGE = "-1"
 """The line before and behind each dataset."""
 CODE_OF_TIME = 17
@@ -30,7 +30,7 @@ _NOTHING = ("", "none", "no label", "unknown")
 
 @dataclass
 class _Function:
-    """A dataset 58: names of what was measured, its unit, the numbers, and their times: first and step, or one for each."""
+    """A dataset 58: names of the measured quantity, its unit, the numbers, and their times: first and step, or one for each."""
 
     names: list[str]
     unit: str

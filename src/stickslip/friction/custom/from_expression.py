@@ -177,7 +177,7 @@ class FromExpression(RemembersSlip):
         return ""
 
     def _check_dimensions(self, tree: Expression, units: Mapping[str, str], state: str | None) -> None:
-        """Check the units of a formula in which slip is a length, or an angle if the numbers agree with that alone."""
+        """Check the units of a formula: slip is a length, or an angle if the numbers agree with that alone."""
         try:
             check_dimensions(tree, units, state)
         except InputError:

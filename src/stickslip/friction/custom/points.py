@@ -28,9 +28,9 @@ Along = Literal["slip", "slip_rate"]
 """The two possible variables of friction, by the names of columns in files."""
 
 LARGEST_FILE = 100_000_000
-"""Size (bytes) of the largest file of points that is read."""
+"""Refuse a file of points that is larger than this (bytes)."""
 MOST_POINTS = 1_000_000
-"""Largest number of measured points; a fit to that many takes minutes."""
+"""Take at most this many measured points; a fit to that many takes minutes."""
 ALONG: tuple[Along, ...] = ("slip", "slip_rate")
 STRESSES = ("shear_stress", "normal_stress")
 """Columns whose ratio is friction, where no column holds friction itself."""

@@ -30,7 +30,7 @@ STATES = np.concatenate((-MAGNITUDES_OF_STATE[::-1], [0.0], MAGNITUDES_OF_STATE)
 ROUNDS, SETTLED = 200, 1e-14
 """Two states must settle within this many rounds; they have settled when neither changes by more than this (relative, 1)."""
 HALVINGS_OF_FLOATS = 200
-"""After this many halvings an interval between two floats cannot be smaller."""
+"""An interval between two floats cannot be smaller after this many halvings."""
 
 
 def split(text: str) -> tuple[str, ...]:

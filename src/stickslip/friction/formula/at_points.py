@@ -24,7 +24,7 @@ class AtPoints(NamedTuple):
     steps: Integers2  # tape.Tape
     values: Floats1
     spans: Integers2  # (members, 2): first row of the formula of each member, and the end
-    numbers: Floats2  # (members, numbers): the law's numbers, of which the slip (m) at the reference point is the last
+    numbers: Floats2  # (members, numbers): the law's numbers, the slip (m) at the reference point last
     room: Floats2  # (NUMBER_OF_VARIABLES + nodes + 1, 4): rows as in `operations.changes`: variables, nodes, a limited argument
 
 

@@ -21,7 +21,7 @@ class OnCells(NamedTuple):
     steps: Integers2  # tape.Tape
     values: Floats1
     spans: Integers2  # (members, 2): first row of the formula of each member, and the end
-    numbers: Floats3  # (2, members, numbers): low and high ends of the law's numbers, of which the slip is the last
+    numbers: Floats3  # (2, members, numbers): low and high ends of the law's numbers, the slip last
     room: Floats2  # (nodes + 1, COUNT + 1): rows as in `operations.enclosures`, and one with the member whose rows are there
 
 

@@ -31,7 +31,7 @@ from stickslip.friction.formula.operations.operation import FORMULA_UNITS, Dimen
 from stickslip.friction.formula.operations.powers import POW
 
 LONGEST = 1000
-"""Largest number of characters in an expression, which is untrusted."""
+"""An expression, which is untrusted, has at most this many characters."""
 DEEPEST = 100
 """Largest number of nested levels, within Python's limit of recursion; a sum of n terms has n levels."""
 MOST_OPERATIONS = 250

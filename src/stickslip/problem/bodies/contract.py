@@ -167,7 +167,7 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
-        """Return what the engine adds at the contact of what a driver sends, and of its growth: nothing if layers bring it."""
+        """Return the load from the driver that the engine adds at the contact, and its growth: nothing if layers bring it."""
         ...
 
     def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:
@@ -325,7 +325,7 @@ class WithOneDriver(WithNormalLoad):
     has_ground: bool = True
 
     def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
-        """Return all of what the driver sends, and its growth."""
+        """Return all load that the driver sends, and its growth."""
         return sent
 
     def rates_at_start(self, rate: float, shear: float) -> list[tuple[float, float]]:

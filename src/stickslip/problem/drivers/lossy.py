@@ -39,7 +39,7 @@ class LossyDriver(Driver):
         return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
 
     def varying_inflow(self, problem: Problem) -> Inflow:
-        """Return the inflow of far stress and pull rate together, one of which varies."""
+        """Return the inflow of far stress and pull rate together; one of them varies."""
         body, far = problem.body, problem.far_stress
         gain = self.gain(body)
         if isinstance(far, LoadingHistory):

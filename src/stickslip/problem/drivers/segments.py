@@ -20,7 +20,7 @@ def scaled(history: float | LoadingHistory, gain: float) -> tuple[list[Segment],
 
 
 def in_parts(value: float | LoadingHistory | None) -> tuple[Floats, Tone]:
-    """Return the starts (s), values and slopes (rows) of what may vary in time, and its tone; None stands for 0."""
+    """Return the starts (s), values and slopes (rows) of a history, and its tone; None stands for 0."""
     segments, tone = scaled(value or 0.0, 1.0)
     return np.array(segments).T, tone
 

@@ -14,7 +14,7 @@ class LeapsOfRigid(LeapsOfBody):
     creep: ClassVar[Over] = "swinging creep"
 
     def missing_for_creep(self, problem: Problem) -> str:
-        """Return what a block lacks for leaps over creep, in which it swings."""
+        """Return what a block lacks for leaps over creep: it swings there."""
         law = problem.friction
         if not law.depends_on_slip or law.depends_on_rate or law.states:
             return f"a friction law of slip alone ({type(law).__name__} is not one)"

@@ -27,7 +27,7 @@ SUFFIXES = (".csv", ".parquet", ".nc")
 LONGEST_HEADER = 10_000
 """Largest length, in bytes, of the first line of a catalogue."""
 AT_A_TIME = 50_000
-"""Number of rows converted from one format to another at a time, which bounds the memory."""
+"""Convert this many rows from one format to another at a time, which bounds the memory."""
 
 CHUNK = 1024
 """Number of rows in a chunk of a netCDF file, whose dimension has no fixed size."""

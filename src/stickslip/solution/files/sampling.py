@@ -25,7 +25,7 @@ _GAUSS = np.polynomial.legendre.leggauss(8)
 SAMPLING_NODES, SAMPLING_WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 """Gauss's rule on [0, 1] with eight nodes: between breaking points the curves of a slipping contact are smooth."""
 TIMES_TOGETHER = 1 << 17
-"""Number of times that are looked up together, which bounds the memory."""
+"""Look up this many times together, which bounds the memory."""
 Read = Callable[[Floats], Sequence[Floats]]
 """A function that reads several quantities of a run at given times (s)."""
 

@@ -104,7 +104,7 @@ class ObservablesOfKind(ABC):
         return [problem.body.time_to_driver]
 
     def fronts_drawn(self, fronts: Floats) -> Floats:
-        """Return those of the times (s) of fronts at the driver on both sides of which a curve is drawn: all, unless it is dear."""
+        """Return the times (s) of fronts at the driver to draw a curve on both sides of: all, unless it is dear."""
         return fronts
 
     # ---- inside -------------------------------------------------------------------------------------------------------------

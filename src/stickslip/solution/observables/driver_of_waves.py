@@ -73,11 +73,11 @@ class BehindSlab:
 
     @property
     def steps(self) -> tuple[tuple[float, float], ...]:
-        """The times from which it sends back a share of the waves that come to it, the first 0, and these shares."""
+        """When it begins to send back another share of the waves that come to it, the first time 0, and these shares."""
         return self.problem.driver_steps
 
     def share_at(self, time: Floats) -> Floats:
-        """Return the share (1) of a wave that it has sent back of what arrives at the contact at times."""
+        """Return the share (1) that it has sent back of the waves that arrive at the contact at times."""
         return inflow_of(self.problem).reflection_at(time)
 
     def impedance_at(self, time: Floats) -> Floats | float:
@@ -85,7 +85,7 @@ class BehindSlab:
         return self.body.driver_impedance
 
     def shears_at(self, time: float) -> float:
-        """Return the rate (m/s) at which it shears the slab in the state without waves: its pull rate while it is rigid, else 0."""
+        """Return how fast (m/s) it shears the slab in the state without waves: its pull rate while it is rigid, else 0."""
         trip = self.body.two_way_time
         rigid = self.share_at(np.array(time - 0.5 * trip) + trip) == RIGID
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
@@ -95,7 +95,7 @@ class BehindSlab:
         return 0.0
 
     def work(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
-        """Return its work between two moments, or since the start (J/m^2), net of what is radiated: the sum of its power."""
+        """Return its work between two moments, or since the start (J/m^2), net of radiation: the sum of its power."""
         return passed(first, last)
 
     def radiated(self, passed: SumOfPower, first: Epoch | None, last: Epoch) -> float:
@@ -142,7 +142,7 @@ class BehindLayers:
         return np.full(len(trip), self.history.ramp)
 
     def shears_at(self, time: float) -> float:
-        """Return the rate (m/s) at which it shears the body in the state without waves: 0 unless all drivers are rigid."""
+        """Return how fast (m/s) it shears the body in the state without waves: 0 unless all drivers are rigid."""
         rigid = self.body.is_driven_rigidly & (self.share_at(np.array(time + self.body.inflow_delay)) == RIGID)
         return float(self.problem.pull_rate_at(time)) if rigid else 0.0
 

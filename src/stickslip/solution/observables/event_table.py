@@ -234,7 +234,7 @@ def shown_columns() -> list[str]:
 
 
 def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:
-    """Return a table with one row per maximal interval in which |slip rate| exceeds the threshold (m/s).
+    """Return a table with one row per maximal interval where |slip rate| exceeds the threshold (m/s).
 
     The columns are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`.
     """
@@ -260,7 +260,7 @@ def event_columns(history: History, events: SlipEvents, *, energies: bool = Fals
 def friction_before(history: History, events: SlipEvents) -> Floats:
     """Return the traction minus the reference strength just before events begin.
 
-    Where slip turns round or begins again in the instant in which it ends, the contact rests for that instant, under the load,
+    Where slip turns round or begins again in the instant when it ends, the contact rests for that instant, under the load,
     unless friction resists the new slip more: an echo may turn the slip of a massless contact round at once.
     """
     begin, store = events.begin, history.store

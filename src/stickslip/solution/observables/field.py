@@ -137,7 +137,7 @@ class WaveInterval:
         return np.where(before < 0.0, start, self._sums[part] + _series(self._integral, part, self._xi(time, part)))
 
     def _part(self, time: Floats, side: Side) -> NDArray[np.intp]:
-        """Return the part in which each time lies, -1 before the run.
+        """Return the part that each time lies in, -1 before the run.
 
         Times within rounding of a break lie on it, and `side` picks the part.
         """

@@ -112,7 +112,7 @@ def near_break(history: History, time: Floats) -> Floats:
 def _others(load: LoadingHistory, history: History, n: NDArray[np.intp], of: NDArray[np.intp]) -> tuple[Floats, Floats]:
     """Return how far the lines, and the slopes, of further segments are from those of segments `of` in pieces n of a history.
 
-    The engine cuts pieces where segments begin. A piece in which another one begins all the same is in the wrong place.
+    The engine cuts pieces where segments begin. A piece that nevertheless holds the start of a segment is in the wrong place.
     """
     store, (start, value, slope) = history.store, np.array(load.segments).T
     begins = store.trip[n] * history.round_trip_time + store.phase_from[n]

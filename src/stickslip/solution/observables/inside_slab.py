@@ -83,7 +83,7 @@ class _InsideOfSlab:
         """
         waves, half = self.waves, self.waves.half
         since = self.time - self.interval.first + away
-        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)  # by which a time is moved to the side that is seen
+        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)  # moves a time to the side that is seen
         left = self.time - (waves.round - away)  # when the wave left the contact
         sent_back = waves.arriving(self.interval.leaving(left, side), left - self.interval.first, slack)
         return np.where(since < half + slack, waves.first_load(since), sent_back)
@@ -99,7 +99,7 @@ class _InsideOfSlab:
         return np.asarray(of_start + self._sent_back(low, high) + inflow)
 
     def _sent_back(self, low: Floats, high: Floats) -> Floats:
-        """Return the integral of what the driver sends back of the waves that leave the contact between times, Pa s."""
+        """Return the integral of the driver's echo of the waves that leave the contact between times, Pa s."""
         steps = self.waves.driver.steps
         meets = [self.interval.first + start - self.waves.half for start, _ in steps[1:]]
         edges = [-math.inf, *meets, math.inf]

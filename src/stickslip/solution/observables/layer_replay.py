@@ -212,7 +212,7 @@ def take_drag(ladder: LadderCells, wave: Floats, dragged: Floats, first: int, la
 
 @kernel
 def meet_before(place: FollowedWaves, wave: Floats, turned: Floats) -> None:
-    """Write what changes of the driver in this round trip add to the integral of what comes back, whose share is the last one.
+    """Write what changes of the driver in this round trip add to the integral of the echo, whose share is the last one.
 
     Up to a change, the share is the one before it. `wave` is the integral in the last cell.
     """

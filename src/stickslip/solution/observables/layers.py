@@ -37,7 +37,7 @@ from stickslip.solution.observables.layer_records import (
 from stickslip.solution.observables.layer_replay import answer, replay
 
 NUMBERS_TOGETHER = 1 << 19
-"""Numbers that are kept together, of cells or of what drivers send: it keeps the memory bounded."""
+"""Keep so many numbers together, of cells or of drivers, so that memory is bounded."""
 PHASES_TOGETHER = 64
 """Phases that are replayed together (1): what they need fits into the fast memory of a processor."""
 
@@ -81,7 +81,7 @@ class LayerWaves:
             time=self.time,
         )
         self.is_away = np.concatenate([np.arange(count) % 2 == 0 for count in counts])
-        """True for cells in which E travels away from the contact."""
+        """True for cells where E travels away from the contact."""
         self.reference = np.repeat(strength, counts)
         self._inflow = np.array([cells.inflow[self.last], cells.inflow_rate[self.last]], float)
         self._before = np.array(cells.inflow_before[self.last], float)

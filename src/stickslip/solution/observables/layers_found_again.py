@@ -12,9 +12,9 @@ from stickslip.solution.observables.given_load import beside, breaks_at_contact,
 from stickslip.solution.observables.layers import LayerWaves
 
 REPLAYED = 2e7
-"""Number of cells times round trips times phases through which waves are replayed; that takes a tenth of a second."""
+"""Replay waves through this many cells times round trips times phases; that takes a tenth of a second."""
 PHASES = 64
-"""Largest number of phases at which loads are compared."""
+"""Compare loads at no more than this many phases."""
 LEAST_PHASES = 4
 """With fewer phases than this, the last round trips of a run are left out instead."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
@@ -22,7 +22,7 @@ GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 EDGE = 1e-11
 """Places nearer to an end of a step than this share (1) of a round trip are not compared: loads may jump there."""
 BREAKS = 16
-"""Largest number of breaks of the loading beside which loads are compared."""
+"""Compare loads beside at most this many breaks of the loading."""
 
 
 def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
@@ -46,7 +46,7 @@ def loads_of_layers(history: History, body: OfLayers) -> tuple[float, int]:
 
 
 def _places(history: History, body: OfLayers) -> tuple[NDArray[np.intp], Floats]:
-    """Return pieces and phases (s) in them at which loads are compared: the same phases in every round trip."""
+    """Return pieces and phases (s) in them where loads are compared: the same phases in every round trip."""
     store, cells = history.store, sum(body.cells.counts)
     last = int(history.creep[:, 0].min(initial=store.trip[-1] + 1))
     many = int(np.clip(REPLAYED / (cells * max(last, 1)), LEAST_PHASES, PHASES))

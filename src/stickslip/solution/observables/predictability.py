@@ -86,7 +86,7 @@ class Predictability(NamesAttributes):
 def in_short(proven: str, trapped: str, predictable: str) -> str:
     """Return what is proven of a run, trapped in its waves and predictable, each in a few words, as one line.
 
-    Each is a few words; an empty one is left out. `trapped` may be a longer note, of which the first part is taken.
+    Each is a few words; an empty one is left out. `trapped` may be a longer note; the first part of it is taken.
     """
     parts = {"proven": proven, "trapped energy": trapped.partition(" in waves")[0], "predictability": predictable}
     return "; ".join(f"{what}: {words}" for what, words in parts.items() if words)

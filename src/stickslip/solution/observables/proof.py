@@ -41,7 +41,7 @@ RADII = np.array([8.0, 5.6, 4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75])
 FIRST, SHARE, LARGEST = 32, 4096, 512
 """Numbers of steps to prove anew: the first of each kind, an even share of all, and those with the largest bounds."""
 AT_ONCE = 128
-"""Number of steps that are proven together: it keeps the memory bounded."""
+"""Prove this many steps together: it keeps the memory bounded."""
 POLYNOMIAL = 3e-15
 """Rounding of the value of a polynomial (1), relative to the sum of the sizes of its terms but for the first."""
 OF_DURATION = 5e-16

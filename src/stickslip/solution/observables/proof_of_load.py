@@ -25,9 +25,9 @@ Expected = Callable[[History, Places, Floats], Floats]
 INSIDE = 0.5 - 0.5 * np.cos(np.pi * (np.arange(12) + 0.5) / 12)
 """Places (1) in a step where loads are compared; not its ends, where a load may jump."""
 AT_ONCE = 1024
-"""Number of steps that are compared together: it keeps the memory bounded."""
+"""Compare this many steps together: it keeps the memory bounded."""
 BREAKS = 1000
-"""Largest number of breaks of the loading beside which loads are compared."""
+"""Compare loads beside at most this many breaks of the loading."""
 SHORT_STEP = 1e-11
 """Steps shorter than this share (1) of the round trip, or of the time since the start, are not compared: times are rounded."""
 

@@ -18,9 +18,9 @@ from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 RECORDED = 1024
 """Largest number of recorded rests whose load is looked at."""
 RESTS = 64
-"""Largest number of rests that were not recorded, but leaped over, whose load is looked at."""
+"""Look at the load in at most this many rests that were not recorded, but leaped over."""
 PLACES_IN_REST = 32
-"""Places at which it is looked at in such a rest, and as many again in its last round trip."""
+"""Look at it at this many places in such a rest, and at as many again in its last round trip."""
 
 
 def exceeded_at_rest(history: History) -> float:
@@ -48,14 +48,14 @@ def _strength(history: History, at: Positions, grown: Floats) -> Floats:
 
 
 def _over(problem: Problem, excess: Floats, strength: Floats) -> float:
-    """Return the most by which loads, minus the reference, exceed strengths, backwards too if slip may go there."""
+    """Return how far loads, minus the reference, exceed strengths at most, backwards too if slip may go there."""
     forward = excess - (strength - problem.strength)
     backward = -excess - (strength + problem.strength)
     return float(np.max(forward if problem.one_way else np.maximum(forward, backward), initial=0.0))
 
 
 def _in_recorded(history: History, n: Places) -> float:
-    """Return the most by which the load exceeds the strength in recorded rests."""
+    """Return how far the load exceeds the strength at most in recorded rests."""
     if not len(n):
         return 0.0
     at = Positions.inside(np.repeat(n, len(POINTS_OF_STEP)), np.tile(POINTS_OF_STEP, len(n)))
@@ -84,7 +84,7 @@ def _in_leaped(history: History) -> float:
 
 
 def _where_slip_begins(history: History) -> float:
-    """Return the most by which a load falls short of the strength where slip begins from rest, whatever the rest was."""
+    """Return how far a load falls short of the strength at most where slip begins from rest, whatever the rest was."""
     store, problem = history.store, history.problem
     if problem.rule != PERFECT_DELAY:
         return 0.0

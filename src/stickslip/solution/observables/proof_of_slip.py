@@ -51,7 +51,7 @@ def _of_sums(history: History, n: Places) -> float:
 
 
 def _against(history: History, n: Places) -> float:
-    """Return the longest way that a slip rate goes against the direction of its step, or at rest, to both of which it is zero."""
+    """Return the longest way that a slip rate goes against the direction of its step, or at rest; to both it is zero."""
     store = history.store
     moves = n[store.rate[n].any(axis=1)] if len(n) else n
     rate = store.rate[moves] @ POINTS_OF_STEP ** np.arange(store.rate.shape[1])[:, None]
@@ -61,7 +61,7 @@ def _against(history: History, n: Places) -> float:
 
 
 def _of_times(history: History, n: Places) -> float:
-    """Return the longest way that the slip rate goes in the time by which the polynomial of a step misses its end."""
+    """Return the longest way that the slip rate goes in the time that the polynomial of a step misses its end by."""
     store = history.store
     off = np.abs(store.phase_from[n] + store.speed[n] + store.bend[n] - store.phase_to[n])
     return float(np.max(off * np.abs(store.rate[n]).sum(axis=1), initial=0.0))

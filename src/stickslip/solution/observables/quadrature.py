@@ -19,7 +19,7 @@ polynomials; it integrates the law along a Taylor step to rounding.
 """
 
 PIECES_TOGETHER = 1 << 14
-"""Number of pieces that are integrated together, which keeps the memory bounded."""
+"""Integrate this many pieces together, which keeps the memory bounded."""
 
 
 @cache

@@ -43,7 +43,7 @@ EQUAL_NUMBERS = 1e-9
 ENTRIES_OF_TEXT = ("title", "description")
 """Entries that change no number."""
 MOST_NAMED = 6
-"""Largest number of changes, and of moved numbers, that the text names."""
+"""The text names at most this many changes, and moved numbers."""
 
 
 @dataclass(frozen=True)

@@ -147,7 +147,7 @@ def key_numbers(found: Findings, contact: Uniqueness, motion: BodyCurves) -> tup
 NEAR_ONE = 5e-4
 """If a ratio is closer to 1 than this, its distance from 1 is given instead."""
 JUMPS_NAMED = 2
-"""Largest number of jumps that are all named."""
+"""Name all jumps if they are at most this many."""
 RULES = {
     "perfect-delay": "the rule of perfect delay",
     "maxwell": "Maxwell's rule",

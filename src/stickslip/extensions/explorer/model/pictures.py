@@ -25,9 +25,9 @@ POINTS_OF_CURVE = 600
 MARGIN_OF_CURVE = 0.15
 """Margin before and after the range that the run passed through, as a share of that range."""
 SCALES = 4.0
-"""Number of characteristic slip rates of the law that are shown at least."""
+"""Show at least this many characteristic slip rates of the law."""
 DECADES = 20
-"""Largest number of decades of slip rate that a logarithmic axis shows."""
+"""A logarithmic axis shows at most this many decades of slip rate."""
 SMALLEST_JUMP_DRAWN = 1e-3
 """Jumps that change the slip rate by a smaller share of it are not seen: pieces of the history meet within a tolerance only."""
 PATH, INSIDE, CELLS = 20_000, 8, 500

@@ -126,7 +126,7 @@ class WaveSamples(NamedTuple):
 
     @classmethod
     def of_means(cls, time: Floats, means: Sequence[Sampled]) -> WaveSamples:
-        """Return samples, each of which is the mean over a round trip."""
+        """Return samples, each the mean over a round trip."""
         whole = Sampled.joined(means)
         first = np.cumsum([0, *(len(one.time) for one in means[:-1])])
         return cls(time, whole.time, whole.wave, whole.weight, first, of_trips=True)
@@ -172,7 +172,7 @@ class SampledWaves:
             )
 
     def _sampled(self, begin: float) -> WaveSamples:
-        """Return samples of the wave that leaves the contact, from a time on to the end of what is shown."""
+        """Return samples of the wave that leaves the contact, from a time on to the end of the view."""
         end, round_trip = self.shown.end, self.waves.round
         within = begin - self.first + round_trip, end - self.first + round_trip
         check_known(self.history, begin, end)
@@ -259,7 +259,7 @@ class SampledWaves:
         return self.coming.squared(time, time + half, half) + self.leaving.squared(time - half, time, half)
 
     def work(self, time: Floats) -> Floats:
-        """Return the work of the driver up to times (J/m^2, up to a constant), net of what is radiated."""
+        """Return the work of the driver up to times (J/m^2, up to a constant), net of radiation."""
         return self._of_driver(self.waves, time)
 
     def radiated(self, time: Floats) -> Floats:

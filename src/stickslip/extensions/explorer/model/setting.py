@@ -41,7 +41,7 @@ DEEPEST = 5
 
 
 MOST_NODES = 1024
-"""Largest number of nodes of a fault that a page shows."""
+"""A page shows at most this many nodes of a fault."""
 
 
 def explorable(scenario: Scenario) -> Scenario:
@@ -90,7 +90,7 @@ def document_of(leaves: Mapping[str, Any]) -> dict[str, Any]:
 class Setting:
     """A scenario as the controls hold it: a TOML document, never changed in place, whose entries can be replaced one by one.
 
-    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file from which
+    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file that
     the friction law was read, one line each; they go with that law.
     """
 
@@ -142,7 +142,7 @@ class Setting:
 
     @property
     def load_unit(self) -> str:
-        """The unit of the body's loads: it decides in which units laws and loading are. Raises InputError for an unknown body."""
+        """The unit of the body's loads: it decides the units of laws and loading. Raises InputError for an unknown body."""
         unit: str = kind_of("body", self.value("body") or {}, self.name).load_unit  # type: ignore[attr-defined] # registered
         return unit
 

@@ -1,4 +1,4 @@
-"""What the explorer shows of all bodies in which waves run."""
+"""What the explorer shows of all bodies with waves."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ TABLES = (".csv", ".txt", ".tsv", ".dat")
 MOST_ROWS = 20_000
 """Largest number of points of an uploaded table."""
 LONGEST_NAME = 80
-"""Largest number of characters of a file's name that are kept."""
+"""Keep at most this many characters of a file's name."""
 
 
 def content_of(encoded: str) -> bytes:

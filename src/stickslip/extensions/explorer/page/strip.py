@@ -36,7 +36,7 @@ from stickslip.problem.scenarios import ParameterPath, typed_number
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
 LARGEST_POWER = 300.0
-"""Largest power of ten on a logarithmic axis that is looked for."""
+"""Look for powers of ten on a logarithmic axis up to this one."""
 HEIGHT = 124
 """Height (px) of the plots with their headings."""
 COLOURS = {"pulses": "ink", "slip": "slip", "first_end": "traction", "peak_rate": "rate"}

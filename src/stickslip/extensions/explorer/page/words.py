@@ -66,7 +66,7 @@ class Tour:
 
 
 MOST_NAMED = 8
-"""Largest number of changes, and of numbers, that the page names."""
+"""The page names at most this many changes, and numbers."""
 
 
 class PinnedRun:

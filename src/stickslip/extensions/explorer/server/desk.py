@@ -22,7 +22,7 @@ TIME_TO_FINISH = 0.3
 QUIET = 0.2
 """Nothing is said of work in its first moments (s): most of it is finished then, and lines that flicker tell nothing."""
 LOOK_AGAIN = 0.2
-"""Time (s) after which a desk that waits for its page looks whether the page is still open."""
+"""A desk that waits for its page looks after this time (s) whether the page is still open."""
 STOPPED_EARLY = "stopped before there was anything to show"
 
 

@@ -82,7 +82,7 @@ FIRST_PORT = 5018
 TITLE = "stickslip explorer"
 """Title of the page in the browser."""
 PORTS = 50
-"""Number of ports that are tried."""
+"""Try this many ports."""
 LARGEST_MESSAGE = 4_000_000
 """Size (bytes) of the largest message from a browser: an upload of 1 MB with everything around it."""
 LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buffer_size": LARGEST_MESSAGE, "body_timeout": 30}

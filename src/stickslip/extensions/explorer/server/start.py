@@ -94,7 +94,7 @@ def open_browser(page: Path) -> bool:
 
 
 MOST_EXPLORERS = 8
-"""Largest number of explorers that are at work in one notebook."""
+"""At most this many explorers are at work in one notebook."""
 ENDED = (
     f"This explorer has ended, because {MOST_EXPLORERS} newer ones are open in this notebook: run its cell again to go on with it."
 )

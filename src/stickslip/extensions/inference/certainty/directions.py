@@ -133,7 +133,7 @@ def formula(labels: Sequence[str], powers: Floats) -> str:
 def told(labels: Sequence[str], moves: Floats, slopes: Floats, factor: float) -> Iterator[tuple[list[int], str]]:
     """Yield sets of numbers that move together, by their indices, and a sentence on what is determined ("" if that is not simple).
 
-    The sentence holds if all numbers are logarithms. The numbers are in the order in which a body or a law declares them.
+    The sentence holds if all numbers are logarithms. The numbers are in the order of a body's or a law's declaration.
     """
     sizes = np.linalg.norm(slopes, axis=0)
     inverse = np.linalg.pinv(without(slopes, moves) / sizes, rcond=SURE_BELOW) / sizes[:, None] if moves.size else slopes.T

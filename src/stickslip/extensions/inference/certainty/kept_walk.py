@@ -22,7 +22,7 @@ FORMAT_OF_WALK = 1
 EVERY = 30.0
 """Time (s of wall clock) between two checkpoints."""
 SHARE_OF_WRITING = 0.1
-"""Largest share of the time that writing them may take."""
+"""Writing them may take at most this share of the time."""
 GENERATOR = "MT19937"
 """The generator of random numbers of emcee."""
 

@@ -1,1 +1,1 @@
-"""Figures of records, of what was inferred from them, and of laws through points."""
+"""Figures of records, of fits to them, and of laws through points."""

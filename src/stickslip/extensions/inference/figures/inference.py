@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     from stickslip.extensions.inference.inference import Inference
 
 MANY, FEW_EVENTS = 200, 50
-"""Number of points from which they are drawn small, and of events up to which they are drawn large."""
+"""Draw so many points, or more, small, and up to so many events large."""
 MOST_PAIRED = 4
-"""Largest number of parameters that are drawn against each other."""
+"""Draw at most this many parameters against each other."""
 JOINT = 2.4477468306808166
 """Half width, in standard uncertainties, of an ellipse that holds two numbers with a probability of 95 %."""
 TWO = 1.96
@@ -50,7 +50,7 @@ TWO = 1.96
 RECORD_PANELS = {"record": "record and best run", "residual": "residual", "rate": "slip rate of the best run"}
 """The panels of samples of a record, with their titles."""
 FRAMES = 4000
-"""Number of times at which the slip rate is drawn, evenly spaced, besides those of the samples."""
+"""Draw the slip rate at this many times, evenly spaced, besides those of the samples."""
 
 
 def inference_data(study: Inference) -> xr.Dataset:

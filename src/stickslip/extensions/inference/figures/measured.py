@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CURVE = 801
-"""Number of places at which the law is evaluated."""
+"""Evaluate the law at this many places."""
 MANY_POINTS = 5000
-"""Number of points above which they are drawn as an image, so that vector files stay small."""
+"""Draw more points than this as an image, so that vector files stay small."""
 SHADES = ("#F8D9C4", "#F0A879")
 """Colours of the band of two standard errors, and of the band of one above it."""
 
@@ -79,7 +79,7 @@ def measured_data(result: Fit | Smooth) -> xr.Dataset:
 
 
 def _along(place: Floats) -> Floats:
-    """Return the places at which the law is drawn, from the smallest to the largest: evenly, or by factors over decades."""
+    """Return the places where the law is drawn, from the smallest to the largest: evenly, or by factors over decades."""
     low, high, positive = float(place.min()), float(place.max()), place[place > 0.0]
     even = np.linspace(low, high, CURVE)
     if low < 0.0 or not len(positive) or not spans_decades(positive):

@@ -13,7 +13,7 @@ from stickslip.problem import LoadingHistory, Problem
 MANY_RATES = 40
 """A load point with more rates than this raises a doubt, unless it speeds up and slows down in turn so seldom as a ramp does."""
 MOST_TURNS = 2
-"""Largest number of times that a ramp turns from speeding up to slowing down, or back."""
+"""A ramp turns from speeding up to slowing down, or back, at most this many times."""
 FAR_RATE = 100.0
 """A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
 LONG, LEVEL = 2.0, 0.1

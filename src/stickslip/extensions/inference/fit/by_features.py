@@ -24,7 +24,7 @@ from stickslip.solution import Solution
 CYCLES = 6.0
 """Length of a run, in recurrence times of the record; the first events are skipped."""
 SETTLING = 2
-"""Number of first events of a run that do not count."""
+"""This many first events of a run do not count."""
 SPARE = 2
 """At least this many more events than features are needed to estimate the scatter of the features and their correlation."""
 COARSE, FINE = 1000, 200

@@ -35,7 +35,7 @@ SAMPLES_OF_STARTS = 1500
 ROUGH = 1.2
 """If residuals exceed this multiple of the noise of neighbouring samples, the best fit is improved without derivatives."""
 TURNS_OF_NOISE = 4
-"""Largest number of times that noise and numbers are estimated in turn."""
+"""Estimate noise and numbers in turn, at most this many times."""
 SETTLED_NUMBERS = 0.05
 """No further turn is needed if no number changes by more than this many standard uncertainties."""
 NARROWING = (64, 16, 4)

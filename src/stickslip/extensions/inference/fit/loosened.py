@@ -13,7 +13,7 @@ from stickslip.foundation.arrays import Floats
 FELT = 0.3
 """A number counts if its standard deviation changes the residuals by this many standard deviations in all."""
 LOOSENED_NUMBERS = 24
-"""Largest number of such numbers that are free in a fit."""
+"""At most this many such numbers are free in a fit."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ UNSEEN_EIGENVALUE = 1e-9
 LONGEST_MEMORY = 1.0 / 8.0
 """Longest correlation time considered, as a share of the longest part of a record; anything longer is a misfit, not noise."""
 SAMPLES_OF_MEMORY = 4000
-"""Largest number of samples to estimate the memory from; if there are more, means over neighbours are used."""
+"""Estimate the memory from at most this many samples; of more, from means over neighbours."""
 TIMES, SHARES = (2.0, 8.0, 32.0, 128.0), (0.05, 0.5, 0.9)
 """Starting values for the correlation time (samples) and for the share of white noise."""
 SPREAD = 8

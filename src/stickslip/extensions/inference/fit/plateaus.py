@@ -132,7 +132,7 @@ def _stretches(loading: LoadingHistory | float, duration: float) -> list[_Stretc
 
 
 def _joined(stretches: Sequence[_Stretch]) -> list[_Stretch]:
-    """Return stretches, of which neighbours with nearly the same rate have become one."""
+    """Return stretches; neighbours with nearly the same rate have become one."""
     found = list[_Stretch]()
     for one in stretches:
         before = found[-1] if found else None

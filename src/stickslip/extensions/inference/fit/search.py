@@ -153,7 +153,7 @@ def is_far(model: Model, cost: float) -> bool:
 
 
 TOLD = 0.5
-"""If a drift or an offset makes up this share of what is left, no search for events goes on."""
+"""No search for events goes on if a drift or an offset makes up this share of the residuals."""
 
 
 def told_by(model: Model, searched: Floats) -> str:

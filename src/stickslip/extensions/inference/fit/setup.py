@@ -80,7 +80,7 @@ def parts_of(
 
 
 def _split(observe: Any) -> list[str]:
-    """Return the names of what is to be fitted, as they are given."""
+    """Return the names of the numbers to fit, as they are given."""
     return [one.strip() for one in observe.split(",")] if isinstance(observe, str) else list(observe or ())
 
 

@@ -1,7 +1,7 @@
 """Say in words what the residuals of a fit look like: drift, lag, offset, oscillation, or steps that the samples do not resolve.
 
 Each look is a regression of the residuals, beside which the free numbers may still move and the noise may be correlated. A look is
-told if chance does not explain it and if it makes up a share of what is left that one would see. Residuals far above the noise from
+told if chance does not explain it and if one would see its share of the residuals. Residuals far above the noise from
 sample to sample that do not forget themselves are no noise anyway: there the share alone decides.
 """
 
@@ -30,14 +30,14 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 
 CHANCE = 1e-5
-"""Largest probability that noise alone looks like this, for each kind of look."""
+"""Noise alone looks like this with at most this probability, for each kind of look."""
 SHARE_TOLD = 0.08
 """A look is told if it makes up at least this share of the sum of squares that is left."""
 LARGE, FORGETS, PLAIN = 3.0, 0.9, 0.3
 """Residuals are no noise if they exceed LARGE times the noise of neighbouring samples and remember themselves for more than FORGETS
 of the longest time that is considered: looks with a share above PLAIN are then told without asking for chance."""
 LOOKS_TOLD = 3
-"""Largest number of looks that are told."""
+"""Tell at most this many looks."""
 SAMPLES_BESIDE_CHANGE = 2
 """Samples on each side of a change of the pull rate that are unsure if the samples do not resolve the change."""
 AFTER = 0.25
@@ -45,7 +45,7 @@ AFTER = 0.25
 LARGER = 2.0
 """Residuals near changes must be so many times larger than elsewhere, in the root of the mean square, to be told."""
 ALIKE = 0.7
-"""The more special of two looks is told if it explains at least this share of what the other one does."""
+"""Tell the more special of two looks if it explains at least this share of the other's part."""
 APART_DRIFTS_TOLD = 10.0
 """A drift is told to be with slip, or with time, if twice the log-likelihoods differ by this much: a chance of one in 150."""
 PERIODS, FEWEST = 3.0, 32
@@ -60,7 +60,7 @@ class ResidualLook(NamedTuple):
     """One look of residuals (data minus run): its kind, its share of the sum of squares, and its size in the unit of its kind.
 
     Kinds and sizes are "drift with slip" (unit of the residual per metre), "drift with time" and "drift" with either (per second),
-    "lag" (s by which the record is late), "offset" (residual), "oscillation" (its period in s), "steps" (number of changes of the
+    "lag" (s that the record is late), "offset" (residual), "oscillation" (its period in s), "steps" (number of changes of the
     pull rate that the samples do not resolve), and "transients" (how many times larger what is left is after changes).
     """
 
@@ -140,7 +140,7 @@ class _Try(NamedTuple):
 
 
 def _next(found: Residuals, total: float, known: set[str], least: float) -> tuple[ResidualLook | None, Residuals | None]:
-    """Return the look that explains most of what is left, if it is no chance or above `least`, and the residuals without it."""
+    """Return the look that explains most residuals, if it is no chance or above `least`, and the residuals without it."""
     tries = [one for one in _tries(found, total) if one.look.kind.partition(" ")[0] not in known and one.look.share >= SHARE_TOLD]
     tries.sort(key=lambda one: -one.look.share)
     special = [one for one in tries if one.look.kind == "steps" and one.look.share > ALIKE * tries[0].look.share]

@@ -1,4 +1,4 @@
-"""What a fit asks of all bodies in which waves run."""
+"""What a fit asks of all bodies with waves."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ LARGEST_STRENGTH = 1e6
 CLOSE_CURVE = 0.3
 """A curve follows almost every point if its degrees of freedom exceed this share of the number of points."""
 DECIMALS_OF_LAW = 12
-"""Number of decimals of the law, so that rounding makes no reversals."""
+"""Write the law with this many decimals, so that rounding makes no reversals."""
 FINEST = 1025
 """The law follows the smooth curve with at most this many points."""
 FINE = 4 * (FINEST - 1) + 1

@@ -31,7 +31,7 @@ That of an even distribution is 1/sqrt(12). With it a step at a sample lies 1.7 
 record would pull the numbers.
 """
 TRIED = 100
-"""Number of times of a servo that are tried before the best of them is improved."""
+"""Try this many times of a servo before the best of them is improved."""
 FITS = 1.5
 """A servo is taken if it follows the load point to within this many standard deviations of its noise, on average."""
 SAMPLES_COMPARED = 8.0
@@ -63,7 +63,7 @@ class Corners:
 
 
 class _Change(NamedTuple):
-    """A change of rate: where it begins and ends (s), the rates before and after, and the time at which a step moves as far."""
+    """A change of rate: where it begins and ends (s), the rates before and after, and when (s) a step moves as far."""
 
     begin: float
     end: float
@@ -234,7 +234,7 @@ def _displacement(rate: Steps, time: Floats) -> Floats:
 
 
 def jumps_of(normal: PiecewiseLinear, clock: Floats) -> tuple[int, ...]:
-    """Return the numbers of the straight parts in which a normal load jumps from one sample to the next."""
+    """Return the numbers of the straight parts where a normal load jumps from one sample to the next."""
     times, values = np.array(normal.times), np.array(normal.values)
     change, lasts = np.abs(np.diff(values)), np.diff(times)
     k = np.clip(np.searchsorted(clock, times[:-1], side="right"), 1, len(clock) - 1)

@@ -17,7 +17,7 @@ from stickslip.foundation.show import brief
 from stickslip.problem import LoadingHistory, PiecewiseLinear, Steps
 
 MOST_PARTS = 2000
-"""Largest number of straight parts; a record that needs more is approximated more coarsely."""
+"""Use at most this many straight parts; approximate a record that needs more, more coarsely."""
 SURE = 5.0
 """The mean of some samples may differ from a straight part by this many standard deviations."""
 NOISE_OF_BEST_SENSOR = 1e-7

@@ -86,7 +86,7 @@ def _reaches(solution: Solution, rate: float, start: float, end: float) -> float
 
 @claim(15, "After its event the block stays put for a long period.")
 def block_stays_put(runs: Runs) -> ClaimVerdict:
-    """Measure the rest of the block before its second event, and the time in which the spring regains the strength."""
+    """Measure the rest of the block before its second event, and the time that the spring needs to regain the strength."""
     readings = {
         "slip law, as printed": "fig5-block-printed",
         "rate law, as printed": "fig6-block-printed",
@@ -115,7 +115,7 @@ def block_stays_put(runs: Runs) -> ClaimVerdict:
 def rest_after_event(runs: Runs, name: str) -> tuple[float, float, float]:
     """Return three times (s) of a case: the rest, the reloading time, and the duration of the first slip.
 
-    The rest lies between the first two intervals in which the block slips at all; the reloading time counts from the end of the
+    The rest lies between the first two intervals with slip of the block; the reloading time counts from the end of the
     first.
     """
     first = runs.case(name)

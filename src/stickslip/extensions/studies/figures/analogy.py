@@ -30,7 +30,7 @@ NUMBER_LINES: dict[str, tuple[Any, str]] = {
 }
 """Line style and legend of the two weakening numbers, by column of the study; a line is drawn where a number is 1."""
 NOT, STANDS = TWO
-"""Colours of points at which the block does not stand for the slab, and at which it does."""
+"""Colours of points where the block does not stand for the slab, and where it does."""
 
 
 def analogy_data(found: Analogy) -> xr.Dataset:
@@ -55,7 +55,7 @@ def analogy_data(found: Analogy) -> xr.Dataset:
 
 @styled
 def draw_analogy(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
-    """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
+    """Draw three maps of ratios in one scale of colours, and a map of the points where the block can stand for the slab."""
     figure, axes = panels(2, 2, (7.2, 6.8), place, sharex=True, sharey=True)
     noun = dataset.attrs["body"]
     ratios = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / LARGEST_RATIO, LARGEST_RATIO)}
@@ -84,7 +84,7 @@ def draw_analogy(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 
 def _draw_stands(axes: Axes, dataset: xr.Dataset) -> list[Artist]:
-    """Draw the points at which all answers agree; those with different numbers of pulses are labelled "slab:block".
+    """Draw the points where all answers agree; those with different numbers of pulses are labelled "slab:block".
 
     Return the entries of the key.
     """

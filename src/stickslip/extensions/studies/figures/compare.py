@@ -66,7 +66,7 @@ def drawn(study: Comparison) -> RunLines:
 
 
 def _whole(runs: dict[str, Solution]) -> tuple[dict[str, Readings], dict[str, tuple[float, float]]]:
-    """Return the runs, and start and end (s) of what is drawn of each.
+    """Return the runs, and start and end (s) of the drawn part of each.
 
     That is the same for all, unless the runs last so differently that each is drawn against its own duration.
     """
@@ -135,7 +135,7 @@ def draw_compared(study: Comparison, **place: Unpack[Place]) -> Figure:
 
 
 def _look(k: int, count: int) -> dict[str, Any]:
-    """Return the look of line k of `count`: colour, dashes, marks and a width, each of which tells it from the others."""
+    """Return the look of line k of `count`: colour, dashes, marks and a width; each tells it from the others."""
     width = WIDEST - (WIDEST - THINNEST) * k / max(count - 1, 1)
     marks = {"marker": MARKERS[k % len(MARKERS)], "markersize": 4.5, "markeredgecolor": "white", "markeredgewidth": 0.5}
     return marks | {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k % len(DASHES)], "linewidth": width}
@@ -166,7 +166,7 @@ def _lasting(length: float) -> str:
 
 
 def _meaning(study: Comparison, row: str, *, mixed: bool) -> tuple[str, str, str]:
-    """Return the name, the symbol and the SI unit of what the panel of a row shows."""
+    """Return the name, the symbol and the SI unit of the curves in the panel of a row."""
     loads = [run.problem.load_unit for run in study.runs.values()]
     if row == "slip":
         return name_of(row, loads[0]), "u-u_0", si_unit(row, *loads)

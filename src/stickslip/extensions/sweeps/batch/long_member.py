@@ -120,7 +120,7 @@ class Folding:
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
     """Run a member in bounded memory and fill `out`, which holds NaN, with its numbers, except those of the contact equation.
 
-    `capacity` is the number of pieces for which the history has room at first. Returns the code of what ended the run.
+    The history has room for `capacity` pieces at first. Returns the code that says what ended the run.
     """
     problem = scenario.problem
     run = ExactRun.begin(problem, CallOptions.of(scenario, max_pieces=LARGEST_HISTORY))

@@ -40,9 +40,9 @@ from stickslip.problem.scenarios import Scenario
 Part = TypeVar("Part")
 
 CHUNK = 16_384
-"""Largest number of members that are set up together: enough to make numpy efficient, and few enough for the processor's cache."""
+"""Set up at most this many members together: enough to make numpy efficient, and few enough for the processor's cache."""
 SMALLEST_CHUNK = 1024
-"""Smallest number of members in a chunk: enough to make the time that a chunk spends in Python negligible."""
+"""A chunk has at least this many members, so that the time that it spends in Python is negligible."""
 NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
 NO_START = "the run cannot start"
 

@@ -78,7 +78,7 @@ class DesignAxis:
 
 
 def in_unit_of(parameter: ParameterPath, values: Any, where: str) -> ParameterPath:
-    """Return a parameter that is shown in the unit of the first of its values, if that is one in which results are shown."""
+    """Return a parameter that is shown in the unit of the first of its values, if results are shown in it."""
     listed = values if isinstance(values, list | tuple) else ()
     first = next((one for one in listed if isinstance(one, str) or has_unit(one)), None)
     given = None if first is None or not parameter.unit else parameter.read(first, where)

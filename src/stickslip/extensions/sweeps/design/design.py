@@ -27,7 +27,7 @@ IN_WORDS = {
     LIST: "from a list",
 }
 LARGEST_GRID = 1_000_000_000
-"""Largest number of members of a grid: 8 GB for each quantity that is kept."""
+"""A grid has at most this many members: 8 GB for each quantity kept."""
 MEMBER = "member"
 """Name of the single dimension of samples and lists."""
 

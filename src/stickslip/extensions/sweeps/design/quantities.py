@@ -31,7 +31,7 @@ class Summary:
 
     The units "slip", "slip_rate", "load" and "energy" stand for those of the body (`names.si_unit`). `of` returns it for a
     `Solution`, or NaN where the run has no such number. A flag is 1 for yes and 0 for no. A share runs from 0 to 1, and `ends` says
-    in words what these are. `line` is a number at which figures draw a line, and what lies there, in words.
+    in words what these are. Figures draw a line at the number in `line`, which also says in words what lies there.
     """
 
     name: str

@@ -1,1 +1,1 @@
-"""The execution of a sweep: its plan, its chunks, and the processes that run them."""
+"""How a sweep is run: a plan divides it into chunks, and threads or processes run them."""

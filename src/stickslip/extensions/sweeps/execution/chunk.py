@@ -1,4 +1,4 @@
-"""The work of a sweep, in chunks: from the values of some members to their results. Everything here can be pickled."""
+"""A chunk of a sweep takes the values of some members and returns their results. Everything here can be pickled."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from stickslip.run.simulate import simulate
 from stickslip.solution import Solution
 
 MEMBER_CODE = ("extensions/sweeps/batch", "extensions/sweeps/execution/chunk.py")
-"""Folders and files of the package whose code decides the results of a member, beside that of its run."""
+"""The code in these folders and files decides the results of a member, together with the code of its run."""
 END = "end_time"
-"""The quantity that the message on a failed member needs: the time (s) at the end of its run."""
+"""The message on a failed member needs this quantity: the time (s) at the end of its run."""
 MAX_PIECES = 200_000
-"""Largest number of polynomial pieces in the history of a member that runs by itself (90 MB); a member that needs more fails."""
+"""A member that runs by itself fails if its history needs more polynomial pieces than this (90 MB)."""
 NOT_RUN = -1
-"""Code of a member that has not been run; a new store is filled with it."""
+"""The member has not been run. A new store holds this code for all members."""
 BAD_PARAMETERS = 10
-"""Code of a member whose scenario is refused, or cannot start."""
+"""The scenario of the member is refused, or cannot start."""
 ERROR = 14
-"""Code of a member without a quantity that could not be calculated, or with another fault."""
+"""A quantity of the member could not be calculated, or another fault occurred."""
 FIRST_FAILURE = 10
-"""Smallest code of a failure. Members that failed have a reason in place of results."""
+"""Codes from this one on are failures. A member that failed has a reason in place of results."""
 
 _OUTCOMES = (
     (NOT_RUN, "not_run", None),
@@ -54,18 +54,18 @@ _OUTCOMES = (
 MEANINGS = {code: name for code, name, _ in _OUTCOMES}
 """Names of the codes."""
 CODES = {stop: code for code, _, stop in _OUTCOMES if stop is not None}
-"""The code of a member by the code that ended its run (`problem.run_codes`)."""
+"""The code of a member, by the code that its run ended with (`problem.run_codes`)."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
 PREFIX = "series_"
-"""Prefix of a curve's name among the results. It tells slip over time from the quantity `slip`, that of the whole run."""
+"""Results name a curve with this prefix: it tells slip over time from the quantity `slip`, the slip of the whole run."""
 SAMPLE_TIME = "time"
-"""Name of the dimension of the samples."""
+"""Samples lie along this dimension."""
 
 
 @dataclass(frozen=True, eq=False)
 class KeptCurves:
-    """The curves of a solution that are kept, and the sampling times (s). Samples at a shock are right limits."""
+    """Which curves of a solution to keep, and the sampling times (s). A sample at a shock is the right limit."""
 
     curves: tuple[str, ...]
     times: Floats
@@ -88,10 +88,10 @@ class KeptCurves:
 
 @dataclass(frozen=True)
 class Work:
-    """The work that is done for every member.
+    """What to do for every member.
 
     `text` is the scenario (TOML, in SI), `parameters` are those that vary, and `quantities` and `series` are the results kept.
-    With `defers`, members that the compiled batch must run by themselves are left for later: see `ChunkResult.later`.
+    With `defers`, the compiled batch leaves members that it must run by themselves for later: see `ChunkResult.later`.
     """
 
     text: str
@@ -102,12 +102,12 @@ class Work:
 
     @cached_property
     def scenario(self) -> Scenario:
-        """The scenario whose parameters are varied."""
+        """The scenario that members vary."""
         return read_scenario(self.text, "member")
 
     @cached_property
     def why_one_by_one(self) -> str:
-        """The reason in one line why the compiled batch cannot do this work; "" if it can."""
+        """Why the compiled batch cannot do this work, in one line; "" if it can."""
         if self.series:
             return "curves over time need whole solutions"
         own = next((one.name for one in self.quantities if QUANTITIES.get(one.name) is not one), None)
@@ -145,18 +145,18 @@ class ChunkResult:
     alone: dict[int, float] = field(default_factory=dict)
     """Processor time (s) of each member that ran by itself."""
     later: list[int] = field(default_factory=list)
-    """Members that were left for later, with the status NOT_RUN."""
+    """Members left for later; their status is NOT_RUN."""
 
     @classmethod
     def empty(cls, work: Work, count: int) -> ChunkResult:
-        """Return the results of `count` members before they are run: NaN, with the status "finished"."""
+        """Return results for `count` members that have not run yet: NaN, with the status "finished"."""
         results = {one.name: np.full(count, np.nan) for one in work.quantities}
         if work.series:
             results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
         return cls(results, np.zeros(count, np.int8))
 
     def fill(self, places: list[int], found: ChunkResult) -> None:
-        """Enter the results of members that were left for later, at their places in this chunk."""
+        """Enter the results of members left for later at their places in this chunk."""
         for name, values in found.results.items():
             self.results[name][places] = values
         self.status[places] = found.status
@@ -169,7 +169,7 @@ class ChunkResult:
 
 
 Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
-"""A function that runs chunks, each given by its number and its values, and yields their numbers and results in any order."""
+"""A function that takes chunks as (number, values), runs them, and yields (number, results) in any order."""
 
 
 def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = None) -> ChunkResult:
@@ -197,7 +197,7 @@ def compiled_batch(work: Work, values: Mapping[str, Values], threads: int) -> Ch
 
 
 def _refusal(work: Work, values: Mapping[str, float | str]) -> str:
-    """Return why the values of a member make no valid scenario, as when it is read by itself; "" if they make one."""
+    """Return why a member's values make no valid scenario, in the words of a scenario read by itself; "" if they make one."""
     try:
         work.member(values)
     except InputError as error:

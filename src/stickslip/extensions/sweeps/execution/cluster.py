@@ -1,7 +1,7 @@
-"""Execution of the chunks of a sweep on the workers of a dask.distributed cluster, on this machine or elsewhere.
+"""Run the chunks of a sweep on the workers of a dask.distributed cluster, on this machine or elsewhere.
 
-Results come back as they are ready. Retries, the loss of workers and load balancing are left to dask. The task of a chunk carries
-everything that it needs, a few kilobytes: nothing is placed on the workers beforehand, so nothing is lost with a worker.
+Results come back as they are ready. Dask repeats chunks, replaces lost workers and balances the load. The task of a chunk carries
+all that it needs, a few kilobytes: nothing is placed on the workers beforehand, so nothing is lost with a worker.
 
 The processes of dask run any code that is sent to them, and all users of a machine can reach its loopback address. The processes of
 a local cluster therefore share a key that is made for it and kept in memory; a connection without the key is refused.
@@ -35,22 +35,22 @@ Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
 
 LOOPBACK = "127.0.0.1"
-"""Address of a local cluster; no other machine can reach it."""
+"""A local cluster has this address; no other machine can reach it."""
 TIME_TO_ANSWER = 10.0
-"""Time (s) within which a scheduler must answer."""
+"""A scheduler must answer within this time (s)."""
 LARGEST_FILE = 1_000_000
-"""Largest size (bytes) of a scheduler file; a larger one is refused before it fills the memory."""
+"""Refuse a scheduler file that is larger than this (bytes), before it fills the memory."""
 AHEAD = 2
-"""Chunks in flight for each thread of the cluster: the one that it works on, and the next."""
+"""Each thread of the cluster has so many chunks in flight: the one that it works on, and the next."""
 CHUNKS_IN_FLIGHT = 8
-"""Smallest number of chunks in flight: a cluster that starts workers on demand does so only when chunks are waiting."""
+"""Keep at least this many chunks in flight: a cluster that starts workers on demand does so only when chunks wait."""
 RETRIES = 2
-"""Number of times that dask repeats a chunk that failed."""
+"""Dask repeats a failed chunk this many times."""
 GONE = "sweep: the dask scheduler is lost; finished chunks are kept: the same command continues"
 GONE_AGAIN = ("lost", "pending")
-"""Statuses of a chunk whose result was ready but lost with its worker before it was fetched. Dask computes it again."""
+"""A chunk has one of these statuses if its worker died with the finished result. Dask computes it again."""
 ENVIRON = "distributed.nanny.pre-spawn-environ"
-"""Prefix of dask's settings for the environment variables of worker processes."""
+"""Dask's settings for environment variables of worker processes begin with this."""
 SETTINGS = {
     "distributed.worker.profile.enabled": False,  # profiling costs a few per cent of all time, and is not used here
     # With dask's own settings, workers return every freed array to the operating system and fetch it again,
@@ -61,13 +61,13 @@ SETTINGS = {
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
 }
-"""Settings of dask for a local cluster; the thresholds are in bytes."""
+"""A local cluster runs dask with these settings; thresholds are in bytes."""
 LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""Code that local workers run first. Ctrl-C reaches them too, but the sweep must be the one to end them."""
+"""Local workers run this code first. Ctrl-C reaches them too, but only the sweep may end them."""
 
 
 class ChunksLostError(RuntimeError):
-    """The error of chunks that no worker could finish, with a message of one line that says why, and what to do."""
+    """No worker could finish some chunks. The message says in one line why, and what to do."""
 
 
 @contextmanager
@@ -104,7 +104,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
 def _ctrl_c_waits() -> Iterator[None]:
     """Hold back Ctrl-C until the end of the `with` block, in this thread, in those that it starts, and in all their processes.
 
-    Dask can end a cluster in order that has started, but not one that is being started: each of its processes would say at length
+    Dask ends a cluster in good order once it has started, but not while it starts: each of its processes would then say at length
     where it was interrupted.
     """
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "pthread_sigmask"):
@@ -160,8 +160,8 @@ def on_cluster(client: Client) -> Runner:
 def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
     """Yield the number and the result of each chunk as soon as it is ready, with few in flight at a time.
 
-    `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError is raised when these
-    are done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.
+    `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError comes when they are
+    done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.
     """
     from distributed import as_completed
 

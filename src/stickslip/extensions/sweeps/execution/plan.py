@@ -1,4 +1,4 @@
-"""The plan of a sweep before it is run: scenario, design, results to keep, and the division into chunks."""
+"""The plan of a sweep: its scenario and design, the results to keep, and how it is divided into chunks."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from stickslip.problem.scenarios import Scenario, read_scenario, read_source
 from stickslip.solution import CURVES
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
-"""Number of chunks into which a sweep is divided if no chunk size is given, and limits of their size (members).
+"""A sweep without a given chunk size is divided into so many chunks; and the limits of their size (members).
 
-The upper limit is LARGEST_CHUNK if members run one by one, and LARGEST_BATCH in the compiled batch. The chunks in progress are
-lost when a sweep is killed.
+A chunk has at most LARGEST_CHUNK members if they run one by one, and LARGEST_BATCH in the compiled batch. A sweep that is killed
+loses the chunks in progress.
 """
 SAMPLES_OF_CURVES = 200
-"""Default number of times for samples of curves."""
+"""Curves have so many samples by default."""
 MOST_SAMPLES = 1_000_000
-"""Largest number of samples of a curve, which limits its size to 8 MB for each member."""
+"""A curve has at most so many samples, so that it takes at most 8 MB for each member."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """The plan of a sweep. `tile` is the shape of a chunk: its number of members along each dimension of the design."""
+    """The plan of a sweep. A chunk has `tile` members along each dimension of the design."""
 
     scenario: Scenario
     design: Design
@@ -95,7 +95,7 @@ def make_plan(
 
 
 def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | str | WithUnit | None = None) -> Scenario:
-    """Return the scenario that is meant: a problem with a duration (s), a scenario, a scenario file, or a bundled name.
+    """Return the scenario that a user means: a problem with a duration (s), a scenario, a scenario file, or a bundled name.
 
     Raises InputError, also for a problem that no scenario file can describe: members are read from such files.
     """

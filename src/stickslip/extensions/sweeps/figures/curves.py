@@ -32,7 +32,7 @@ ALL, BESIDE = "members; no line where the result jumps", "members beside a jump,
 ENDS = "; lines end where the result jumps"
 """The explanation of the gaps of several curves, in the heading of their key."""
 STEPS_BESIDE = 3
-"""Number of steps on each side with which a step is compared."""
+"""Compare a step with this many steps on each side."""
 STEEP = 6.0
 """A jump is larger than this multiple of the median of the steps near it ..."""
 SHARE_OF_RANGE = 0.05

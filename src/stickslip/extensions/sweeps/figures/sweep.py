@@ -63,7 +63,7 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
 
 
 def _units_of(dataset: xr.Dataset) -> Units:
-    """Return the units in which the scenario of a sweep was given; none for a dataset of anybody without a scenario."""
+    """Return the given units of the scenario of a sweep; none for a dataset of anybody without a scenario."""
     with suppress(InputError, KeyError):
         return units_given(read_scenario(dataset.attrs["scenario"], "plot_sweep").problem)
     return {}

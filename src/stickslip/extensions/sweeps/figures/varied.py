@@ -117,7 +117,7 @@ class ShownQuantity:
     ends: tuple[str, ...] = ()
     """Words for 0 and 1, of a share; none of any other quantity."""
     line: tuple[float, str] | None = None
-    """A number at which a line is drawn, as the values are scaled, and what lies there."""
+    """Draw a line at this number, as the values are scaled; and what lies there."""
 
     @property
     def known(self) -> Floats:

@@ -6,7 +6,7 @@ each variable of each chunk take longer than the members themselves.
 In a folder, the store is laid out before the first member is run. After that, only chunks are added, each file under a temporary
 name that is changed when the file is complete. The status of a chunk is written after its results: a chunk without a status is not
 done, and is run again. A chunk that is done has all its files, and each file ends in its checksum. Nothing in the store depends on
-when, in which order or by which process chunks were done.
+when, in what order or by what process chunks were done.
 """
 
 from __future__ import annotations

@@ -110,7 +110,7 @@ class MemoryRecord:
 
     @classmethod
     def of(cls, table: NDArray[Any]) -> Any:  # the fields are arrays and not the numbers that their annotations say
-        """Return the records in a table as one object, each field of which is an array with one entry for each record.
+        """Return the records in a table as one object; each of its fields is an array with one entry for each record.
 
         The arrays share the table's memory. A row of floats in the record becomes the last axis of its array.
         """

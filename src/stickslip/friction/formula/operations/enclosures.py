@@ -3,7 +3,7 @@
 The coefficients of a formula in the slip rate are its value, its first derivative and half its second one. Each node of a formula
 has a row of a table: the low ends of its coefficients in columns 0 to 2, the high ends in columns 3 to 5, and in the last column
 how many orders may differ from 0; the columns of others are not read. A rule writes the row n of a node from the rows i and j of
-its arguments, of which a function has only the first.
+its arguments; a function has only the first.
 
 An infinite end means that nothing is known on that side; it is never reached, so that 0 times such an end is 0.
 
@@ -38,7 +38,7 @@ Ends = tuple[float, float]
 
 @exact
 def known(low: float, high: float) -> Ends:
-    """Return an interval, of which nothing is known on a side where the end is not a number; an overflow is not reached."""
+    """Return an interval; an end that is not a number becomes infinite, and an overflow is not reached."""
     if not (abs(low) < _INFINITE and abs(high) < _INFINITE):
         low = -_INFINITE if math.isnan(low) else min(low, _HUGE)
         high = _INFINITE if math.isnan(high) else max(high, -_HUGE)

@@ -75,7 +75,7 @@ def _log1p_series(w: Floats, n: int, i: int, j: int) -> None:
 
 @exact
 def _by_inverse(w: Floats, n: int, i: int, value: Ends, argument: Ends) -> None:
-    """Write the coefficients of a logarithm from its bounds and those of the argument of which it is the logarithm."""
+    """Write the coefficients of a logarithm from its bounds and those of its argument."""
     c, d = of_positive(argument[0], argument[1])
     less, more = square(c, d)
     chain(w, n, i, value, ((c, d), (-0.5 * more, -0.5 * less)))

@@ -12,7 +12,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 MOST_CELLS = 4096
-"""Largest number of cells (1) that layers are cut into."""
+"""Layers are cut into at most this many cells (1)."""
 ROUNDING_OF_DIVISION = 1e-13
 """Errors (1) up to this size are those of the division, and count as none."""
 

@@ -16,7 +16,7 @@ from stickslip.foundation.quantities import NumberSeries, Quantity
 from stickslip.problem.bodies.layered.cells import CellCut, cut_into_cells
 
 LARGEST_ERROR = 0.1
-"""Largest relative error (1) of a layer's travel time that may be allowed."""
+"""A user may allow at most this relative error (1) of a layer's travel time."""
 
 
 def of_layers(unit: str, meaning: str, side: str = "") -> NumberSeries:

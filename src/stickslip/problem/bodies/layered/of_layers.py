@@ -28,7 +28,7 @@ from stickslip.problem.bodies.uniform.with_waves import WithWaves
 
 DRAG_STEP = Quantity("1", "largest share of a wave that drag takes at one place", above=0)
 LARGEST_STEP = 0.5
-"""Largest `drag_step` (1) that may be allowed."""
+"""A user may allow at most this `drag_step` (1)."""
 USUAL_STEP = 0.02
 """The `drag_step` (1) unless it is given."""
 

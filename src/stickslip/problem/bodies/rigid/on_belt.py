@@ -9,7 +9,7 @@ from stickslip.problem.bodies.rigid.blocks import RotatingBlock, SpringBlock
 
 
 class OnBelt:
-    """What differs from a body whose spring is pulled: the pull rate is the velocity of what is under it."""
+    """What differs from a body whose spring is pulled: the pull rate is the velocity of the belt under it."""
 
     structure: ClassVar[str] = "belt"
     has_belt: ClassVar[bool] = True

@@ -77,7 +77,7 @@ class LayerEnergy:
         return self._places(np.concatenate([near, time - near[-2::-1]]))
 
     def _breaks(self) -> Floats:
-        """Return the times (s) at which a loading that varies breaks; it has not come to the contact at once."""
+        """Return when (s) a loading that varies breaks; it has not come to the contact at once."""
         return inflow_of(self.history.problem).start if self.history.problem.varies else np.zeros(1)
 
     def _places(self, edges: Floats) -> tuple[Floats, Floats]:

@@ -36,7 +36,7 @@ PULSE_COLUMNS = {
 GRID = 17
 """Number of places on a piece to compare in search of the smallest traction."""
 REFINEMENTS = 14
-"""Number of times that the grid is refined, by a factor of 8, around the smallest traction."""
+"""Refine the grid this many times, by a factor of 8, around the smallest traction."""
 
 
 class Pulses(NamedTuple):

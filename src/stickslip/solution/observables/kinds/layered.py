@@ -21,7 +21,7 @@ from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
 from stickslip.solution.observables.layers_found_again import loads_of_layers
 
 MOST_REPLAYED = 300_000
-"""Largest number of pieces times cells through which waves are replayed for a note; that takes a tenth of a second."""
+"""Replay waves for a note through at most this many pieces times cells; that takes a tenth of a second."""
 
 
 def of_layers(problem: Problem) -> OfLayers:
@@ -37,7 +37,7 @@ class ObservablesOfLayered(ObservablesOfKind):
         return _of_waves(history, at) | {"heat": heat(history, at, nodes)}
 
     def event_energies(self, history: History, first: Positions, last: Positions) -> dict[str, Floats]:
-        """Return the differences of what the energies are at the end and at the start of each event."""
+        """Return how much the energies change from the start to the end of each event."""
         if not len(first.piece):
             return {name: np.zeros(0) for name in ("released", "work", "damped", "trapped")}
         before, after = (_of_waves(history, at) for at in (first, last))

@@ -68,7 +68,7 @@ class ObservablesOfRigid(ObservablesOfKind):
         """Return None: there are no waves."""
 
     def at_driver(self, history: History, time: Floats, side: Side) -> AtDriver:
-        """Return the rate at which the end of the spring is pulled, and the force there: that of spring and dashpot."""
+        """Return the pull rate at the end of the spring, and the force there: that of spring and dashpot."""
         begun = history.epoch.trip * history.round_trip_time + history.epoch.offset
         slack = rounding(time, history.round_trip_time) * (1.0 if side == "left" else -1.0)
         rate = history.problem.pull_rate_at(np.maximum(begun + time - slack, 0.0))
@@ -110,7 +110,7 @@ def _held(history: History, at: Positions) -> Floats:
 
 
 def _pull_rate(history: History, at: Positions) -> Floats:
-    """Return the pull rate (m/s) at positions, at a jump that of the piece in which they are."""
+    """Return the pull rate (m/s) at positions, at a jump that of their piece."""
     return value_at(history.problem.pull_rate, *history.times_inside(at))
 
 
@@ -141,7 +141,7 @@ def _at_rest(history: History, at: Positions) -> Floats:
 
 
 def _in_rests(history: History, at: Positions, gained: Callable[[Positions, Positions], Floats]) -> Floats:
-    """Return the sum of what is gained from position to position, up to each position in rests that were not recorded."""
+    """Return the sum of gains from position to position, up to each position in rests that were not recorded."""
     before = np.flatnonzero(np.diff(history.store.trip) > 1)  # the last pieces before leaps
     whole = np.append(0.0, np.cumsum(gained(Positions.inside(before, 1.0), Positions.inside(before + 1, 0.0))))
     part = np.where(at.at_rest, gained(Positions.inside(at.last, 1.0), at), 0.0)

@@ -27,7 +27,7 @@ TEXTS_OF_FAULT = {
 }
 MAP = "Slip rate, slip or change of traction along the contact against time"
 MOST_COLUMNS = 400
-"""Largest number of moments of the map, which are evenly spaced; each shows the frame that is nearest to it."""
+"""The map has at most this many moments, evenly spaced; each shows the frame nearest to it."""
 
 
 def view_of_fault(answer: FaultAnswer, kept: FaultAnswer | None = None) -> View:
@@ -53,7 +53,10 @@ def _units(answer: FaultAnswer, kept: FaultAnswer | None) -> Units:
     time, place = readable_unit("s", np.ptp(main.time)), readable_unit("m", run.slab.y, of=PLACE)
     stress = readable_unit("Pa", *(curve - offset for one in both for curve in (one.traction, one.load)))
     slip, rate = readable_unit("m", run.slip), readable_unit("m/s", run.slip_rate)
-    return Units(time, time, 0.0, True, slip, rate, False, stress, offset, stress, rate, place)
+    return Units(
+        time=time, near=time, begin=0.0, whole=True, slip=slip, rate=rate, log=False,
+        stress=stress, offset=offset, load=stress, on_curve=rate, place=place,
+    )  # fmt: skip
 
 
 def _motion(answer: FaultAnswer, kept: FaultAnswer | None, units: Units) -> View:

@@ -1,4 +1,4 @@
-"""The panels of what is given over time: the motion of the ground, the pull rate, a stress or a load that varies."""
+"""The panels of given histories: the motion of the ground, the pull rate, a stress or a load that varies."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def data_of(answer: Answer, units: Units) -> View:
 
 
 def thinned(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return a curve as it is, or the extremes of each of `BINS` intervals in the order in which they are passed."""
+    """Return a curve as it is, or the extremes of each of `BINS` intervals in the order that the curve passes them."""
     if len(time) <= 2 * BINS:
         return time, values
     edges = np.searchsorted(time, np.linspace(time[0], time[-1], BINS + 1)[1:-1])

@@ -80,13 +80,13 @@ def data_of(answer: Answer, units: Units) -> View:
 
 
 def titles(spoken: Mapping[str, str], units: Units) -> dict[str, str]:
-    """Return the title of each panel, from the name of what it shows."""
+    """Return the title of each panel, by the name of the curve in it."""
     shown = zip(CURVE_OF.items(), (units.slip, units.rate, units.stress), strict=True)
     return {panel: axis_label(spoken[panel].capitalize(), plain_symbol(curve), unit) for (panel, curve), (unit, _) in shown}
 
 
 def read(units: Units) -> list[dict[str, Any]]:
-    """Return symbol and unit of what is read off at the cursor in each panel."""
+    """Return symbol and unit of the number at the cursor in each panel."""
     shown = zip(CURVE_OF.items(), (units.slip, units.rate, units.stress), strict=True)
     return [
         {"column": panel, "symbol": plain_symbol(curve), "unit": unit, "offset": bool(units.offset and panel == "traction")}
