@@ -9,7 +9,10 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test test-all browser lint compiled collected bench site oldest newest lock clean
+# Of tests with many cases some are run: the first ones, or those that a seed draws (see `--draw` in `pytest --help`).
+DRAW ?= first
+
+.PHONY: paper test test-week test-all browser lint compiled collected bench site oldest newest lock clean
 
 paper: compiled
 	$(BIN)/stickslip paper --out paper
@@ -19,7 +22,11 @@ paper: compiled
 # of the tests is written.
 test:
 	$(MAKE) --jobs=2 compiled lint browser collected
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --draw=$(DRAW) --numprocesses auto --dist worksteal
+
+# The tests of `make test` with other cases each week; the seed that pytest prints repeats them: make test DRAW=2026-W48
+test-week:
+	$(MAKE) test DRAW=$$(date -u +%G-W%V)
 
 # All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.

@@ -9,7 +9,6 @@ import gc
 import hashlib
 import os
 import signal
-from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from hypothesis import settings
 import stickslip as ss
 from tests.command_line import Outcome
 from tests.pictures import blank
+from tests.sampling import FIRST, drawn
 
 LONGEST = 60
 """Characters of a name."""
@@ -44,13 +44,17 @@ os.environ |= {
 }
 
 
-def pytest_report_header() -> str:
-    """Say whether the machine code that came is that of the sources: if not, it is made in the tests, and commands say so."""
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """Say which cases are drawn, and whether the machine code is that of the sources: if not, it is made in the tests."""
     from stickslip.foundation.code_key import SHIPPED
     from stickslip.foundation.kernels.code import NAME
 
+    draw = config.getoption("--draw")
     up_to_date = (SHIPPED / NAME).is_dir()
-    return f"machine code: {NAME}" if up_to_date else "machine code: out of date; `python -m stickslip.engine.build` makes it"
+    return [
+        f"sampled cases: those of --draw={draw}",
+        f"machine code: {NAME}" if up_to_date else "machine code: out of date; `python -m stickslip.engine.build` makes it",
+    ]
 
 
 @pytest.hookimpl(wrapper=True)
@@ -68,18 +72,26 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let a draw of the cases of sampled tests be asked for by its seed."""
+    about = "seed that draws the cases of sampled tests, as the week 2026-W48; by default the first ones are run"
+    parser.addoption("--draw", default=FIRST, metavar="SEED", help=about)
+
+
 @pytest.hookimpl(tryfirst=True)  # before slow tests are left out
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the cases of a test with `sampled(every=N)` as slow, but for each N-th one from the first on."""
-    cases: Counter[str] = Counter()
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the cases of a test with `sampled(every=N)` as slow, but for those that the draw takes."""
+    tests: dict[str, list[pytest.Item]] = {}
     for item in items:
-        sampled = item.get_closest_marker("sampled")
-        if sampled is None:
-            continue
-        test = item.nodeid.partition("[")[0]
-        if cases[test] % sampled.kwargs["every"]:
-            item.add_marker(pytest.mark.slow)
-        cases[test] += 1
+        if item.get_closest_marker("sampled"):
+            tests.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for test, cases in tests.items():
+        marker = cases[0].get_closest_marker("sampled")
+        assert marker is not None
+        run = drawn(test, len(cases), marker.kwargs["every"], config.getoption("--draw"))
+        for number, item in enumerate(cases):
+            if number not in run:
+                item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture
