@@ -54,7 +54,7 @@ PULLS: dict[str, Any] = {
 }
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("shares", [(1.0,), (0.2, 0.8), (0.3, 0.4, 0.3)])
 @pytest.mark.parametrize("pull", PULLS)
 @pytest.mark.parametrize("name", CASES)
