@@ -81,7 +81,7 @@ $(BIN)/python:
 # The lowest and the newest versions of libraries that pyproject.toml allows, each in an environment of its own, with `doctor` and the
 # tests that depend on libraries most. Needs uv; run both before a release and when a bound changes.
 MATTER = tests/core/engine/test_verified_numbers.py tests/extensions/sweeps/batch/test_members.py tests/core/figures/test_figures.py tests/extensions/sweeps/test_store.py \
-    tests/core/solution/exports tests/core/problem/scenarios tests/core/foundation/test_quantities.py tests/test_storage.py tests/core/cli/test_commands.py tests/extensions/explorer/test_page_views.py
+    tests/core/solution/exports tests/core/solution/files tests/core/problem/scenarios tests/core/foundation/test_quantities.py tests/core/cli/test_commands.py tests/extensions/explorer/test_page_views.py
 oldest: RESOLUTION = lowest-direct
 oldest: OLD_WARNINGS = -W ignore::DeprecationWarning
 newest: RESOLUTION = highest
