@@ -9,6 +9,7 @@ import gc
 import hashlib
 import os
 import signal
+from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping
 from pathlib import Path
 
@@ -22,9 +23,12 @@ import stickslip as ss
 from tests.command_line import Outcome
 from tests.pictures import blank
 from tests.sampling import FIRST, drawn
+from tests.spent import LONG, Clock, folder_of, table_of
 
 LONGEST = 60
 """Characters of a name."""
+CLOCK, SPENT, TESTS = Clock(), Counter[str](), Counter[str]()
+"""What a process has spent since its last report; what all tests have spent by folder, and their number there."""
 
 os.environ.pop("COLUMNS", None)  # test runners set it, and tables are as wide as it says
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in jobs that a shell runs in the background
@@ -70,6 +74,7 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.freeze()
         gc.set_threshold(700, 10, 50)  # beside so few old objects Python would walk those of the tests every few seconds
         gc.enable()
+        CLOCK.lap()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -92,6 +97,29 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for number, item in enumerate(cases):
             if number not in run:
                 item.add_marker(pytest.mark.slow)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Note in the report of each part of a test what it took of the processor, for the process that prints the table."""
+    report = yield
+    report.user_properties.append(("processor time", CLOCK.lap()))
+    return report
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    """Add up what the tests take of the processor, by folder."""
+    folder = folder_of(report.nodeid)
+    SPENT[folder] += dict(report.user_properties).get("processor time", 0.0)
+    TESTS[folder] += report.when == "call"
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Write the table of what the tests took of the processor."""
+    if SPENT.total() > LONG:
+        terminalreporter.section("processor time of the tests, by folder")
+        for line in table_of(SPENT, TESTS):
+            terminalreporter.line(line)
 
 
 @pytest.fixture
