@@ -215,13 +215,19 @@ def test_what_came_serves_without_the_compiler(tmp_path: Path, expected: str) ->
     assert (printed(done), done.stderr) == (f"{expected} True\n", "")  # its name stands there, without a module
 
 
-def test_two_processes_that_begin_at_once_on_an_empty_cache_get_the_same(tmp_path: Path, expected: str) -> None:
+@pytest.mark.parametrize("script", [NEW_LAW, pytest.param(SMALL, marks=pytest.mark.slow)], ids=["formula", "entry"])
+def test_two_processes_that_begin_at_once_on_an_empty_cache_get_the_same(script: str, tmp_path: Path) -> None:
+    """A formula, whose code needs no numba, and an entry of the engine, which each of them compiles for some seconds."""
+    cache, shipped = tmp_path / "cache", tmp_path / "nothing" if script == SMALL else None
     with ThreadPoolExecutor(2) as pool:
-        both = list(pool.map(lambda _: python(SMALL, tmp_path / "cache", tmp_path / "nothing"), range(2)))
-    assert [printed(done) for done in both] == [f"{expected} True\n"] * 2
-    assert [done.stderr.count("\n") for done in both] == [1, 1]
-    assert [path.name for path in (tmp_path / "cache").rglob("compiled-*/*")] == [SMALL_FILE]
-    assert printed(python(SMALL, tmp_path / "cache", tmp_path / "nothing")) == f"{expected} False\n"
+        one, other = pool.map(lambda _: python(script, cache, shipped), range(2))
+    assert printed(one) == printed(other)
+    assert [done.stderr.count("\n") for done in (one, other)] == [shipped is not None] * 2
+    made = {path.name for path in cache.rglob("compiled-*/*")}
+    assert made == {SMALL_FILE} if shipped else all(name.startswith("formula-") and name.endswith(".o") for name in made)
+    again = python(script, cache, shipped)
+    assert (printed(again).split()[:-1], again.stderr) == (printed(one).split()[:-1], "")
+    assert made == {path.name for path in cache.rglob("compiled-*/*")} != set()
 
 
 # ---- other processors: the same bits -------------------------------------------------------------------------------------------
