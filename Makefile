@@ -9,7 +9,10 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test test-all browser lint compiled collected bench site oldest newest lock clean
+# Of tests with many cases some are run: the first ones, or those that a seed draws (see `--draw` in `pytest --help`).
+DRAW ?= first
+
+.PHONY: paper test test-week test-all browser lint compiled collected bench site oldest newest lock clean
 
 paper: compiled
 	$(BIN)/stickslip paper --out paper
@@ -19,7 +22,11 @@ paper: compiled
 # of the tests is written.
 test:
 	$(MAKE) --jobs=2 compiled lint browser collected
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --draw=$(DRAW) --numprocesses auto --dist worksteal
+
+# The tests of `make test` with other cases each week; the seed that pytest prints repeats them: make test DRAW=2026-W48
+test-week:
+	$(MAKE) test DRAW=$$(date -u +%G-W%V)
 
 # All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
@@ -74,7 +81,7 @@ $(BIN)/python:
 # The lowest and the newest versions of libraries that pyproject.toml allows, each in an environment of its own, with `doctor` and the
 # tests that depend on libraries most. Needs uv; run both before a release and when a bound changes.
 MATTER = tests/core/engine/test_verified_numbers.py tests/extensions/sweeps/batch/test_members.py tests/core/figures/test_figures.py tests/extensions/sweeps/test_store.py \
-    tests/core/solution/exports tests/core/problem/scenarios tests/core/foundation/test_quantities.py tests/test_storage.py tests/core/cli/test_commands.py tests/extensions/explorer/test_page_views.py
+    tests/core/solution/exports tests/core/solution/files tests/core/problem/scenarios tests/core/foundation/test_quantities.py tests/core/cli/test_commands.py tests/extensions/explorer/test_page_views.py
 oldest: RESOLUTION = lowest-direct
 oldest: OLD_WARNINGS = -W ignore::DeprecationWarning
 newest: RESOLUTION = highest

@@ -22,9 +22,13 @@ from hypothesis import settings
 import stickslip as ss
 from tests.command_line import Outcome
 from tests.pictures import blank
+from tests.sampling import FIRST, drawn
+from tests.spent import LONG, Clock, folder_of, table_of
 
 LONGEST = 60
 """Characters of a name."""
+CLOCK, SPENT, TESTS = Clock(), Counter[str](), Counter[str]()
+"""What a process has spent since its last report; what all tests have spent by folder, and their number there."""
 
 os.environ.pop("COLUMNS", None)  # test runners set it, and tables are as wide as it says
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in jobs that a shell runs in the background
@@ -44,13 +48,17 @@ os.environ |= {
 }
 
 
-def pytest_report_header() -> str:
-    """Say whether the machine code that came is that of the sources: if not, it is made in the tests, and commands say so."""
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """Say which cases are drawn, and whether the machine code is that of the sources: if not, it is made in the tests."""
     from stickslip.foundation.code_key import SHIPPED
     from stickslip.foundation.kernels.code import NAME
 
+    draw = config.getoption("--draw")
     up_to_date = (SHIPPED / NAME).is_dir()
-    return f"machine code: {NAME}" if up_to_date else "machine code: out of date; `python -m stickslip.engine.build` makes it"
+    return [
+        f"sampled cases: those of --draw={draw}",
+        f"machine code: {NAME}" if up_to_date else "machine code: out of date; `python -m stickslip.engine.build` makes it",
+    ]
 
 
 @pytest.hookimpl(wrapper=True)
@@ -66,20 +74,52 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.freeze()
         gc.set_threshold(700, 10, 50)  # beside so few old objects Python would walk those of the tests every few seconds
         gc.enable()
+        CLOCK.lap()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let a draw of the cases of sampled tests be asked for by its seed."""
+    about = "seed that draws the cases of sampled tests, as the week 2026-W48; by default the first ones are run"
+    parser.addoption("--draw", default=FIRST, metavar="SEED", help=about)
 
 
 @pytest.hookimpl(tryfirst=True)  # before slow tests are left out
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the cases of a test with `sampled(every=N)` as slow, but for each N-th one from the first on."""
-    cases: Counter[str] = Counter()
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the cases of a test with `sampled(every=N)` as slow, but for those that the draw takes."""
+    tests: dict[str, list[pytest.Item]] = {}
     for item in items:
-        sampled = item.get_closest_marker("sampled")
-        if sampled is None:
-            continue
-        test = item.nodeid.partition("[")[0]
-        if cases[test] % sampled.kwargs["every"]:
-            item.add_marker(pytest.mark.slow)
-        cases[test] += 1
+        if item.get_closest_marker("sampled"):
+            tests.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for test, cases in tests.items():
+        marker = cases[0].get_closest_marker("sampled")
+        assert marker is not None
+        run = drawn(test, len(cases), marker.kwargs["every"], config.getoption("--draw"))
+        for number, item in enumerate(cases):
+            if number not in run:
+                item.add_marker(pytest.mark.slow)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Note in the report of each part of a test what it took of the processor, for the process that prints the table."""
+    report = yield
+    report.user_properties.append(("processor time", CLOCK.lap()))
+    return report
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    """Add up what the tests take of the processor, by folder."""
+    folder = folder_of(report.nodeid)
+    SPENT[folder] += dict(report.user_properties).get("processor time", 0.0)
+    TESTS[folder] += report.when == "call"
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Write the table of what the tests took of the processor."""
+    if SPENT.total() > LONG:
+        terminalreporter.section("processor time of the tests, by folder")
+        for line in table_of(SPENT, TESTS):
+            terminalreporter.line(line)
 
 
 @pytest.fixture

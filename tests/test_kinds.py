@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import inspect
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.house import House
 
 import stickslip as ss
 from stickslip.contact.disturbance import Response
@@ -56,13 +55,16 @@ ELSEWHERE = {"tried", "run", "modes_at", "shown", "record", "part", "cycles", "o
 """What answers are asked about that only a search, a fit or a page makes: those questions are asked in tests of their rooms."""
 
 
+TABLE = re.compile(r"^(\w+): [^\n]*= ByKind\(", re.MULTILINE)
+
+
 def tables() -> Iterator[tuple[str, ByKind[Any]]]:
     """Yield each table of answers, wherever it stands in the package, with the place of its questions."""
-    for file, tree in sorted(House(PACKAGE).trees.items()):
-        for node in tree.body:
-            if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and "= ByKind(" in ast.unparse(node):
-                module: ModuleType = import_module("stickslip." + file.removesuffix(".py").replace("/", "."))
-                yield f"{file} {node.target.id}", getattr(module, node.target.id)
+    for path in sorted(PACKAGE.rglob("*.py")):
+        file = path.relative_to(PACKAGE).as_posix()
+        for name in TABLE.findall(path.read_text(encoding="utf-8")):
+            module: ModuleType = import_module("stickslip." + file.removesuffix(".py").replace("/", "."))
+            yield f"{file} {name}", getattr(module, name)
 
 
 TABLES = dict(tables())

@@ -35,7 +35,7 @@ NUMPY = TYPER | {"numpy", "numpy.polynomial", "numpy.typing"}
 SHOWN = NUMPY | {"rich"}
 ENGINE = SHOWN | {"llvmlite", "platformdirs", "numpy.ma"}
 """What machine code needs; `numpy.unique` asks whether arrays are masked."""
-FILES = {"h5netcdf", "h5py", "packaging", "tomli_w"}
+FILES = {"h5py", "tomli_w"}
 """What writes a run; h5py alone reads it."""
 MATPLOTLIB = {
     *("PIL", "contourpy", "cycler", "dateutil", "fontTools", "kiwisolver", "matplotlib", "mpl_toolkits", "packaging"),
@@ -99,6 +99,7 @@ def folder_of_runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("typed", MAY_LOAD)
 def test_a_command_loads_no_library_that_it_does_not_need(typed: str, folder_of_runs: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(folder_of_runs)

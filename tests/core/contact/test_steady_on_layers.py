@@ -186,7 +186,7 @@ DRAGGED = {"driver_impedance": 5e6, "drag": [300.0, 100.0]}
 ON_BOTH = {"other_driver_impedance": 8e6, "other_drag": [200.0]}
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("far", [None, "66 MPa"])
 @pytest.mark.parametrize(
     "body",

@@ -31,7 +31,7 @@ def found_for(law: Any, stiffness: float, mass: float = 10.0, damping: float = 0
     return proven_slidings(ss.Problem(body, law, pull_rate=1e-6))
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 @pytest.mark.parametrize("mass", [1e-3, 1e6])
 def test_the_critical_rate_of_rice_and_ruina_is_enclosed(evolution: str, mass: float):

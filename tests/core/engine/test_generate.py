@@ -73,7 +73,7 @@ def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
     assert np.abs(jet[1:]).max() > 1e-4
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("bend", [0.0, 0.03])
 @pytest.mark.parametrize("name", FORMULAS)
 def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> None:

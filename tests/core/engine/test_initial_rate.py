@@ -34,7 +34,7 @@ EACH_BODY = pytest.mark.parametrize("name", BODIES)
 BOTH_WAYS = pytest.mark.parametrize("way", [1, -1])
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=13)
 @EACH_BODY
 @BOTH_WAYS
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])

@@ -62,7 +62,7 @@ def series(seed: int) -> Block:
     return block
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     function = compiled(FUNCTIONS[name])

@@ -60,7 +60,7 @@ def stuck_load(problem: ss.Problem, t: float) -> float:
     return total - drag * begin * (ROUND - left) / half + 2.0 * drag * float(problem.pull_rate_at(left - half))
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=7)
 @EACH
 def test_a_stuck_slab_sums_its_bounces(name: str) -> None:
     """To 1e-12 of the largest change of the load and 4 ulp of it, over 300 round trips that are leaped over where they can be."""
@@ -74,7 +74,7 @@ def test_a_stuck_slab_sums_its_bounces(name: str) -> None:
     assert np.abs(expected - SLAB.stiffness * problem.first_pull_rate * times).max() > 1e-3 * np.abs(expected).max()
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @EACH
 def test_a_stuck_block_follows_its_driver(name: str) -> None:
     """K times what was pulled, by quadrature; to 1e-11 of the largest change."""
@@ -115,7 +115,7 @@ LAWS = {
 SLIDING = ("slow tone", "fast tone", "steps", "piecewise linear", "hold and slide")
 
 
-@pytest.mark.sampled(every=8)
+@pytest.mark.sampled(every=17)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_runs_under_every_history_agree_with_the_method_of_steps(body: str, law: str) -> None:

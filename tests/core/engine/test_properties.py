@@ -20,7 +20,7 @@ COMPILED_ANEW = ("table", "expression", "product", "sum")
 """Laws of which every example is a new formula, compiled for seconds: other tests run them."""
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("kind", [kind for kind in LAWS if kind not in COMPILED_ANEW])
 @given(data=st.data())
 @few
@@ -71,7 +71,7 @@ def obeys(run: ss.Solution) -> None:
     assert float(np.abs(energy.balance).max()) <= 1e-8 * size + rounding
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", ["coulomb", "hyperbolic-rate", "exponential-stribeck", "piecewise-linear-rate", "power-stribeck"])
 @given(data=st.data())
 @few

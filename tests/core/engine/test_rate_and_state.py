@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import argrelmax
 
 import stickslip as ss
 from stickslip.run.reference.rate_and_state import SteadySliding
@@ -30,6 +29,8 @@ def steady(body: Any, law: ss.friction.RateAndState, off: float = 1.0) -> ss.Pro
 
 def growth(solution: ss.Solution, start: float) -> float:
     """Rate (1/s) at which the swings of the slip rate about SPEED grow, from its maxima after `start`."""
+    from scipy.signal import argrelmax  # here, because its import takes as long as the collection of a hundred tests
+
     time = np.linspace(start, solution.duration, 40_001)
     rate = solution.slip_rate(time) / SPEED - 1.0
     top = argrelmax(rate, order=100)[0]

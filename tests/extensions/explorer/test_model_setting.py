@@ -155,7 +155,7 @@ def test_bad_entry_is_refused_in_one_line(path: str, typed: str, part: str) -> N
     assert part in one_line(error)
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @everywhere
 def test_every_exchange_of_a_kind_makes_a_scenario(name: str) -> None:
     for setting in exchanged(name):

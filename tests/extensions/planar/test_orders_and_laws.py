@@ -34,7 +34,7 @@ def slip(law: ss.friction.FrictionLaw, nodes: int, steps: int | None = None, bar
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("barrier", "low", "high"),
-    [(None, 3.7, 4.1), pytest.param(lambda y: np.abs(y) > 9.9e3, 1.7, 2.1, marks=pytest.mark.slow)],
+    [(None, 3.7, 4.1), (lambda y: np.abs(y) > 9.9e3, 1.7, 2.1)],
     ids=["smooth", "barriers"],
 )
 def test_halving_steps_and_distances_quarters_smooth_errors_and_halves_those_at_barriers(
@@ -60,7 +60,7 @@ LAWS = {str(seed): drawn(seed) for seed in (1, 2, 3, 4)} | {"strengthens": "0.6 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name if name == "1" else pytest.param(name, marks=pytest.mark.slow) for name in LAWS])
+@pytest.mark.parametrize("name", LAWS)
 def test_a_law_slips_as_in_the_volume(name: str) -> None:
     """To 1e-3 of the largest slip: laws drawn at random, and one whose S mu' is up to 1e4 Z, so that explicit steps blow up."""
     law = ss.friction.FromExpression(LAWS[name])

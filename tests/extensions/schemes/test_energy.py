@@ -28,7 +28,7 @@ def balance(series: Series) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     return series.energies @ np.array([1.0, -1.0, 1.0, 1.0])
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("name", SCHEMES)
 def test_each_scheme_balances_its_own_energy_to_rounding(name: str, case: str) -> None:

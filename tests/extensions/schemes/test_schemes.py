@@ -37,7 +37,7 @@ def error(name: str, cells: int, exact: ss.Solution) -> float:
     return float(np.abs(series.slip - exact.slip(np.minimum(series.time, 4.0)) + SMOOTH.initial_slip)[inside].max())
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", STICK)
 def test_each_scheme_converges_at_its_declared_order(name: str, exact: ss.Solution) -> None:
     coarse, fine = (error(name, cells, exact) for cells in (80, 160))

@@ -15,6 +15,7 @@ from stickslip.engine import build
 from stickslip.engine.history.status import engine_key
 from stickslip.foundation import code_key
 from stickslip.foundation.code_key import SHIPPED, key_of_files
+from stickslip.foundation.kernels import code
 from stickslip.foundation.kernels.code import NAME, SOURCES, compiled_sources
 from stickslip.foundation.kernels.kernels import Entry
 from stickslip.foundation.kernels.processor import PROCESSOR
@@ -92,11 +93,12 @@ def test_the_keys_that_came_are_found_by_the_files_and_by_no_version_of_python(m
     assert engine_key() in code_key.keys_that_came().values()
 
 
+@pytest.mark.sampled(every=3)  # tests/test_loaded.py sees that no command loads the compiler
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["run", "fig6-slab", "--figure", "a.png"],
         ["run", "rate-and-state-block"],
+        ["run", "fig6-slab", "--figure", "a.png"],
         ["check", "fig6-slab"],
     ],
     ids=" ".join,
@@ -172,22 +174,28 @@ def spoil(shipped: Path, what: str) -> None:
         shipped.rename(shipped.with_name("full"))
 
 
-@pytest.mark.parametrize(
-    ("what", "why"),
-    [
-        ("a file", MISSING),
-        ("code of this version", "the code has changed since the package was built"),
-        ("code for this processor", f"machine code for this processor ({PROCESSOR.name}) came only for linux-sparc-own-0123"),
-        ("all", f"machine code for this processor ({PROCESSOR.name}) did not come with the package"),
-    ],
-)
-def test_what_is_missing_is_made_after_one_line_that_says_why(
-    what: str, why: str, shipped: Path, tmp_path: Path, expected: str
-) -> None:
+WHY = {
+    "a file": MISSING,
+    "code of this version": "the code has changed since the package was built",
+    "code for this processor": f"machine code for this processor ({PROCESSOR.name}) came only for linux-sparc-own-0123",
+    "all": f"machine code for this processor ({PROCESSOR.name}) did not come with the package",
+}
+
+
+@pytest.mark.parametrize("what", WHY)
+def test_why_what_came_does_not_serve_is_said(what: str, shipped: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoil(shipped, what)
+    monkeypatch.setattr(code, "SHIPPED", shipped)
+    assert code.why_not_shipped() == WHY[what]
+
+
+@pytest.mark.sampled(every=4)
+@pytest.mark.parametrize("what", ["code of this version", "a file", "code for this processor", "all"])
+def test_what_is_missing_is_made_after_one_line_that_says_why(what: str, shipped: Path, tmp_path: Path, expected: str) -> None:
     spoil(shipped, what)
     done = python(SMALL, tmp_path / "cache", shipped)
     assert printed(done) == f"{expected} True\n"
-    assert done.stderr == f"stickslip: compiling the engine, a minute or more, once: {why}\n"
+    assert done.stderr == f"stickslip: compiling the engine, a minute or more, once: {WHY[what]}\n"
     done = python(SMALL, tmp_path / "cache", shipped)
     assert (printed(done), done.stderr) == (f"{expected} False\n", "")
 
@@ -207,13 +215,19 @@ def test_what_came_serves_without_the_compiler(tmp_path: Path, expected: str) ->
     assert (printed(done), done.stderr) == (f"{expected} True\n", "")  # its name stands there, without a module
 
 
-def test_two_processes_that_begin_at_once_on_an_empty_cache_get_the_same(tmp_path: Path, expected: str) -> None:
+@pytest.mark.parametrize("script", [NEW_LAW, pytest.param(SMALL, marks=pytest.mark.slow)], ids=["formula", "entry"])
+def test_two_processes_that_begin_at_once_on_an_empty_cache_get_the_same(script: str, tmp_path: Path) -> None:
+    """A formula, whose code needs no numba, and an entry of the engine, which each of them compiles for some seconds."""
+    cache, shipped = tmp_path / "cache", tmp_path / "nothing" if script == SMALL else None
     with ThreadPoolExecutor(2) as pool:
-        both = list(pool.map(lambda _: python(SMALL, tmp_path / "cache", tmp_path / "nothing"), range(2)))
-    assert [printed(done) for done in both] == [f"{expected} True\n"] * 2
-    assert [done.stderr.count("\n") for done in both] == [1, 1]
-    assert [path.name for path in (tmp_path / "cache").rglob("compiled-*/*")] == [SMALL_FILE]
-    assert printed(python(SMALL, tmp_path / "cache", tmp_path / "nothing")) == f"{expected} False\n"
+        one, other = pool.map(lambda _: python(script, cache, shipped), range(2))
+    assert printed(one) == printed(other)
+    assert [done.stderr.count("\n") for done in (one, other)] == [shipped is not None] * 2
+    made = {path.name for path in cache.rglob("compiled-*/*")}
+    assert made == {SMALL_FILE} if shipped else all(name.startswith("formula-") and name.endswith(".o") for name in made)
+    again = python(script, cache, shipped)
+    assert (printed(again).split()[:-1], again.stderr) == (printed(one).split()[:-1], "")
+    assert made == {path.name for path in cache.rglob("compiled-*/*")} != set()
 
 
 # ---- other processors: the same bits -------------------------------------------------------------------------------------------

@@ -54,7 +54,7 @@ PULLS: dict[str, Any] = {
 }
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("shares", [(1.0,), (0.2, 0.8), (0.3, 0.4, 0.3)])
 @pytest.mark.parametrize("pull", PULLS)
 @pytest.mark.parametrize("name", CASES)
@@ -180,7 +180,7 @@ def of_trapezium(
     return moves
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("gain", [0.0, 0.4])
 def test_layers_with_contrast_move_as_an_own_program_says(seed: int, gain: float, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,7 +209,7 @@ def test_layers_with_contrast_move_as_an_own_program_says(seed: int, gain: float
     assert errors[1] < 0.4 * errors[0]
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("stop", [1.7, 9.3, 13.7])
 def test_a_run_that_is_taken_up_again_has_every_bit(stop: float, tmp_path: Path) -> None:
     body = ss.LayeredSlab(

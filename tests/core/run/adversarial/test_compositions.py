@@ -16,7 +16,7 @@ SAMPLE = [(structure, numbers) for structure in (1, 7, 8, 10, 17, 24) for number
 """Short formulas, of all kinds of problems: those of depth 4 take up to half a minute to compile."""
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize(("structure", "numbers"), SAMPLE)
 def test_slip_is_that_of_an_answer_that_cannot_jump(structure: int, numbers: int) -> None:
     """Slip, and the time of the arrest, to 1e-7."""

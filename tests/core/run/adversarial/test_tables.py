@@ -16,7 +16,7 @@ from tests.core.run.adversarial.barriers import BARRIERS, CLAIM, DURATION, EXCES
 from tests.core.run.adversarial.walk import Place, walk
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", BARRIERS)
 def test_slip_stops_at_a_hidden_barrier(name: str) -> None:
     barrier = BARRIERS[name]

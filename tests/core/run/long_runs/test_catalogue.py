@@ -57,7 +57,7 @@ def test_a_column_on_pulses_is_that_of_the_whole_run(name: str, monkeypatch: pyt
     same(table, ss.simulate(*RUNS[name]).catalogue())
 
 
-@pytest.mark.sampled(every=10)
+@pytest.mark.sampled(every=19)
 @pytest.mark.parametrize("name", RUNS)
 @pytest.mark.parametrize("capacity", [64, 512])
 def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ Source of the equations: Campillo et al. 1996, eqs (4)-(6) for the block, (12)-(
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,12 +20,16 @@ from scipy.optimize import brentq
 
 from stickslip.foundation.errors import InputError
 from stickslip.friction import HyperbolicRate
-from stickslip.friction.formula.differences import difference
+from stickslip.friction.formula.at_points import AtPoints
+from stickslip.friction.formula.differences import changes, points_of, tape_of_changes
+from stickslip.friction.formula.expression import Expression
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 Load = Callable[[float, float], float]
 """Load minus initial strength (Pa or N) as a function of time (s) and of slip since the start (m)."""
+FIRST = np.zeros(1, np.int64)
+"""The formula and the member of points that have one of each."""
 _MAX_PIECES = 20_000
 """Number of pieces beyond which events are taken to accumulate at a point in time."""
 
@@ -95,8 +99,8 @@ class _Stepper:
         body, law = self.problem.body, self.problem.friction
         self.mass = body.inertia
         self.normal, self.strength = self.problem.normal, self.problem.strength
-        self.trees, self.knots = law.trees(), law.knots
-        self.numbers = [law.numbers(i) for i in range(len(law.pieces))]
+        self.knots = law.knots
+        self.pieces_of_law = [self._points(tree, law.numbers(i)) for i, tree in enumerate(law.trees())]
         self.hyperbolic = self.mass == 0.0 and law.kind == "hyperbolic-rate"
         if self.mass == 0.0 and law.depends_on_rate and law.kind not in ("hyperbolic-rate", "coulomb"):
             raise InputError(f"method_of_steps: cannot solve {type(law).__name__} on a contact without mass")
@@ -113,8 +117,13 @@ class _Stepper:
 
     def friction(self, walked: float, rate: float) -> float:
         """Return S [mu(law slip, rate) - mu(law slip at the start, 0)] (Pa or N)."""
-        step, _ = difference(self.trees[self.part], self.numbers[self.part], self.problem.law_slip, walked, rate)
-        return self.normal * (float(step) + self.offsets[self.part])
+        step, _ = changes(self.pieces_of_law[self.part], FIRST, walked, np.array([rate]))
+        return self.normal * (float(step[0]) + self.offsets[self.part])
+
+    def _points(self, tree: Expression, numbers: Mapping[str, float]) -> AtPoints:
+        """Return what follows a piece of the law from its initial slip, as `difference` does: made once, not in each call."""
+        tape = tape_of_changes((tree,), tuple(numbers))
+        return points_of(tape, FIRST, np.array([[*numbers.values(), self.problem.law_slip]]))
 
     def pull(self, sense: int, load: float) -> float:
         """Return the load in the direction of slip, minus the initial static strength (Pa or N)."""

@@ -113,7 +113,7 @@ def of_events(run: Solution, table: pd.DataFrame) -> Iterator[tuple[str, np.ndar
     yield "traction_drop", (table.traction_before - table.traction_after).to_numpy(), loads
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("kind", KINDS)
 def test_slip_events_in_every_file(kind: str, tmp_path: Path) -> None:
     """In the table, with units in its headings, and in the file of the run; a slip back is negative."""

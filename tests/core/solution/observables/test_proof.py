@@ -29,6 +29,7 @@ CASES = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("make", RUNS)
 def test_no_step_misses_more_than_is_proven_without_the_series(make: Callable[[int], ss.Problem]) -> None:
     """Every step is proven anew, and somewhere more than a third of the bound is really missed, at rtol 1e-6.
@@ -49,7 +50,7 @@ def test_no_step_misses_more_than_is_proven_without_the_series(make: Callable[[i
     assert run.proven.residual < (3.0 if make.__name__ in IMPLICIT else 3e-2) * np.nanmax(recorded)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("case", [pytest.param(case, marks=pytest.mark.slow) if "implicit" in case else case for case in CASES])
 def test_a_wrong_engine_does_not_escape_its_proof(case: str) -> None:
     """Wrong coefficients of series, and wrong values of the law's compiled formula: never is more missed than said.

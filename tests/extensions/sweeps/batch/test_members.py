@@ -45,7 +45,7 @@ def test_members_equal_the_runs_of_simulate(name: str) -> None:
         assert found == pytest.approx(expected, nan_ok=True, **ROUNDING)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["rate", "slip", "driver", "linear block", "gauss"])
 def test_results_do_not_depend_on_threads_order_or_other_members(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     case = CASES[name]
