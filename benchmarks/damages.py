@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from stickslip.extensions.sweeps.results.layout import FORMAT
+from stickslip.extensions.sweeps.results.layout import SWEEP_FORMAT
 from stickslip.foundation import netcdf_file
 
 BLOCK = 512
@@ -108,7 +108,7 @@ def edit_metadata(path: Path, store: Path, rng: np.random.Generator) -> str:
     else:
         place[key] = ODD[int(rng.integers(len(ODD)))]
     with suppress(KeyError, TypeError, AttributeError):
-        whole["attributes"]["digest"] = FORMAT.digest_of(whole["attributes"])
+        whole["attributes"]["digest"] = SWEEP_FORMAT.digest_of(whole["attributes"])
         for name, known in whole["consolidated_metadata"]["metadata"].items():
             (store / name / "zarr.json").write_text(json.dumps(known), encoding="utf-8")
     path.write_text(json.dumps(whole), encoding="utf-8")

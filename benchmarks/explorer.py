@@ -18,7 +18,7 @@ from stickslip.extensions.explorer.model.answer import Answer
 from stickslip.extensions.explorer.model.setting import Setting
 from stickslip.extensions.explorer.model.solve import solve
 from stickslip.extensions.explorer.model.strip import MEMBERS, strip_of
-from stickslip.extensions.explorer.page.page import TITLES
+from stickslip.extensions.explorer.page.page import TITLES_OF_PANELS
 from stickslip.extensions.explorer.page.panels import view_of
 from stickslip.extensions.explorer.page.view import headings_of, view_bytes
 from stickslip.foundation.axis import Axis
@@ -49,7 +49,7 @@ def least(work: Callable[[int], Any], repeats: int = REPEATS) -> float:
 def picture_of(answer: Answer) -> bytes:
     """Return what is sent of an answer."""
     view = view_of(answer)
-    return view_bytes(view, headings_of(view, TITLES))
+    return view_bytes(view, headings_of(view, TITLES_OF_PANELS))
 
 
 def measure(name: str, path: str, value: float) -> tuple[float, float, float, float]:

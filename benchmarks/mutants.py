@@ -82,7 +82,7 @@ NAMED = (
         "return direction * run.trial[1] > grows * (",
         "return direction * run.trial[1] < grows * (",
     ),
-    Named("tolerance-times-1000", "engine/input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
+    Named("tolerance-times-1000", "engine/input/prepare.py", "= rtol * SHARE_OF_TOLERANCE,", "= 1000.0 * rtol * SAFETY,"),
     Named(
         "no-certificates",
         "engine/contact_step/certificate.py",

@@ -21,7 +21,7 @@ from stickslip.engine.lanes.setups import set_up
 from stickslip.engine.lanes.vectorised_problem import member
 from stickslip.engine.lanes.workspace import new_workspace, table_of
 from stickslip.extensions.sweeps.batch import QUANTITIES, run_members
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 from stickslip.friction import SinusoidalSlip
 from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.scenarios.scenario import Scenario
@@ -71,7 +71,7 @@ def setups_given(task: Task, members: int) -> Run:
 
     def run(threads: int) -> Floats:
         work.upcoming[:] = 0
-        assert run_group(Group(engine_address(), setups, False, stop, codes, out), base, stride, work) == WIDTH
+        assert run_group(Group(engine_address(), setups, False, stop, codes, out), base, stride, work) == SIMD_WIDTH
         return out[:, QUANTITIES.index("slip")]
 
     return run

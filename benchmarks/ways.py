@@ -113,7 +113,6 @@ WAYS: dict[str, tuple[Step, ...]] = {
             60,
             (*(fitted(name, 0.05) for name in ("a", "b", "distance")),),
         ),
-        Step("explore --static tour", 90, (r"tour",)),
     ),
     "soil dynamics": (
         Step("check slope.toml", 15, (r"0\.3 g|2\.94",)),

@@ -34,7 +34,7 @@ def replaced(module: Any, name: str, wrong: Callable[..., Any]) -> Iterator[None
 def wrong_lines() -> Iterator[tuple[str, Any, str, Callable[[int, float], Callable[..., Any]]]]:
     """Yield the problem that shows it, the module and the function, and what makes its k-th coefficient wrong by a share."""
     from stickslip.engine.contact import pressing
-    from stickslip.engine.waves import driver, tone
+    from stickslip.engine.waves import driver
 
     def of_series(right: Callable[..., None]) -> Callable[[int, float], Callable[..., Any]]:
         def made(k: int, by: float) -> Callable[..., Any]:
@@ -56,7 +56,7 @@ def wrong_lines() -> Iterator[tuple[str, Any, str, Callable[[int, float], Callab
 
     yield "slab, normal load swings", pressing, "tone_along", of_series(pressing.tone_along)
     yield "machine", driver, "move_machine", of_machine
-    yield "slab under a swinging pull", tone, "tone_along", of_series(pressing.tone_along)
+    yield "slab under a swinging pull", pressing, "tone_along", of_series(pressing.tone_along)
 
 
 def main() -> int:

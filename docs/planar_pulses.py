@@ -18,7 +18,18 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.extensions.paper.cases import Runs
-from stickslip.extensions.paper.planar import LARGE, STORED, Fault, data, draw, middle_rate, peaks, problem_of, pulses_of, table
+from stickslip.extensions.paper.planar import (
+    LARGE,
+    STORED,
+    Fault,
+    draw_planes,
+    middle_rate,
+    peaks,
+    planes_data,
+    problem_of,
+    pulses_of,
+    table,
+)
 
 FIGURE = Path(__file__).with_name("figures") / "planar-pulses.png"
 CURVES = STORED.with_name("planar-middle.csv")
@@ -118,7 +129,7 @@ def main() -> None:
             writer.writeheader()
             writer.writerows(rows)
         print(*rows[-1].values(), sep="  ", file=sys.stderr, flush=True)
-    draw(data(Runs())).savefig(FIGURE, dpi=150)
+    draw_planes(planes_data(Runs())).savefig(FIGURE, dpi=150)
     for row in table():
         del row["commit"]
         print(f"| {' | '.join(row.values())} |")

@@ -149,13 +149,15 @@ def test_uniqueness_prints_as_sentences_and_shows_a_list() -> None:
     assert f"{found}".count(". ") >= 3
     assert repr(found).splitlines() == [
         "stickslip Uniqueness",
-        "  regime    irregular, proven",
-        "  critical  alpha = 0.196 s/m",
-        "  window    load minus static strength from -15.5281 MPa to 0 Pa",
-        "  fold      at 1.25877 m/s, load 64.4719 MPa",
-        "  rule      perfect-delay",
-        "  jump      up from 0 m/s to 4.10204 m/s at a load of 80 MPa",
-        "  jump      down from 1.25877 m/s to 0 m/s at a load of 64.4719 MPa",
+        "  regime       irregular, proven",
+        "  critical     alpha = 0.196 s/m",
+        "  window       load minus static strength from -15.5281 MPa to 0 Pa",
+        "  fold         slip rate 1.25876976 m/s, load 64.4718872424 MPa; proven to within 9e-15 m/s",
+        "  jump up *    slip rate 0 to 4.10204082 m/s at a load of 80 MPa; traction changes by -40.2 MPa",
+        "  jump down *  slip rate 1.25876976 to 0 m/s at a load of 64.4718872424 MPa; traction changes by 12.3359 MPa",
+        "  loop *       the load going up and down encloses 46.2819 MPa m/s in the plane of load and slip rate",
+        "  *            depends on the rule 'perfect-delay'; nothing else above does.",
+        f"  summary      {found.summary}",
     ]
     assert repr(found.jumps[1]) == (
         "Jump(rate_before='1.25877 m/s', rate_after='0 m/s', load='64.4719 MPa', direction='down',"

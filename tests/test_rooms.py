@@ -12,7 +12,7 @@ from benchmarks.house import CORE, EXTENSIONS, House
 from benchmarks.rooms import BOUNDS, Bounds
 
 import stickslip
-from stickslip.engine.history.status import DECIDE
+from stickslip.engine.history.status import RUN_CODE
 
 PACKAGE = Path(stickslip.__file__).parent
 HOUSE = House(PACKAGE)
@@ -143,7 +143,7 @@ def _file(module: str) -> Path | None:
 
 def test_every_room_that_decides_a_run_is_in_the_key_of_a_checkpoint() -> None:
     """What stands below friction serves all, and figures and the command line decide nothing."""
-    assert set(DECIDE) == set(CORE) - {"foundation", "figures", "cli"}
+    assert set(RUN_CODE) == set(CORE) - {"foundation", "figures", "cli"}
 
 
 def test_importing_the_package_is_light() -> None:

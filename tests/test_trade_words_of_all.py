@@ -84,7 +84,7 @@ def every_name() -> set[str]:
     from stickslip.extensions.inference.fit.setup import SENSORS
     from stickslip.extensions.sweeps.design.quantities import QUANTITIES as OF_SWEEPS
     from stickslip.figures.sheet import KEYWORDS
-    from stickslip.foundation.headings import COLUMNS
+    from stickslip.foundation.headings import KNOWN_COLUMNS
     from stickslip.foundation.names import QUANTITIES
     from stickslip.problem.bodies import BODIES
     from stickslip.problem.loading import HISTORIES
@@ -100,7 +100,7 @@ def every_name() -> set[str]:
         WHAT,
         OF_SWEEPS,
         QUANTITIES,
-        COLUMNS,
+        KNOWN_COLUMNS,
         SELECTION_RULES,
         KEYWORDS,
         SENSORS,

@@ -178,11 +178,16 @@ class StoredEvents(Results):
     table: pd.DataFrame
 
     @cached_property
-    def problem(self) -> Problem | None:
-        """The problem of the run; None if neither the catalogue nor a checkpoint beside it holds the scenario."""
+    def scenario(self) -> Scenario | None:
+        """The scenario of the run; None if neither the catalogue nor a checkpoint beside it holds it."""
         from stickslip.problem.scenarios import read_scenario
 
-        return read_scenario(str(self.about["scenario"]), self.path.stem).problem if "scenario" in self.about else None
+        return read_scenario(str(self.about["scenario"]), self.path.stem) if "scenario" in self.about else None
+
+    @property
+    def problem(self) -> Problem | None:
+        """The problem of the run, if that is known."""
+        return None if self.scenario is None else self.scenario.problem
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
@@ -192,7 +197,7 @@ class StoredEvents(Results):
     def summarise(self, *, everything: bool = False) -> None:
         from stickslip.cli.output.summary import show_events
 
-        show_events(self.path.stem, dict(self.table.items()), self.about, self.problem)
+        show_events(self.path.stem, dict(self.table.items()), self.about, self.scenario)
 
     @override
     def draw(self, pictures: Pictures) -> list[Path]:

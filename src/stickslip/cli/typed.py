@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 import typer
 from typer.core import TyperArgument, TyperOption
 
-NUMBERS = {int: re.compile(r"[-+]?[0-9]{1,15}"), float: re.compile(r"[-+]?[0-9]+(\.[0-9]*)?([eE][-+]?[0-9]+)?")}
+TYPED_NUMBERS = {int: re.compile(r"[-+]?[0-9]{1,15}"), float: re.compile(r"[-+]?[0-9]+(\.[0-9]*)?([eE][-+]?[0-9]+)?")}
 """Numbers as they are usually typed."""
 CHECKS = (
     *("callback", "parser", "min", "max", "clamp"),
@@ -62,7 +62,7 @@ class OfTyped:
         return [typed(one) for one in super().get_params(ctx)]  # type: ignore[misc] # of typer's class
 
 
-KINDS: dict[Any, Any] = {TyperOption: TypedOption, TyperArgument: TypedArgument}
+TYPED_KINDS: dict[Any, Any] = {TyperOption: TypedOption, TyperArgument: TypedArgument}
 """What typer's options and arguments become."""
 _MADE: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
 """What was made of each: typer asks several times, and expects the same objects."""
@@ -70,7 +70,7 @@ _MADE: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
 
 def typed(parameter: Any) -> Any:
     """Return an option or argument of typer as one of these kinds, with all that it has, and any other as it is."""
-    kind = KINDS.get(type(parameter))
+    kind = TYPED_KINDS.get(type(parameter))
     if kind is None:
         return parameter
     if parameter not in _MADE:
@@ -85,4 +85,4 @@ def is_plain(kind: Any, given: Any) -> bool:
         return kind in (int, float, Path) and isinstance(given, kind)
     if kind is Path:  # typer refuses what cannot be read
         return os.access(given, os.R_OK) or not os.access(given, os.F_OK)
-    return kind is str or (kind in NUMBERS and NUMBERS[kind].fullmatch(given) is not None)
+    return kind is str or (kind in TYPED_NUMBERS and TYPED_NUMBERS[kind].fullmatch(given) is not None)

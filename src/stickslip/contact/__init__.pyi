@@ -61,7 +61,7 @@ from stickslip.contact.sliding import (
     slides_on,  # Return a sentence without its subject, a contact that slides steadily and stays at this rate.
 )
 from stickslip.contact.slopes import (
-    FASTEST,  # Bounds of g' cover slip rates up to this (m/s); no contact is that fast.
+    FASTEST_BOUNDED,  # Bounds of g' cover slip rates up to this (m/s); no contact is that fast.
     # The pieces of the laws of many contacts, with one entry for each: those of a contact follow each other, slowest first.
     Pieces,
 )
@@ -84,7 +84,7 @@ from stickslip.contact.uniqueness import (
 )
 
 __all__ = [
-    "FASTEST",
+    "FASTEST_BOUNDED",
     "FROM_REST_WITHIN",
     "OF_LEVELS",
     "Branches",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.contact.slopes import NARROW, Pieces, cut_between, pieces_of
+from stickslip.contact.slopes import NARROW_SLOPE_CELL, Pieces, cut_between, pieces_of
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Resistance
 
@@ -17,7 +17,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """Gauss's rule on [-1, 1]."""
 SMOOTH = 4.0
 """16 nodes reach rounding on panels up to this length, in units of |mu'| / |mu''|."""
-NEGLIGIBLE = 1e-16
+NEGLIGIBLE_AREA = 1e-16
 """Error allowed on a panel, as a share (1) of S times the length of the whole integral."""
 MOST_PANELS = 4096
 """Largest number of panels of one integral, besides one for each piece of the law. When it is reached, no more panels are cut."""
@@ -39,14 +39,14 @@ def area(g: Resistance, start: float, end: float, excess: float) -> float:
 def panels_between(of: Pieces, low: float, high: float) -> Floats:
     """Return the edges (m/s) of panels from one slip rate to another of a single contact."""
     first, last, piece = np.maximum(of.begin, low), np.minimum(of.end, high), np.arange(len(of.begin))
-    some, missed = first < last, NEGLIGIBLE * (high - low)
+    some, missed = first < last, NEGLIGIBLE_AREA * (high - low)
     first, last, piece, most = first[some], last[some], piece[some], MOST_PANELS + len(piece)
     edges = [np.array([high])]
     while len(first):
         friction = np.abs(of.friction(piece, first, last)[:, 1:]).max(axis=0)
         slope, bend, length = friction[0], 2.0 * friction[1], last - first
         with np.errstate(invalid="ignore"):
-            fits = (length * bend <= SMOOTH * slope) | (bend * length**3 <= missed) | (length <= NARROW * last)
+            fits = (length * bend <= SMOOTH * slope) | (bend * length**3 <= missed) | (length <= NARROW_SLOPE_CELL * last)
         if sum(map(len, edges)) + 2 * len(first) > most:
             fits[:] = True
         edges.append(first[fits])

@@ -9,7 +9,6 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from stickslip.contact.disturbance import Modes, Response
-from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.roots import sign_change
 from stickslip.contact.steady_proof import Judge
 from stickslip.foundation.by_kind import ByKind
@@ -20,6 +19,17 @@ SURE = 1e-12
 """Stability at a rate counts as known if this relative change of the normal load does not change it."""
 BodyT = TypeVar("BodyT", bound=BodyOnCharacteristics)
 ModesT = TypeVar("ModesT", bound=Modes)
+
+
+class SteadyDrive(NamedTuple):
+    """What drives a contact at a steady slip rate v, pulled at a rate V: traction = far stresses + by_pull V - resists v."""
+
+    resists: float
+    """Impedance of drivers and drag of layers together (Pa s/m); inf if the drivers hold the rate."""
+    by_pull: float
+    """Impedance through which the pull acts (Pa s/m)."""
+    shares: tuple[float, ...] = (1.0,)
+    """Share (1) in the traction of the far stress on each side."""
 
 
 class Withstood(NamedTuple):

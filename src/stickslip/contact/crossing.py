@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.roots import sign_change
 
-NARROW = 1.2
+NARROW_STEP = 1.2
 """A root is followed between slip rates whose quotient is no larger than this at first (1)."""
-CHECKED = 1e-8
+BESIDE_CROSSING = 1e-8
 """Verdicts are compared at slip rates that differ from the crossing by this share (1)."""
-ROUNDS = 10
+ROOTS_FOLLOWED = 10
 """Largest number of roots that are followed."""
 
 
@@ -36,8 +36,8 @@ class _RateSought:
         return None if stable is None else stable == self.stable_above
 
     def between(self, low: float, high: float) -> float:
-        ratio = NARROW
-        for _ in range(ROUNDS):
+        ratio = NARROW_STEP
+        for _ in range(ROOTS_FOLLOWED):
             while high > ratio * low:
                 middle = math.sqrt(low * high)
                 beyond = self.is_beyond(middle)
@@ -48,7 +48,7 @@ class _RateSought:
             if math.isnan(found):
                 ratio = math.sqrt(high / low)
                 continue
-            before, after = max(found * (1.0 - CHECKED), low), min(found * (1.0 + CHECKED), high)
+            before, after = max(found * (1.0 - BESIDE_CROSSING), low), min(found * (1.0 + BESIDE_CROSSING), high)
             if self.is_beyond(before) is True:
                 high = before
             elif self.is_beyond(after) is False:

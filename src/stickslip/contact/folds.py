@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import ClassVar, Literal
 
-from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
+from stickslip.contact.slopes import FASTEST_BOUNDED, MOST_EVALUATIONS, pieces_of
 from stickslip.contact.turn_search import PROVEN
 from stickslip.contact.turns import find_turns, folds_of
 from stickslip.foundation.errors import InputError
@@ -57,7 +57,7 @@ class Certificate:
     """True if g rises at 0+, None if that is not decided."""
     evaluations: int = 0
     """Number of bounds of g', on cells and at single rates."""
-    reach: float = FASTEST
+    reach: float = FASTEST_BOUNDED
     """Largest slip rate (m/s) of the search: 1e30, or less if g turns more than MOST_FOLDS times."""
 
     @property
@@ -79,11 +79,11 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     Raises InputError if the law has a state, because the slip rate is then no root of the contact equation, or if friction falls at
     least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
-    reach = FASTEST
+    reach = FASTEST_BOUNDED
     pieces = pieces_of([g])
     found = find_turns(pieces, budget, MOST_FOLDS)
     if len(found.known) > MOST_FOLDS:
-        reach = g.reach if g.damping else FASTEST
+        reach = g.reach if g.damping else FASTEST_BOUNDED
         pieces = pieces_of([g], reach)
         found = find_turns(pieces, budget, MOST_FOLDS)
     if len(found.known) > MOST_FOLDS:
@@ -92,15 +92,15 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
             "friction that rises and falls so often with the slip rate cannot be followed; make its features wider, or their "
             "height smaller"
         )
-    if found.at_end[-1] < 0 and reach == FASTEST and g.damping:
-        fastest = f"{FASTEST:.3g} {g.rate_unit}"
+    if found.at_end[-1] < 0 and reach == FASTEST_BOUNDED and g.damping:
+        fastest = f"{FASTEST_BOUNDED:.3g} {g.rate_unit}"
         raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {fastest}")
     ends = list(zip(found.cells.low.tolist(), found.cells.high.tolist(), strict=True))
     sure = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known == PROVEN]
     open_ = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known != PROVEN]
     at_rest = None if found.at_rest[0] == 0 else bool(found.at_rest[0] > 0)
     rates = tuple(folds_of(pieces, found)[0].tolist())
-    if reach < FASTEST and rates and g.slope(reach) <= 0.0:
+    if reach < FASTEST_BOUNDED and rates and g.slope(reach) <= 0.0:
         rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
     return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)
 
@@ -113,7 +113,7 @@ def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:
         places = _listed([f"between {low:.6g} and {high:.6g} {g.rate_unit}" for low, high in proof.undecided])
         return f" Interval arithmetic does not decide whether g = Z v + S mu(v) turns {places}; elsewhere its turns are proven."
     reach = f"up to {proof.reach:.3g} {g.rate_unit}"
-    if proof.reach < FASTEST:
+    if proof.reach < FASTEST_BOUNDED:
         reach += f", which loads up to {g.largest_load:.3g} {g.load_unit} do not exceed; at faster ones it goes on turning"
     if not proof.turns:
         return f" Proven by interval arithmetic: g = Z v + S mu(v) rises at every slip rate above 0, {reach}."

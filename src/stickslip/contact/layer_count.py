@@ -26,15 +26,15 @@ WIDEST = 1.2
 """Largest angle (rad) to each side of the middle of a piece, less than pi/2."""
 MOST_PIECES = 1 << 17
 """Largest number of pieces of a line, unless it is given."""
-HALVINGS = 22
+CUTS_OF_PIECE = 22
 """Largest number of times that pieces are cut."""
 SMALL, CUTS = 0.9, 6
 """Pieces are cut so that the angle (rad) becomes this small, but into no more than so many."""
-SLOWEST = 80
-"""The lowest frequency of a line is 2^-SLOWEST of the highest one."""
-SEEN = 0.5
+LOWEST_FREQUENCY = 80
+"""The lowest frequency of a line is 2^-LOWEST_FREQUENCY of the highest one."""
+LARGEST_ANGLE = 0.5
 """Largest angle (rad) at which a piece is seen whose size is bounded."""
-WHOLE = 0.02
+WHOLE_TURNS = 0.02
 """A number of turns may differ from a whole one by this much (1)."""
 _Bounds = Callable[[LinePieces], Floats]
 
@@ -102,7 +102,7 @@ class Line:
         values = of(self.at(frequencies))
         rest = Followed(frequencies[:-1], frequencies[1:], values[:-1], values[1:])
         done, number = [], 0
-        for _ in range(HALVINGS):
+        for _ in range(CUTS_OF_PIECE):
             angles = angle(self.piece(rest.low, rest.high))
             sure = angles < WIDEST
             done.append(rest.some(sure))
@@ -173,10 +173,10 @@ class Line:
         back, whole_wave = (np.array([z]), np.array([-1.0])), (np.array([a]), np.array([b]))
         at, largest = self._half_period(), 0.0
         low, high = at[:-1], at[1:]
-        for _ in range(HALVINGS):
+        for _ in range(CUTS_OF_PIECE):
             piece = self.piece(low, high)
             over = piece.bound(*whole_wave)
-            sure = over.angle < SEEN
+            sure = over.angle < LARGEST_ANGLE
             with np.errstate(all="ignore"):
                 share = piece.bound(*back).most[sure] / over.least[sure]
             largest = max(largest, float(np.max(share, initial=0.0)))
@@ -227,8 +227,8 @@ class Share:
         number = 2.0 * on.cells * (high - low) / on.period
         if number > on.most:
             raise NotCountedError
-        lowest = max(low, math.ldexp(high, -SLOWEST))
-        slow = high * 2.0 ** -np.arange(SLOWEST)
+        lowest = max(low, math.ldexp(high, -LOWEST_FREQUENCY))
+        slow = high * 2.0 ** -np.arange(LOWEST_FREQUENCY)
         even = np.linspace(low, high, max(int(number), 2) + 1)
         at = np.unique(np.concatenate([[lowest, high], slow[slow > lowest], even[even > lowest]]))
         found = on.followed(self.value, self.angle, at)
@@ -240,6 +240,6 @@ class Share:
 def whole(number: float) -> int:
     """Return the whole number that another one is close to. Raises NotCountedError if there is none."""
     found = round(number)
-    if abs(number - found) > WHOLE:
+    if abs(number - found) > WHOLE_TURNS:
         raise NotCountedError
     return found

@@ -22,7 +22,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
 from stickslip.problem.bodies.layered.layers import Layers
 
-ROUNDING = 3e-15
+ROUNDING_OF_PHASE = 3e-15
 """Rounding (1) of the function, relative to its terms: where it is smaller its phase is not known."""
 TURNED = 4e-16
 """Rounding (1) of the phase of a wave in a layer, relative to this phase."""
@@ -151,7 +151,7 @@ class LinePieces:
         """Return a bound of a polynomial in s, by its Taylor series."""
         if len(p) == 1:
             return Bound(np.full(self.s.shape, complex(p[0])), np.zeros(self.s.shape))
-        radius: Floats = ROUNDING * np.asarray(poly.polyval(np.abs(self.s), np.abs(p)), float)
+        radius: Floats = ROUNDING_OF_PHASE * np.asarray(poly.polyval(np.abs(self.s), np.abs(p)), float)
         slope, step = p, np.ones(self.half.shape)
         for k in range(1, len(p)):
             slope, step = poly.polyder(slope), step * self.half / k
@@ -172,7 +172,7 @@ class LinePieces:
         with np.errstate(invalid="ignore"):  # a radius may be inf
             radius: Floats = 2.0 * (np.abs(first) * one.radius + np.abs(second) * other.radius)
             radius = radius + 4.0 * np.abs(both) * one.radius * other.radius
-            radius = radius + np.real(_summed(np.abs(terms[1]), *wide) + ROUNDING * _summed(np.abs(terms[0]), *values))
+            radius = radius + np.real(_summed(np.abs(terms[1]), *wide) + ROUNDING_OF_PHASE * _summed(np.abs(terms[0]), *values))
         return Bound(_summed(terms[0], (one.below, one.above), (other.below, other.above)), np.asarray(radius))
 
 

@@ -24,7 +24,7 @@ GONE = 25.0
 """A disturbance that fades by exp(-GONE) within a two-way travel time through all cells is gone at once."""
 NEARER = 20
 """Number of lines that come nearer to the crowd, each half as far from it as the one before."""
-SAME = 1e-8
+SAME_GROWTH = 1e-8
 """A growth rate counts as that of the crowd if it differs by no more than this share (1)."""
 
 
@@ -101,7 +101,7 @@ class LayerModes(LayerSearch):
                     return self._climbed(line, look)
             except NotCountedError:
                 found = self.bettered([one for one in self.sought(line) if (one.real < 0.0) is self.verdict])
-                return _growth_of(found[0]) if found and found[0].real - crowd.rate > SAME * abs(crowd.rate) else crowd
+                return _growth_of(found[0]) if found and found[0].real - crowd.rate > SAME_GROWTH * abs(crowd.rate) else crowd
         return crowd
 
     def _climbed(self, low: float, look: SeenBeyond) -> Growth:

@@ -19,13 +19,13 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.drive import SteadyDrive
+from stickslip.contact.asked import SteadyDrive
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.problem.bodies.layered.layers import Layers
 
 Complex = NDArray[np.complex128]
-SAMPLES = 32
+SAMPLES_OF_FREQUENCY = 32
 """Number of samples of a frequency for each cell, in half of the period with which layers repeat their response."""
 
 
@@ -157,7 +157,7 @@ def taken_by_layers(body: OfLayers) -> float:
 
     It is the smallest W = Z (1 - R) / (1 + R) at frequencies at which it is real: there a disturbance keeps its size.
     """
-    period, number = math.pi / body.cells.time, SAMPLES * sum(body.cells.counts)
+    period, number = math.pi / body.cells.time, SAMPLES_OF_FREQUENCY * sum(body.cells.counts)
 
     def share(frequency: Floats) -> Complex:
         above, below = response_of(body, 1j * frequency)

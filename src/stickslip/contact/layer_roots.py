@@ -33,9 +33,9 @@ from stickslip.problem.bodies import OfLayers
 
 LEAN = 5e-14
 """The axis leans by this much on two sides (1), which may have modes that do not move the contact: these lie on the axis."""
-NEAR = 128
+PLACES_SOUGHT_FROM = 128
 """Number of places from which roots are sought."""
-SHORT = 2000
+SHORT_SPAN = 2000
 """A span of frequencies is short if it has no more than this number of pieces at first."""
 FEWER = 4
 """Left of the axis, where no verdict depends on it, a count may take fewer pieces by this factor (1)."""
@@ -168,7 +168,7 @@ class LayerRoots:
                 return SeenBeyond(math.floor(turns), np.zeros(0, complex))
             winds, found = spans.share.windings(on, low, high)
             count -= winds
-            seeds.append(found.seeds(line, NEAR))
+            seeds.append(found.seeds(line, PLACES_SOUGHT_FROM))
         if count < 0:
             raise NotCountedError
         return SeenBeyond(count, np.concatenate(seeds))
@@ -187,7 +187,7 @@ class LayerRoots:
             ring = WaveModes(self.a, self._z, max(largest, 1e-300), 0.0).ring(line)
             matched = Spans(Share(self.a, self.b, self.p, self.matched, self.body), _open(ring))
             short = matched.length / per_piece
-            if short <= SHORT:
+            if short <= SHORT_SPAN:
                 return matched
             if line == 0.0 and self.keeps_energy:
                 return matched if math.isfinite(short) else None
@@ -235,7 +235,7 @@ def in_period(body: OfLayers, line: float, a: float, b: float) -> SeenBeyond:
     """Return the number of roots of a below + b above beyond a line in a period, without those that do not move the contact."""
     at = _off_axis(body, line)
     number, found = Line(body, at).roots_in_period(a, b)
-    return SeenBeyond(number - (_unmoved(body) if at < 0.0 else 0), found.seeds(at, NEAR))
+    return SeenBeyond(number - (_unmoved(body) if at < 0.0 else 0), found.seeds(at, PLACES_SOUGHT_FROM))
 
 
 @lru_cache(maxsize=64)

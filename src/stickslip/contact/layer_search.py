@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 
 from stickslip.contact.layer_count import Followed, Line, NotCountedError, Share
-from stickslip.contact.layer_roots import LEAN, NEAR, LayerRoots, Spans
+from stickslip.contact.layer_roots import LEAN, PLACES_SOUGHT_FROM, LayerRoots, Spans
 from stickslip.contact.secant import polished
 from stickslip.contact.wave_modes import roots_of
 
@@ -20,7 +20,7 @@ WINDOWS = 24
 """Number of places, besides those where friction gives most, in which roots are sought."""
 SCANNED = 4000
 """Number of frequencies at which friction's response is looked at."""
-POINTS = 8
+SAMPLES_OF_CELL = 8
 """Number of samples for each cell in half of a period."""
 
 
@@ -38,13 +38,13 @@ class LayerSearch(LayerRoots):
 
         Roots follow each other in chains, one in each period of the layers, along which the growth rate changes slowly.
         """
-        period, best = Line(self.body, 0.0).period, sorted(roots, key=lambda one: -one.real)[: NEAR // 8]
+        period, best = Line(self.body, 0.0).period, sorted(roots, key=lambda one: -one.real)[: PLACES_SOUGHT_FROM // 8]
         least = -math.ceil(math.log2(sum(self.body.cells.counts)))
         strides = 1j * period * np.outer([1.0, -1.0], 2.0 ** np.arange(least, STRIDES)).ravel()
         for _ in range(STRIDES if best else 0):
             found = polished(self.value, (np.array(best)[:, None] + strides).ravel())
             found = [one for one in found if (one.real < 0.0) is (best[0].real < 0.0) and abs(one.real) > LEAN * abs(one)]
-            better = sorted([*best, *found], key=lambda one: -one.real)[: NEAR // 8]
+            better = sorted([*best, *found], key=lambda one: -one.real)[: PLACES_SOUGHT_FROM // 8]
             if better[0].real <= best[0].real:
                 break
             best = better
@@ -59,7 +59,7 @@ class LayerSearch(LayerRoots):
         if spans is None:
             spans = Spans(Share(self.a, self.b, self.p, self.matched, self.body), [(0.0, math.inf)])
         period, seeds = Line(self.body, line).period, []
-        number = POINTS * min(sum(self.body.cells.counts), 500)
+        number = SAMPLES_OF_CELL * min(sum(self.body.cells.counts), 500)
         for low, high in spans.edges:
             end = high if math.isfinite(high) else 1e3 * max(low, period, *np.abs(roots_of(self.p)))
             width = min(0.5 * period, end - low)
@@ -68,7 +68,7 @@ class LayerSearch(LayerRoots):
                 at = np.linspace(max(begin, low), begin + width, number)
                 at[0] = max(at[0], 1e-15 * end)
                 values = self.entire(line + 1j * at)
-                seeds.append(Followed(at[:-1], at[1:], values[:-1], values[1:]).seeds(line, number // POINTS))
+                seeds.append(Followed(at[:-1], at[1:], values[:-1], values[1:]).seeds(line, number // SAMPLES_OF_CELL))
         found = polished(self.entire, np.concatenate(seeds)) if seeds else []
         return polished(self.value, np.array(found))
 

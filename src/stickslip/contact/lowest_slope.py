@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.contact.folds import Interval, Verdict
-from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW, SLOWEST, Integers, Pieces, cut_between, pieces_of
+from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW_SLOPE_CELL, SLOWEST_CELL, Integers, Pieces, cut_between, pieces_of
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Resistance
 
@@ -26,7 +26,7 @@ _ROUNDING = 8.0 * float(np.finfo(float).eps)
 """Relative rounding error allowed for three operations."""
 CUTS = 8
 """A cell is cut into this many parts."""
-PARTS = np.linspace(0.0, 1.0, 257)
+PLACES_IN_CELL = np.linspace(0.0, 1.0, 257)
 """Places in a cell where the sign of g'' is determined at once."""
 
 
@@ -61,7 +61,7 @@ def find_lowest(of: Pieces, tolerance: float) -> LowestOfEach:
             least = np.fmax(seen.low, np.where(seen.bends, least, least - reach))
         enough = found.at_most - tolerance * np.maximum(damping, np.abs(found.at_most))
         done = seen.bends | (least >= enough[contact]) | (left < 0)[contact]
-        done |= (high - low <= NARROW * high) | (high <= SLOWEST)
+        done |= (high - low <= NARROW_SLOPE_CELL * high) | (high <= SLOWEST_CELL)
         np.minimum.at(found.at_least, contact[done], least[done])
         piece, edges = pieces[1:][~done], _edges_in(low[~done], high[~done])
     return found._replace(at_least=np.minimum(found.at_least, found.at_most))
@@ -90,11 +90,11 @@ def polished(of: Pieces, found: LowestOfEach) -> tuple[Floats, Floats]:
     """Return the slip rate (m/s) of the smallest g' of each contact and its value (Pa s/m) to rounding, where g'' changes sign."""
     low, high = found.low, found.high
     for _ in range(64):
-        rates = low + PARTS[:, None] * (high - low)
+        rates = low + PLACES_IN_CELL[:, None] * (high - low)
         rates[-1] = high
         if not ((low < rates[1:-1]) & (rates[1:-1] < high)).any():
             break
-        seen = of.slopes(np.tile(found.piece, len(PARTS)), rates.ravel(), rates.ravel())
+        seen = of.slopes(np.tile(found.piece, len(PLACES_IN_CELL)), rates.ravel(), rates.ravel())
         rises = (seen.bend_low + seen.bend_high).reshape(rates.shape) > 0.0
         rises[-1] = True
         k, each = rises.argmax(axis=0), np.arange(len(low))

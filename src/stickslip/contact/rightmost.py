@@ -15,9 +15,9 @@ MOST_LINES = 100
 """Largest number of lines that are looked at."""
 MOST_UNKNOWN = 4
 """Largest number of lines without a count."""
-MANY = 8
+MANY_ROOTS = 8
 """With more roots beyond a line than this, one farther right is tried before the roots are looked for."""
-BESIDE = 1e-8, 2e-13
+BESIDE_ROOT = 1e-8, 2e-13
 """The line beside a root lies farther right by these shares of its growth rate and of its size (1)."""
 
 
@@ -40,7 +40,7 @@ def climbed(
     for _ in range(MOST_LINES):
         found = [one for one in polish(seeds) if one.real > low]
         best = max(found, key=lambda one: (one.real, -abs(one.imag)), default=None)
-        line = math.inf if best is None or number > MANY else _beside(best)
+        line = math.inf if best is None or number > MANY_ROOTS else _beside(best)
         if not line < high:
             line, best = _middle(low, high, step), None
         if not low < line < high or unknown > MOST_UNKNOWN:
@@ -60,7 +60,7 @@ def climbed(
 
 
 def _beside(root: complex) -> float:
-    return root.real + BESIDE[0] * abs(root.real) + BESIDE[1] * abs(root)
+    return root.real + BESIDE_ROOT[0] * abs(root.real) + BESIDE_ROOT[1] * abs(root)
 
 
 def _middle(low: float, high: float, step: float) -> float:

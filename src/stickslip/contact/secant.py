@@ -8,9 +8,9 @@ import numpy as np
 
 from stickslip.contact.layer_response import Complex
 
-STEPS = 60
+STEPS_TO_ROOT = 60
 """Largest number of steps to a root."""
-SETTLED = 1e-11
+SETTLED_ROOT = 1e-11
 """A root is found if the last step is no more than this share of it (1)."""
 
 BESIDE, ROOT = 1e-6, 1e-3
@@ -25,7 +25,7 @@ def polished(of: Callable[[Complex], Complex], begin: Complex) -> list[complex]:
     with np.errstate(all="ignore"):
         before: Complex = np.asarray(s * (1.0 + 1e-6) + 1e-30)
         here, there, step = of(s), of(before), s
-        for _ in range(STEPS):
+        for _ in range(STEPS_TO_ROOT):
             step = here * (s - before) / (here - there)
             moves = np.abs(step) > 4e-16 * np.abs(s)
             if not moves.any():
@@ -34,5 +34,5 @@ def polished(of: Callable[[Complex], Complex], begin: Complex) -> list[complex]:
             s = np.where(moves, s - step, s)
             here = of(s)
         beside = s + BESIDE * np.abs(s)
-        settled = np.isfinite(s) & (np.abs(step) <= SETTLED * np.abs(s)) & (np.abs(here) <= ROOT * np.abs(of(beside)))
+        settled = np.isfinite(s) & (np.abs(step) <= SETTLED_ROOT * np.abs(s)) & (np.abs(here) <= ROOT * np.abs(of(beside)))
     return [complex(one) for one in s[settled].tolist()]

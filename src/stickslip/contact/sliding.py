@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.foundation.show import brief, brief_repr, exactly
+from stickslip.foundation.show import ShownAsTable, brief, brief_repr, exactly
 from stickslip.problem import in_given_units
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ FROM_REST_WITHIN = 0.02
 
 
 @dataclass(frozen=True, repr=False)
-class SteadySlidings:
+class SteadySlidings(ShownAsTable):
     """All steady sliding motions of a problem at its pull rate, and the rates where their stability changes."""
 
     pull_rate: float
@@ -227,15 +227,15 @@ class SteadySlidings:
         from stickslip.figures.sheet import known_to_pyplot
 
         self.check_drawn("plot")
-        return known_to_pyplot(steady.draw(steady.data(self), **place), place)
+        return known_to_pyplot(steady.draw_steady(steady.steady_data(self), **place), place)
 
     def check_drawn(self, where: str) -> None:
         """Raise InputError, which begins with `where`, if there is no steady sliding that could be drawn."""
         if not self.slidings:
             raise InputError(f"{where}: no steady sliding: {self.why_none}")
 
-    def __repr__(self) -> str:
-        return "\n".join(["stickslip SteadySlidings", *(f"  {line}" for line in self.lines())])
+    def _lines(self) -> list[tuple[str]]:
+        return [(line,) for line in self.lines()]
 
     def __str__(self) -> str:
         return " ".join(f"{line[0].upper()}{line[1:]}." for line in self.lines())

@@ -31,15 +31,15 @@ from stickslip.problem import Resistance
 
 Integers = NDArray[np.int64]
 
-FASTEST = 1e30
+FASTEST_BOUNDED = 1e30
 """Bounds of g' cover slip rates up to this (m/s); no contact is that fast."""
-SLOWEST = 1e-100
+SLOWEST_CELL = 1e-100
 """Cells below this slip rate (m/s) are not cut any more."""
 BELOW, ABOVE = 1e-4, 1e4
 """The first cells have ends in the ratio RATIO between these multiples of the slowest and the fastest scale of a contact."""
 RATIO, FAR = 16.0, 1e12
 """Ratio of the ends of the first cells, and of those beyond the fastest scale, where g' hardly changes."""
-NARROW = 1e-15
+NARROW_SLOPE_CELL = 1e-15
 """Cells narrower than this, relative to their upper end, are not cut any more."""
 MOST_EVALUATIONS = 200_000
 """Largest number of bounds of g' (on cells and at single rates) for one contact; remaining cells are left undecided."""
@@ -184,7 +184,7 @@ class Pieces:
 
     def first_edges(self) -> Floats:
         """Return the edges (m/s) of the first cells of each piece, shape (edges, pieces): its upper end is repeated."""
-        start = np.maximum(BELOW * self.slowest, SLOWEST)
+        start = np.maximum(BELOW * self.slowest, SLOWEST_CELL)
         edges = [self.begin]
         while (edges[-1] < self.end).any():
             after = np.where(edges[-1] < ABOVE * self.fastest, RATIO, FAR) * edges[-1]
@@ -200,7 +200,7 @@ def bound_cells(of: Contacts, piece: Integers1, low: Floats1, high: Floats1, fou
         found[0, k], found[1, k], found[2, k], found[3, k] = slope_bounds(of, piece[k], low[k], high[k])
 
 
-def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST) -> Pieces:
+def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST_BOUNDED) -> Pieces:
     """Return the input for bounds of g' up to a slip rate (m/s), for contacts under laws of one kind."""
     formulas: dict[Expression, int] = {}
     rows, values = [], []

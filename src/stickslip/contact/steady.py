@@ -24,9 +24,8 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.contact.asked import CONTACT_KINDS, ContactOfKind, Withstood
+from stickslip.contact.asked import CONTACT_KINDS, ContactOfKind, SteadyDrive, Withstood
 from stickslip.contact.disturbance import Modes
-from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings

@@ -31,9 +31,9 @@ from stickslip.friction.formula import (
 )
 from stickslip.friction.law import FrictionLaw
 
-CELLS = 64
+CELLS_OF_DECADE = 64
 """Number of cells in a decade of slip rates, before any is halved."""
-NARROW = 1e-9
+NARROW_PROOF_CELL = 1e-9
 """Cells narrower than this (relative) are not halved any more."""
 MOST_CELLS = 80_000
 """Largest number of cells that are examined at a time, a second of work; beyond it nothing is proven."""
@@ -71,13 +71,13 @@ def proven_changes(judge: Judge, law: FrictionLaw, slip: float, rates: tuple[flo
     if len(law.pieces) != 1:
         return None
     contact = _Contact(judge, law, slip)
-    edges = np.geomspace(*rates, 1 + int(CELLS * np.log10(rates[1] / rates[0])))
+    edges = np.geomspace(*rates, 1 + int(CELLS_OF_DECADE * np.log10(rates[1] / rates[0])))
     low, high, done = edges[:-1], edges[1:], []
     while len(low):
         if len(low) > MOST_CELLS:
             return None
         verdict = contact.judge(low, high)
-        over = (verdict != 0) | (high - low <= NARROW * high)
+        over = (verdict != 0) | (high - low <= NARROW_PROOF_CELL * high)
         done.append(np.array([low[over], high[over], verdict[over]]))
         low, high = low[~over], high[~over]
         middle = 0.5 * (low + high)

@@ -14,10 +14,10 @@ from stickslip.contact.slopes import (
     END,
     FAR,
     FAST,
-    NARROW,
+    NARROW_SLOPE_CELL,
     RATIO,
     SLOW,
-    SLOWEST,
+    SLOWEST_CELL,
     Contacts,
     Integers,
     bend_sign,
@@ -40,7 +40,7 @@ UNDECIDED, PROVEN, FLAT = 0, 1, 2
 this piece exactly as fast as Z v rises."""
 PIECE, LOW, HIGH, BEFORE, AFTER, KNOWN = range(6)
 """Columns of tables of cells."""
-COLUMNS = 6
+COLUMNS_OF_PIECE = 6
 
 EMPTY, TO_BE_CUT = -1, -2
 """Knowledge about a cell that is examined: that there is no turn, and none."""
@@ -66,7 +66,7 @@ def put(cells: Floats, n: int, place: Place, signs: Signs, known: int) -> int:
 @exact
 def next_edge(of: Contacts, piece: int, edge: float) -> float:
     """Return the edge (m/s) of the first cells of a piece that follows another one; its upper end is repeated."""
-    start = max(BELOW * of.pieces[piece, SLOW], SLOWEST)
+    start = max(BELOW * of.pieces[piece, SLOW], SLOWEST_CELL)
     after = (RATIO if edge < ABOVE * of.pieces[piece, FAST] else FAR) * edge
     after = start if edge < 0.5 * start else after
     return of.pieces[piece, END] if 2.0 * after > of.pieces[piece, END] else after
@@ -109,7 +109,7 @@ def first_cells(of: Contacts, piece: int, cells: Floats, ends: Integers, left: I
         low, known_to, before = high, place, after
     ends[1] = before
     for k in range(min(n, len(cells)) // 2):
-        for column in range(COLUMNS):
+        for column in range(COLUMNS_OF_PIECE):
             cells[k, column], cells[n - 1 - k, column] = cells[n - 1 - k, column], cells[k, column]
     return n
 
@@ -139,7 +139,7 @@ def examined(of: Contacts, cell: Floats, left: Integers) -> tuple[int, float, in
     if sign_of(seen) != 0 or (bends and change > 0) or there.low - reach > 0.0 or there.high + reach < 0.0:
         return EMPTY, middle, sign
     noisy = sign == 0 and reach <= NOISE * (there.high - there.low)
-    if noisy or high - low <= NARROW * high or high <= SLOWEST:
+    if noisy or high - low <= NARROW_SLOPE_CELL * high or high <= SLOWEST_CELL:
         return UNDECIDED, middle, sign
     middle, sign = known_place(of, (piece, low, high), middle, sign, left)
     return TO_BE_CUT, middle, sign
@@ -201,7 +201,7 @@ def search_contact(of: Contacts, search: Search, tables: tuple[Floats, Floats], 
                 n = put(found, n, (piece, low, high), (before, after), known)
                 turns += 1 if known == PROVEN else 0
         for k in range(many, next_):
-            for column in range(COLUMNS):
+            for column in range(COLUMNS_OF_PIECE):
                 waiting[first + k - many, column] = waiting[k, column]
         many = first + next_ - many
     return n
@@ -211,7 +211,7 @@ def search_contact(of: Contacts, search: Search, tables: tuple[Floats, Floats], 
 def narrowed(of: Contacts, piece: int, low: float, high: float, before: int) -> tuple[float, float]:
     """Narrow an interval with one turn by bisection and interval Newton steps, until rounding of g' hides where the turn lies."""
     for _ in range(200):
-        if not high - low > NARROW * high:
+        if not high - low > NARROW_SLOPE_CELL * high:
             break
         width, middle = high - low, cut(low, high)
         seen, there = slope_bounds(of, piece, low, high), slope_bounds(of, piece, middle, middle)

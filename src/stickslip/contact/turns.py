@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from stickslip.contact.fold_rates import Intervals, fold_rates
 from stickslip.contact.slopes import MOST_EVALUATIONS, Integers, Pieces
-from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS, FLAT, HIGH, KNOWN, LOW, PIECE, UNDECIDED, Room, search
+from stickslip.contact.turn_search import AFTER, BEFORE, COLUMNS_OF_PIECE, FLAT, HIGH, KNOWN, LOW, PIECE, UNDECIDED, Room, search
 from stickslip.foundation.arrays import Floats
 
 FIRST_ROOM = 128
@@ -72,7 +72,7 @@ def _searched(of: Pieces, first_piece: Integers, budget: int, most: int) -> tupl
     """Return the table of cells with turns, by piece and ascending, the signs of g' at the ends of pieces, and the budgets left."""
     many = FIRST_ROOM
     while True:
-        waiting, found = np.empty((2, many, COLUMNS))
+        waiting, found = np.empty((2, many, COLUMNS_OF_PIECE))
         ends, left = np.empty((len(of.contact), 2), np.int64), np.full(len(first_piece) - 1, budget)
         count = search(of.for_code, first_piece, most, Room(waiting, found, ends, left))
         if count >= 0:

@@ -5,7 +5,6 @@ Source: Campillo et al. 1996, section 3: the set K of Fig. 3, the terms regular 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -21,22 +20,23 @@ from stickslip.contact.lowest_slope import critical_stress_between
 from stickslip.contact.regime import Regime, named_regime, proof_of, window_of
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
-from stickslip.contact.slopes import FASTEST
+from stickslip.contact.slopes import FASTEST_BOUNDED
 from stickslip.contact.uniqueness_in_words import (
     INERTIA,
     MOST_SHOWN,
     STATE,
     STATE_FALLS,
     WITH_DASHPOT,
+    fold_lines,
+    regime_lines,
     said_of_pressing,
     summary_of,
 )
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
-from stickslip.foundation.show import brief, html_table
+from stickslip.foundation.show import ShownAsTable
 from stickslip.friction.law import rises_with_rate
 from stickslip.problem import SELECTION_RULES, Branch, Plateau, Problem, Resistance, in_given_units, normal_name
 from stickslip.problem.scenarios import read_problem
@@ -53,7 +53,7 @@ MOST_LEFT = 16
 
 
 @dataclass(frozen=True, repr=False)
-class Uniqueness(NamesAttributes):
+class Uniqueness(NamesAttributes, ShownAsTable):
     """The result of `stickslip.uniqueness`; `print` shows it in sentences.
 
     Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.
@@ -98,38 +98,13 @@ class Uniqueness(NamesAttributes):
     def __str__(self) -> str:
         return self.summary
 
-    def __repr__(self) -> str:
-        return "\n".join(["stickslip Uniqueness", *(f"  {name:<10}{text}" for name, text in self._lines())])
+    def _lines(self) -> list[tuple[str, str]]:
+        """Return the parts of the result in lines of a name and a text, with at most six folds and six jumps."""
+        return [*regime_lines(self), *fold_lines(self, MOST_SHOWN), ("summary", self.summary)]
 
-    def _repr_html_(self) -> str:
-        return html_table("stickslip Uniqueness", [*self._lines(), ("summary", self.summary)])
-
-    @property
-    def _load_unit(self) -> str:
-        return "Pa" if self.problem is None else self.problem.load_unit
-
-    @property
-    def _rate_unit(self) -> str:
-        return si_unit("slip_rate", self._load_unit)
-
-    def _lines(self) -> Iterator[tuple[str, str]]:
-        """Yield name and text of each part of the result."""
-        yield "regime", f"{self.regime}, {self.certificate}"
-        if self.critical_parameter is not None and self.critical_value is not None:
-            yield "critical", f"{self.critical_parameter} = {brief(self.critical_value, self.critical_unit)}"
-        if self.window is not None:
-            low, high = (brief(excess, self._load_unit) for excess in self.window)
-            yield "window", f"load minus static strength from {low} to {high}"
-        for fold in self.folds[:MOST_SHOWN]:
-            yield "fold", f"at {brief(fold.rate, self._rate_unit)}, load {brief(fold.load, self._load_unit)}"
-        if len(self.folds) > MOST_SHOWN:
-            yield "", f"and {len(self.folds) - MOST_SHOWN} more folds"
-        yield "rule", self.rule
-        for jump in self.jumps[:MOST_SHOWN]:
-            rates = f"from {brief(jump.rate_before, self._rate_unit)} to {brief(jump.rate_after, self._rate_unit)}"
-            yield "jump", f"{jump.direction} {rates} at a load of {brief(jump.load, self._load_unit)}"
-        if len(self.jumps) > MOST_SHOWN:
-            yield "", f"and {len(self.jumps) - MOST_SHOWN} more jumps"
+    def fold_lines(self) -> list[tuple[str, str]]:
+        """Return all folds, what is not decided of them, and what depends on the rule, in lines of a name and a text."""
+        return list(fold_lines(self))
 
     @in_given_units
     def plot(self, **place: Unpack[Place]) -> Figure | Axes:
@@ -142,7 +117,9 @@ class Uniqueness(NamesAttributes):
         from stickslip.figures.sheet import known_to_pyplot
 
         assert self.problem is not None
-        return known_to_pyplot(admissible.draw(admissible.data(self.problem, law_slip=self.law_slip), **place), place)
+        return known_to_pyplot(
+            admissible.draw_admissible(admissible.admissible_data(self.problem, law_slip=self.law_slip), **place), place
+        )
 
     @property
     def loop_area(self) -> float:
@@ -200,7 +177,7 @@ class Uniqueness(NamesAttributes):
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
         if self.known_to is not None and abs(load) > self.known_to:
-            unit = self._load_unit
+            unit = "Pa" if self.problem is None else self.problem.load_unit
             known = f"they are known for loads up to {self.known_to:.6g} {unit}"
             raise InputError(f"admissible slip rates: {known}, got {load:.6g} {unit}")
         # the plateau's own excess is exact, while load - strength carries the rounding of the load
@@ -269,7 +246,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
-    window, critical, endless = window_of(stable), _critical(problem, g, slip), proof.reach < FASTEST
+    window, critical, endless = window_of(stable), _critical(problem, g, slip), proof.reach < FASTEST_BOUNDED
     jumps = jumps_of(g, stable, table, min(len(stable), MOST_LEFT) if endless else len(stable)) if window else ()
     return Uniqueness(
         regime=named_regime(g, window),

@@ -1,14 +1,27 @@
-"""Uniqueness of the slip rate in words: the paragraph that `Uniqueness.summary` is."""
+"""Uniqueness of the slip rate in words: the paragraph that `Uniqueness.summary` is, and lines on its regime, folds and jumps."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from stickslip.contact.critical import critical_normal_stress
+from stickslip.contact.folds import Fold
 from stickslip.contact.rules.loop import Jump
-from stickslip.foundation.show import brief, exact_range
+from stickslip.foundation.names import si_unit
+from stickslip.foundation.show import brief, exact_range, exactly
 from stickslip.problem import Problem, Resistance
+
+if TYPE_CHECKING:
+    from stickslip.contact.uniqueness import Uniqueness
+
+Line = tuple[str, str]
+"""The name of a line, and its text."""
 
 MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` and `summary` show."""
+MOST_UNDECIDED = 10
+"""Largest number of intervals of slip rates that are listed as undecided, because they may or may not hold a fold."""
 
 
 INERTIA = (
@@ -83,3 +96,54 @@ def said_of_pressing(problem: Problem, g: Resistance) -> str:
     if history.lowest >= stress:
         return f"{ranges}the contact is irregular under all of it, and the folds move with it."
     return f"{ranges}the contact is regular up to {brief(stress, unit, 9)} and irregular above, where the folds move with it."
+
+
+def _units(contact: Uniqueness) -> tuple[str, str]:
+    """Return the units of loads and slip rates."""
+    loads = "Pa" if contact.problem is None else contact.problem.load_unit
+    return loads, si_unit("slip_rate", loads)
+
+
+def regime_lines(contact: Uniqueness) -> Iterator[Line]:
+    """Yield the regime, the critical value, and the loads with several slip rates."""
+    yield "regime", f"{contact.regime}, {contact.certificate}"
+    if contact.critical_parameter is not None and contact.critical_value is not None:
+        yield "critical", f"{contact.critical_parameter} = {brief(contact.critical_value, contact.critical_unit)}"
+    if contact.window is not None:
+        low, high = (brief(excess, _units(contact)[0]) for excess in contact.window)
+        yield "window", f"load minus static strength from {low} to {high}"
+
+
+def fold_lines(contact: Uniqueness, most: int | None = None) -> Iterator[Line]:
+    """Yield the folds, what is not decided of them, and what depends on the rule: jumps, and the loop that they enclose.
+
+    Of folds and of jumps `most` are shown, by default all.
+    """
+    loads, rates = _units(contact)
+    for fold in contact.folds[:most]:
+        yield "fold", f"slip rate {exactly(fold.rate, rates)}, load {brief(fold.load, loads, 12)}{_proof(fold, rates)}"
+    yield from _more("folds", contact.folds[:most], contact.folds)
+    for low, high in contact.undecided[:MOST_UNDECIDED]:
+        yield "not decided", f"whether there is a fold between {exact_range((low, high), rates, between=' and ')}"
+    for jump in contact.jumps[:most]:
+        change = jump.traction_after - jump.traction_before
+        at = f"slip rate {exact_range((jump.rate_before, jump.rate_after), rates)} at a load of {brief(jump.load, loads, 12)}"
+        yield f"jump {jump.direction} *", f"{at}; traction changes by {brief(change, loads)}"
+    yield from _more("jumps", contact.jumps[:most], contact.jumps)
+    if contact.jumps:
+        retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
+        yield "loop *", f"the load going up and down encloses {brief(contact.loop_area, f'{loads} {rates}')}{retraced}"
+        yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."
+
+
+def _more(what: str, shown: tuple[object, ...], found: tuple[object, ...]) -> Iterator[Line]:
+    if len(found) > len(shown):
+        yield "", f"and {len(found) - len(shown)} more {what}"
+
+
+def _proof(fold: Fold, unit: str) -> str:
+    """Return how closely a fold is proven, as the end of a sentence, with the unit of slip rates."""
+    if fold.enclosure is None:
+        return "; not proven"
+    low, high = fold.enclosure
+    return f"; proven to within {exactly(high - low, unit, 1)}" if high > low else "; proven, at a kink of the law"

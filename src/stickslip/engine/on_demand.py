@@ -16,7 +16,7 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.kernels.lock import made_once
 from stickslip.foundation.kernels.uncompiled import UNCOMPILED, handle_of
 
-PARTS = {
+PART_MODULES = {
     EnginePart.IMPLICIT_STEPS: "contact_step.implicit_step",
     EnginePart.LOADING_HISTORY: "waves.varying_forcing",
     EnginePart.ECHO_QUEUE: "waves.echo_queue",
@@ -30,16 +30,16 @@ PARTS = {
 name in `workspace.Run`."""
 
 
-_ORDER = {part: n for n, part in enumerate(PARTS)}
-_PLACES = np.array([Run.places[part.name.lower()].first for part in PARTS])
-"""Place of the address of each part in a run's memory, in the order of PARTS."""
-_at_hand = np.zeros(len(PARTS), np.int64)
-"""Addresses of the parts that this process has compiled or loaded so far, in the order of PARTS; 0 for the others."""
+_ORDER = {part: n for n, part in enumerate(PART_MODULES)}
+_PLACES = np.array([Run.places[part.name.lower()].first for part in PART_MODULES])
+"""Place of the address of each part in a run's memory, in the order of PART_MODULES."""
+_at_hand = np.zeros(len(PART_MODULES), np.int64)
+"""Addresses of the parts that this process has compiled or loaded so far, in the order of PART_MODULES; 0 for the others."""
 
 
 def function_of(part: EnginePart) -> Any:
     """Return the kernel of a part, from its module, which is imported for it: not under the lock of what is made on first use."""
-    return getattr(import_module(f"stickslip.engine.{PARTS[part]}"), part.name.lower())
+    return getattr(import_module(f"stickslip.engine.{PART_MODULES[part]}"), part.name.lower())
 
 
 @made_once()

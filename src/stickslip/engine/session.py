@@ -35,7 +35,7 @@ from stickslip.engine.state.workspace import (
     state_in,
     with_more_rows,
 )
-from stickslip.engine.waves.echo_queue import NOTHING, rebuild_queue, write_ahead
+from stickslip.engine.waves.echo_queue import NO_PIECE, rebuild_queue, write_ahead
 from stickslip.foundation.kernels.kernels import ready
 from stickslip.problem import BoundedOptions, Problem, Stop, creep_tolerance
 
@@ -269,7 +269,7 @@ class Session(Generic[Options]):
     def stand(self, pieces: Integers) -> None:
         """Let these pieces, in order of phase, be those whose echoes make up the coming round trip, and meet only what breaks."""
         count = self.count
-        count.sparse, count.behind, count.ahead, count.new_from = 1, NOTHING, NOTHING, count.length
+        count.sparse, count.behind, count.ahead, count.new_from = 1, NO_PIECE, NO_PIECE, count.length
         self.state.new_since = self.state.taken_to = 0.0
         rebuild_queue(self.memory, pieces, 0)
 

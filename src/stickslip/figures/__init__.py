@@ -1,4 +1,4 @@
-"""The figures of the package: most modules have `data(...)`, which makes a dataset, and `draw(dataset)`, which draws it.
+"""The figures of the package: most modules make a dataset (`energy_data`) and draw it (`draw_energy`).
 
 Runs and studies draw themselves (`solution.plot()`); `ss.figures` has the figures of datasets: `ss.figures.plot_sweep(dataset)`,
 and of laws made from points: `ss.figures.plot_fit(result)`.

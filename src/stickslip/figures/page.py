@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Translation of digits and the minus sign for powers of ten."""
-DIGITS = 6
+DIGITS_ON_PAGE = 6
 """Significant digits of the numbers on a page; the tables beside it keep all."""
 SYMBOL = re.compile(r"(?<![A-Za-z-])(?P<letter>[uD](?=0)|u(?=c)|α(?=c)|μ(?=[0SD]))(?P<index>[0cSD])(?![a-z])")
 """A symbol with an index, as the texts write it without markup: u0, D0, uc, αc, μ0, μS, μD."""
@@ -73,9 +73,9 @@ def number(value: float) -> str:
     """Return a number as text for readers: plain from 1e-3 to 1e6, otherwise with a power of ten."""
     if not math.isfinite(value):
         return "–" if math.isnan(value) else "∞" if value > 0 else "−∞"
-    if value == 0 or 1e-3 <= abs(value) < 10.0**DIGITS:
-        return f"{value:.{DIGITS}g}".replace("-", "−")
-    mantissa, exponent = f"{value:.{DIGITS - 1}e}".split("e")
+    if value == 0 or 1e-3 <= abs(value) < 10.0**DIGITS_ON_PAGE:
+        return f"{value:.{DIGITS_ON_PAGE}g}".replace("-", "−")
+    mantissa, exponent = f"{value:.{DIGITS_ON_PAGE - 1}e}".split("e")
     short = mantissa.rstrip("0").rstrip(".")
     return f"{short} × 10{superscript(int(exponent))}".replace("-", "−")
 

@@ -28,9 +28,9 @@ LETTER, MARK = 0.062, 0.4
 """Widths (inches) of a letter of a key, and of the mark before it with the space around."""
 LETTERS = 13.0
 """Number of letters of a title in an inch; longer titles are broken into lines."""
-BESIDE = 0.7
+WIDTH_OF_LABELS = 0.7
 """Width (inches) of the labels beside the axis of a panel."""
-NARROW = 500.0
+NARROW_AXIS = 500.0
 """Logarithmic axes that span less than this factor have ticks at 1, 2, 5, 10, ...: powers of ten alone would be too few."""
 
 
@@ -60,7 +60,7 @@ def set_title(where: Any, title: str) -> None:
     figure = where.figure
     line = "".join(letter if letter.isprintable() else " " for letter in title)
     # The title of a panel begins beside its axis, that of a figure at the edge.
-    room = figure.get_figure(root=True).get_size_inches()[0] - (BESIDE if isinstance(where, Axes) else 0.0)
+    room = figure.get_figure(root=True).get_size_inches()[0] - (WIDTH_OF_LABELS if isinstance(where, Axes) else 0.0)
     text = textwrap.fill(" ".join(line.split()), max(int(LETTERS * room), 20))
     if isinstance(where, Axes):
         where.set_title(text, parse_math=False)
@@ -111,7 +111,7 @@ def set_log_ticks(axes: Axes, which: str) -> None:
     """Give the logarithmic axis "x" or "y" ticks that can be read, once its limits are set: plain 1, 2, 5, ... if it is short."""
     axis = getattr(axes, f"{which}axis")
     low, high = sorted(axis.get_view_interval())
-    if high < NARROW * low:
+    if high < NARROW_AXIS * low:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axis.set_minor_locator(NullLocator())

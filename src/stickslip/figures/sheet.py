@@ -33,7 +33,7 @@ KEYWORDS = ("ax", "figure", "size", "dpi")
 """The keywords of `Place`."""
 INCHES = {"mm": 1.0 / 25.4, "cm": 1.0 / 2.54, "in": 1.0, "inch": 1.0, "inches": 1.0}
 """Units in which a size can be written, and their length in inches."""
-COLUMNS = {"single column": 3.5, "double column": 7.2}
+WIDTHS_OF_COLUMNS = {"single column": 3.5, "double column": 7.2}
 """Widths (inches) of one and of two columns of most journals; the height stays that of the figure."""
 SIDES = (0.8, 80.0)
 """Smallest and largest side of a figure, inches (2 cm and 2 m)."""
@@ -137,8 +137,8 @@ def read_size(size: tuple[float, float] | str, usual: tuple[float, float], where
     """
     if isinstance(size, str):
         text = size.strip().lower()
-        if text in COLUMNS:
-            return COLUMNS[text], usual[1]
+        if text in WIDTHS_OF_COLUMNS:
+            return WIDTHS_OF_COLUMNS[text], usual[1]
         sides = _sides_in(text)
     else:
         sides = tuple(size) if isinstance(size, Iterable) else ()

@@ -1,14 +1,14 @@
 """The common look of all figures: colours, units, and labels that carry their units.
 
-Most figure modules have two functions: `data(...)` returns an xarray.Dataset in SI units, and `draw(dataset, **place)` draws just
-that dataset. The data published beside a figure are therefore the data that were drawn.
+Most figure modules have two functions: `energy_data(...)`, say, returns an xarray.Dataset in SI units, and
+`draw_energy(dataset, **place)` draws just that dataset. The data published beside a figure are therefore the data that were drawn.
 
 Rules that all figures follow:
 
 1. **Place.** Every function that draws takes the keywords of `Place` (ax, figure, size, dpi) and begins with
    `sheet(usual size, **place)`, or with `one_panel(usual size, **place)` for a figure of one panel, which ends with
-   `return panels.finish(axes, title, **place)`. It returns the figure, or the axes if `ax` was given. `draw` itself never calls
-   pyplot; a method for users returns `known_to_pyplot(draw(dataset, **place), place)`.
+   `return panels.finish(axes, title, **place)`. It returns the figure, or the axes if `ax` was given. It never calls pyplot
+   itself; a method for users returns `known_to_pyplot(draw_energy(dataset, **place), place)`.
 2. **Titles.** `panels.set_title(figure, title)` with the title of the scenario; problems from Python have none, and neither have
    axes of the user. No names of classes or of laws.
 3. **Letters.** Several panels have letters, `panels.letter_panels(axes, texts)`: "(a) text" above the panel, at its left end. A
@@ -93,7 +93,7 @@ STYLE: Any = {
 
 FLAT = 0.02
 """Stresses whose range is less than this share of their largest magnitude are drawn as changes: else the line looks flat."""
-WIDE = 100.0
+SPAN_OF_LOGARITHM = 100.0
 """Positive values that span more than this factor, and counts above this number, are drawn on a logarithmic axis."""
 
 
@@ -209,4 +209,4 @@ def nearly_flat(*stresses: Floats) -> bool:
 
 def spans_decades(values: Floats) -> bool:
     """Return True if values are positive and span so much that they need a logarithmic axis."""
-    return bool(values.min() > 0.0 and values.max() > WIDE * values.min())
+    return bool(values.min() > 0.0 and values.max() > SPAN_OF_LOGARITHM * values.min())

@@ -16,9 +16,9 @@ import numpy as np
 
 from stickslip.foundation.errors import ArgumentError, InputError, UnknownAttributeError, nearest
 
-LONGEST = 60
+LONGEST_VALUE = 60
 """Largest number of characters of a value that a message repeats."""
-EXACT = 10**15
+EXACT_WHOLE_NUMBERS = 10**15
 """Whole numbers below this are shown with all digits."""
 
 
@@ -49,7 +49,7 @@ def shown(value: Any) -> str:
         return str(value)
     if isinstance(value, np.timedelta64):  # numpy's intervals of time count as whole numbers, but convert to none
         return type(value).__name__
-    if isinstance(value, Integral) and abs(int(value)) < EXACT:
+    if isinstance(value, Integral) and abs(int(value)) < EXACT_WHOLE_NUMBERS:
         return str(int(value))
     if isinstance(value, Real):
         return repr(as_float(value))
@@ -57,7 +57,7 @@ def shown(value: Any) -> str:
         return str(value)
     if isinstance(value, str | bytes | os.PathLike | list | tuple | dict):
         text = ascii(value)
-        return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
+        return text if len(text) <= LONGEST_VALUE else f"{text[: LONGEST_VALUE - 3]}..."
     return type(value).__name__
 
 

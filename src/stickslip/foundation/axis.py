@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import is_number
-from stickslip.foundation.units import LONGEST, split_quantity
+from stickslip.foundation.units import LONGEST_TEXT, split_quantity
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
@@ -52,7 +52,7 @@ class TypedRange(NamedTuple):
 
 def range_meant(text: str) -> str:
     """Return how a range that is typed as 1-50 km, 1 to 50 km or 1:50 km, or a list without commas, is written; else nothing."""
-    if len(text) > LONGEST:
+    if len(text) > LONGEST_TEXT:
         return ""
     found = _MISTYPED.fullmatch(text.strip())
     if found and all(is_number(one) or split_quantity(one) for one in (found["low"], found["high"])):

@@ -19,7 +19,7 @@ from stickslip.foundation.private_folder import private_folder
 from stickslip.foundation.sealed_files import cache_root, read_sealed, write_sealed
 
 PACKAGE = Path(__file__).parents[1]
-DIGITS = 16
+DIGITS_OF_KEY = 16
 """Number of hexadecimal digits of a key."""
 SHIPPED = PACKAGE / "machine_code"
 """Where machine code, and the keys of code, lie that are made when the package is built."""
@@ -76,7 +76,7 @@ def key_of(texts: Iterable[bytes], beside: str) -> str:
     digest = hashlib.sha256(beside.encode())
     for text in texts:
         digest.update(_executed(text))
-    return digest.hexdigest()[:DIGITS]
+    return digest.hexdigest()[:DIGITS_OF_KEY]
 
 
 @cache  # most files belong to two keys: that of machine code, and that of a checkpoint

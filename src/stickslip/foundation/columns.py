@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import has_unit as is_quantity
 from stickslip.foundation.errors import InputError, warn
-from stickslip.foundation.headings import COLUMNS, FoundColumn, find, is_signed
+from stickslip.foundation.headings import KNOWN_COLUMNS, FoundColumn, find, is_signed
 from stickslip.foundation.marks import marked, sentences
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.unit_doubts import doubts_of
@@ -74,7 +74,7 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = F
         given, factor = table[headings[one.place]], one.factor
         try:
             if is_quantity(given):  # a unit of its own outweighs one in the heading
-                given, factor = given.to(COLUMNS[name].unit).magnitude, Fraction(1)
+                given, factor = given.to(KNOWN_COLUMNS[name].unit).magnitude, Fraction(1)
             else:
                 without[name] = one
             kind = np.asarray(given).dtype.kind

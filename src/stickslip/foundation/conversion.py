@@ -13,11 +13,11 @@ from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import as_given
 from stickslip.foundation.meant import probably_meant
-from stickslip.foundation.units import LONGEST, split_quantity, to_si
+from stickslip.foundation.units import LONGEST_TEXT, split_quantity, to_si
 
 LARGEST_INTEGER = 10**300
 """Largest magnitude of a whole number that is converted to a float."""
-SAME = 1e-12
+ONE_UNIT = 1e-12
 """Definitions of a unit in two libraries that differ by less than this (relative) count as the same."""
 NO_UNIT = "dimensionless"
 """Name of the unit of a pure number in pint."""
@@ -150,8 +150,8 @@ def _in_one_of(number: Any, unit: str, wanted: str) -> Any:
 
 
 def _hint(text: str) -> str:
-    if len(text) > LONGEST:
-        return f": longer than {LONGEST} characters"
+    if len(text) > LONGEST_TEXT:
+        return f": longer than {LONGEST_TEXT} characters"
     meant = probably_meant(text)
     if meant:
         return f": write {meant}"
@@ -183,7 +183,7 @@ def without_unit(value: Any, unit: str) -> Any:
         if by_registry is None:
             raise
         return by_registry
-    return exact if by_registry is None or np.allclose(exact, by_registry, rtol=SAME, atol=0.0, equal_nan=True) else by_registry
+    return exact if by_registry is None or np.allclose(exact, by_registry, rtol=ONE_UNIT, atol=0.0, equal_nan=True) else by_registry
 
 
 def as_text(value: WithUnit) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 
-UNSEEN = 1e-9
+UNSEEN_CHANGE = 1e-9
 """Points do not see a combination of parameters that changes friction by less than this share of the largest change."""
 PART = 0.05
 """A parameter is part of an unseen combination (of length 1) if its component is larger than this."""
@@ -19,7 +19,7 @@ SERIAL = 5.0
 """Neighbouring residuals may be more alike than by chance by this many standard deviations."""
 
 
-def covariance_of(slopes_by: Floats, variance: float, unseen_below: float = UNSEEN) -> tuple[Floats, list[list[int]]]:
+def covariance_of(slopes_by: Floats, variance: float, unseen_below: float = UNSEEN_CHANGE) -> tuple[Floats, list[list[int]]]:
     """Return the covariance of parameters, and the sets of those that the points do not determine, by their indices.
 
     `slopes_by` are the derivatives at the best fit, shape (n, number of parameters), and `variance` is that of the points about it.

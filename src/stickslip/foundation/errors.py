@@ -103,7 +103,7 @@ MOST_MEANT = 4
 """A part that more of the allowed words have says nothing about which one is meant."""
 MOST_ABSENT = 2
 """Largest number of meanings of a word that are named although none of them is allowed."""
-LONGEST = 80
+LONGEST_WORD = 80
 """Largest number of characters of a word that is compared with others."""
 MISTYPED = 0.85
 """So much (1) of a mistyped word and of the right one is the same, at least."""
@@ -158,7 +158,8 @@ def meant(word: str, allowed: Collection[str]) -> list[str]:
     if not found:
         found = [one for one in allowed if word.casefold() in parts_of(one)]
         found = found or [one for one in allowed if len(word) > 2 and plain(one).startswith(plain(word) or "-")]
-        found = found or [one for one in allowed if len(parts := set(parts_of(one))) > 1 and parts <= set(parts_of(word[:LONGEST]))]
+        given = set(parts_of(word[:LONGEST_WORD]))
+        found = found or [one for one in allowed if len(parts := set(parts_of(one))) > 1 and parts <= given]
         found = found if len(found) <= MOST_MEANT else []
     if found or meanings(word):  # a word that is known is not a misspelt one
         return found[:MOST_MEANT]
@@ -173,7 +174,7 @@ def _likeness(word: str, other: str) -> float:
 
     Words may come from files of strangers: only their beginnings are compared.
     """
-    first, second = (one[:LONGEST].lstrip("-").casefold() for one in (other, word))
+    first, second = (one[:LONGEST_WORD].lstrip("-").casefold() for one in (other, word))
     return difflib.SequenceMatcher(None, first, second).ratio()
 
 

@@ -29,7 +29,7 @@ def _driven(*what: str) -> tuple[str, ...]:
     return tuple(f"{end} {one}" for end in ends for one in what)
 
 
-COLUMNS: Mapping[str, HeadingColumn] = {
+KNOWN_COLUMNS: Mapping[str, HeadingColumn] = {
     "slip": HeadingColumn(
         "m",
         ("u", "displacement", "slip distance", "cumulative slip", "slip displacement", "fault slip", "h slip"),
@@ -135,7 +135,7 @@ OF_SCEC = {"t": "s", "slip": "m", "slip-rate": "m/s", "shear-stress": "MPa"}
 """Units of columns that have none in their headings where the headings are those of the SCEC benchmarks."""
 MOST_COLUMNS = 1000
 """Largest number of columns of a table."""
-LONGEST = 120
+LONGEST_HEADING = 120
 """Largest number of characters of a heading that is understood."""
 PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless", "unitless")
 """What people write in place of a unit for a pure number."""
@@ -222,7 +222,7 @@ def _is_unit_of(unit: str, column: str) -> bool:
 
 
 def _unit_of(column: str) -> str:
-    return COLUMNS.get(column, HeadingColumn("1")).unit
+    return KNOWN_COLUMNS.get(column, HeadingColumn("1")).unit
 
 
 def understood(heading: str, wanted: Sequence[str]) -> str | None:
@@ -253,7 +253,7 @@ def _by_heading(wanted: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
 
 def headings(column: str) -> set[str]:
     """Return the plain headings of a column."""
-    names = [plain(column), *map(plain, COLUMNS[column].others if column in COLUMNS else ())]
+    names = [plain(column), *map(plain, KNOWN_COLUMNS[column].others if column in KNOWN_COLUMNS else ())]
     words = [name.replace(" ", "") for name in names]
     return {*names, *(word for word in words if len(word) >= ONE_WORD)}
 
@@ -261,7 +261,7 @@ def headings(column: str) -> set[str]:
 @lru_cache(maxsize=4096)
 def plain(heading: str) -> str:
     """Return the words of a heading in small letters, with single blanks between them."""
-    return _NO_LETTER.sub(" ", _CAMEL.sub(" ", unicodedata.normalize("NFKC", heading[:LONGEST])).casefold()).strip()
+    return _NO_LETTER.sub(" ", _CAMEL.sub(" ", unicodedata.normalize("NFKC", heading[:LONGEST_HEADING])).casefold()).strip()
 
 
 def names_of(header: Sequence[str]) -> list[str]:
@@ -271,7 +271,7 @@ def names_of(header: Sequence[str]) -> list[str]:
 
 def split_heading(heading: str) -> tuple[str, str | None]:
     """Return the name in a heading and the unit in brackets, or None; no name if it is too long for a heading."""
-    if len(heading) > LONGEST:
+    if len(heading) > LONGEST_HEADING:
         return "", None
     part = _HEADING.fullmatch(heading)
     return (part["name"].strip(), part["unit"] and part["unit"].strip()) if part else (heading, None)
@@ -301,7 +301,7 @@ def _unit_text(unit: str) -> str:
 
 def factor_of(unit: str | None, column: str, place: str) -> Fraction:
     """Return the factor from the unit in a heading to SI. Raises InputError, which does not repeat the unit."""
-    known = COLUMNS.get(column, HeadingColumn("1"))
+    known = KNOWN_COLUMNS.get(column, HeadingColumn("1"))
     if unit is None or (known.unit == "1" and unit.strip().casefold() in PURE):
         return Fraction(1)
     if known.unit == "1":
@@ -317,7 +317,7 @@ def factor_of(unit: str | None, column: str, place: str) -> Fraction:
 
 def is_signed(column: str) -> bool:
     """Return True if the numbers of a column may be negative."""
-    return COLUMNS.get(column, HeadingColumn("1")).signed
+    return KNOWN_COLUMNS.get(column, HeadingColumn("1")).signed
 
 
 def example(column: str) -> str:

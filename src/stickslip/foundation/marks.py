@@ -11,13 +11,13 @@ MARKS = (-999.0, -999.25, -9999.0, -9999.25, -99999.0)
 """Numbers that stand for none in the logs of many programs."""
 HUGE = 1e20
 """Numbers of this size are marks as well, as 1e30 and 1.7e38: no quantity of a test reaches it in any unit."""
-CLOSE = 0.01
+CLOSE_TO_MARK = 0.01
 """A number before or after that is as close to a mark as this share of it makes the mark a number of the same curve."""
-BEYOND = 6.0
+FACTOR_OF_MARK = 6.0
 """A mark may be off what its neighbours make likely by so much more than half of the other samples are off."""
 AROUND = 16
 """Number of samples to each side that say how much a column changes from sample to sample."""
-TOGETHER = 10_000
+MARKS_TOGETHER = 10_000
 """Number of marks that are looked at together, so that memory is bounded."""
 
 
@@ -63,12 +63,12 @@ def _continues(values: Floats, maybe: NDArray[np.bool_], known: NDArray[np.intp]
     place = np.searchsorted(known, begins)  # of the next number among those that are known
     before = np.where(place > 0, numbers[np.maximum(place - 1, 0)], np.nan)
     after = np.where(place < len(known), numbers[np.minimum(place, len(known) - 1)], np.nan)
-    close = np.fmin(np.abs(before - marks), np.abs(after - marks)) <= CLOSE * np.abs(marks)
+    close = np.fmin(np.abs(before - marks), np.abs(after - marks)) <= CLOSE_TO_MARK * np.abs(marks)
     between = (np.minimum(before, after) <= marks) & (marks <= np.maximum(before, after)) & (lengths == 1)
     inside = np.isfinite(before) & np.isfinite(after)
     likely = np.where(inside, 0.5 * (before + after), np.where(np.isfinite(before), before, after))
     usual = np.where(inside, _usual(_bends(numbers), place), _usual(np.abs(np.diff(numbers)), place))
-    return np.asarray(close | between | (np.abs(marks - likely) <= BEYOND * usual))
+    return np.asarray(close | between | (np.abs(marks - likely) <= FACTOR_OF_MARK * usual))
 
 
 def _bends(numbers: Floats) -> Floats:
@@ -81,8 +81,8 @@ def _usual(changes: Floats, places: NDArray[np.intp]) -> Floats:
     if not len(changes):
         return np.zeros(len(places))
     everywhere, found = float(np.median(changes)), []
-    for begin in range(0, len(places), TOGETHER):
-        window = places[begin : begin + TOGETHER, None] + np.arange(-AROUND, AROUND)
+    for begin in range(0, len(places), MARKS_TOGETHER):
+        window = places[begin : begin + MARKS_TOGETHER, None] + np.arange(-AROUND, AROUND)
         outside = (window < 0) | (window >= len(changes))
         around = np.where(outside, np.nan, changes[np.clip(window, 0, len(changes) - 1)])
         around[np.isnan(around).all(axis=1)] = everywhere

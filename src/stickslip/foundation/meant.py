@@ -7,7 +7,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.units import LONGEST, UNIT, si_factor, split_quantity
+from stickslip.foundation.units import LONGEST_TEXT, UNIT, si_factor, split_quantity
 
 # patterns are compiled when a text is first mistyped
 _COMMA = r"(?P<whole>[+-]?[\d_]+),(?P<part>\d+)(?P<rest>(?:[eE][+-]?\d+)?(?:\s*[^\d\s,][^,]*)?)"
@@ -23,7 +23,7 @@ _ONE = rf"\s*(?P<one>[\d.]+\s*(?:{UNIT}))(?=\s*\d|\s*$)"
 
 def probably_meant(text: str) -> str | None:
     """Return how a text is written as a number with one unit, and what changes, as "'10.5 m', with a decimal point"; else None."""
-    if len(text) > LONGEST:
+    if len(text) > LONGEST_TEXT:
         return None
     named = re.sub(_MARK, lambda found: _MARKS[found[1]], text.strip())
     written = [f"{number!a}, {change}" for reading, change in _READINGS for number in (reading(named),) if number]

@@ -16,12 +16,12 @@ from stickslip.foundation.errors import InputError
 
 SETTING = "STICKSLIP_MEMORY"
 """Environment variable with the memory to count on, such as "8 GB", in place of what is free."""
-SHARE = 1.0 / 6.0
+SHARE_OF_MEMORY = 1.0 / 6.0
 """Largest share of the free memory that a result may take: its summary and its file take up to four times as much, for a moment."""
 SMALL = 64e6
 """Size (bytes) up to which nobody looks for free memory, which takes half a millisecond."""
-SIZES = {"": 1.0, "B": 1.0, "kB": 1e3, "KB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
-SIZES |= {"KiB": 2.0**10, "MiB": 2.0**20, "GiB": 2.0**30, "TiB": 2.0**40}
+BYTES_OF_UNITS = {"": 1.0, "B": 1.0, "kB": 1e3, "KB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
+BYTES_OF_UNITS |= {"KiB": 2.0**10, "MiB": 2.0**20, "GiB": 2.0**30, "TiB": 2.0**40}
 """Bytes of each unit of a size."""
 GROUPS = Path("/sys/fs/cgroup")
 """Where Linux shows control groups."""
@@ -42,8 +42,8 @@ def granted(wanted: float, taken: float) -> float:
     """
     chosen = chosen_memory()
     if chosen is not None:
-        return min(wanted, SHARE * chosen)
-    return wanted if wanted <= SMALL else min(wanted, SHARE * (free_memory() + taken))
+        return min(wanted, SHARE_OF_MEMORY * chosen)
+    return wanted if wanted <= SMALL else min(wanted, SHARE_OF_MEMORY * (free_memory() + taken))
 
 
 def chosen_memory() -> float | None:
@@ -63,9 +63,9 @@ def free_memory() -> float:
 def size_of(text: str) -> float:
     """Return a size in bytes from a text such as "8 GB". Raises InputError for any other text."""
     found = re.fullmatch(r"\s*([0-9]{1,20}(?:\.[0-9]{1,20})?)\s*([A-Za-z]*)\s*", text)
-    if found is None or found[2] not in SIZES or float(found[1]) == 0.0:
+    if found is None or found[2] not in BYTES_OF_UNITS or float(found[1]) == 0.0:
         raise InputError(f"{SETTING}: {ascii(text)[:60]} is not a size of memory; write it like 8 GB")
-    return float(found[1]) * SIZES[found[2]]
+    return float(found[1]) * BYTES_OF_UNITS[found[2]]
 
 
 def _of_system() -> Iterator[float]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest, warn
-from stickslip.foundation.headings import LONGEST, heading_of, plain, split_heading, trailing_unit, understood
+from stickslip.foundation.headings import LONGEST_HEADING, heading_of, plain, split_heading, trailing_unit, understood
 
 MOST_SHOWN = 12
 """A message names at most this many headings."""
@@ -84,7 +84,8 @@ class NamedColumns:
         name, unit = split_heading(text)
         for same in (str.strip, plain):
             for cells in every:
-                if found := [i for i, cell in cells if len(cell) <= LONGEST and same(split_heading(cell)[0]) == same(name) != ""]:
+                short = [(i, cell) for i, cell in cells if len(cell) <= LONGEST_HEADING]
+                if found := [i for i, cell in short if same(split_heading(cell)[0]) == same(name) != ""]:
                     return found, unit
         if name.isascii() and name.isdigit() and 1 <= int(name[:9]) <= len(header):
             return [int(name) - 1], unit
@@ -102,7 +103,7 @@ class NamedColumns:
         if not self.shows:
             raise InputError(f"{missing} among the {len(header)}; its number does, too")
         holding = [one for one in named if plain(text) and plain(text) in plain(one)]
-        close = nearest(holding[0] if holding else text, [one[:LONGEST] for one in named], "")
+        close = nearest(holding[0] if holding else text, [one[:LONGEST_HEADING] for one in named], "")
         close = close if close.startswith("did") else ""
         more = f" and {len(named) - MOST_SHOWN} more" if len(named) > MOST_SHOWN else ""
         there = ", ".join(repr(one)[:60] for one in named[:MOST_SHOWN]) + more

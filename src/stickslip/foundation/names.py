@@ -1,7 +1,7 @@
 """What quantities are called, in one place: name, symbol, unit and meaning of each, and the units in which numbers are readable.
 
-Files, figures, tables, the explorer and records read this. A unit may depend on the body: `KINDS` has a row for each unit of loads
-(`Body.load_unit`), and a body whose loads have another unit needs one more row there.
+Files, figures, tables, the explorer and records read this. A unit may depend on the body: `KINDS_OF_BODY` has a row for each unit
+of loads (`Body.load_unit`), and a body whose loads have another unit needs one more row there.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class KindOfBody:
     """What a contact does, for messages."""
 
 
-KINDS = {
+KINDS_OF_BODY = {
     "Pa": KindOfBody("m", "J/m^2", "stress", "normal_stress", "Pa s/m"),
     "N": KindOfBody(
         "m",
@@ -160,13 +160,13 @@ def si_unit(what: str, *load_units: str) -> str:
     Any other text is a unit already. Different units are joined, as in "Pa or N"; by default they are those of all kinds of bodies.
     """
     known = QUANTITIES[what].unit if what in QUANTITIES else what
-    return " or ".join(dict.fromkeys(_of_kind(load).get(known, known) for load in load_units or KINDS))
+    return " or ".join(dict.fromkeys(_of_kind(load).get(known, known) for load in load_units or KINDS_OF_BODY))
 
 
 @cache
 def _of_kind(load_unit: str) -> Mapping[str, str]:
     """Return the units of a kind of body by the words that columns name in their place."""
-    kind = KINDS[load_unit]
+    kind = KINDS_OF_BODY[load_unit]
     units = {"slip": kind.slip, "slip_rate": f"{kind.slip}/s", "slip_acceleration": f"{kind.slip}/s^2"}
     units |= {"load": load_unit, "load_rate": f"{load_unit}/s", "stiffness": f"{load_unit}/{kind.slip}"}
     return units | {"impedance": kind.impedance, "energy": kind.energy}
@@ -179,7 +179,7 @@ def own_units(load_unit: str) -> Mapping[str, str]:
     Declared are m, m/s, m/s^2, s/m, 1/m, Pa and Pa/s, and "Pa or N or N m" for a load; a body whose loads have the unit `load_unit`
     may slip by an angle.
     """
-    slip = KINDS[load_unit].slip
+    slip = KINDS_OF_BODY[load_unit].slip
     units = {si_unit("load"): load_unit}
     if slip != "m":
         units |= {one: one.replace("m", slip) for one in ("m", "m/s", "m/s^2", "s/m", "1/m")}
@@ -189,7 +189,7 @@ def own_units(load_unit: str) -> Mapping[str, str]:
 
 def name_of(quantity: str, load_unit: str = "Pa") -> str:
     """Return the name of a quantity for a body whose loads have this unit: "traction" is a "friction force" if it is N."""
-    return KINDS[load_unit].names.get(quantity, QUANTITIES[quantity].name)
+    return KINDS_OF_BODY[load_unit].names.get(quantity, QUANTITIES[quantity].name)
 
 
 def plain_symbol(quantity: str) -> str:
@@ -218,7 +218,7 @@ def _raised(name: str, power: int) -> str:
 
 def has_prefixes(unit: str) -> bool:
     """Return True for units that are read with a prefix, such as MPa."""
-    return unit in _PREFIXED or unit in KINDS
+    return unit in _PREFIXED or unit in KINDS_OF_BODY
 
 
 def sizes_of(unit: str) -> tuple[tuple[float, str], ...]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import chain, repeat
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain, repeat, zip_longest
 from numbers import Real
 from types import MappingProxyType
 from typing import Any, ClassVar
@@ -20,7 +20,7 @@ from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumber
 
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
 """Units of time with their lengths in s, longest first."""
-DIGITS = 6
+BRIEF_DIGITS = 6
 """Number of significant digits of `brief`."""
 UNHANDY = 2
 """A text may be this many characters longer if its number then lies between 0.1 and 1000."""
@@ -55,7 +55,7 @@ def in_turns(angle: float) -> str:
     return f" ({number(turns, 6)} turns)" if abs(turns) >= 1.0 else ""
 
 
-def brief(value: float, unit: str, digits: int = DIGITS) -> str:
+def brief(value: float, unit: str, digits: int = BRIEF_DIGITS) -> str:
     """Format a quantity, with 6 digits by default, in the unit that makes it short: "10 km", "0.05 m/year", "100 MPa".
 
     Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
@@ -81,9 +81,9 @@ def exact_range(values: Sequence[float], unit: str, digits: int = 9, between: st
     return f"{between.join(f'{value / size:.{digits}g}' for value in values)} {name}"
 
 
-def how_long(reached: float, asked: float, text: Callable[[float, str], str] = brief) -> str:
-    """Return the time (s) that a run reached and, if it ended early, the time (s) that was asked for, both written by `text`."""
-    return text(reached, "s") + (f" of {text(asked, 's')} asked for" if reached < asked else "")
+def how_long(reached: float, asked: float) -> str:
+    """Return the time (s) that a run reached and, if it ended early, the time (s) that was asked for."""
+    return with_unit(reached, "s") + (f" of {with_unit(asked, 's')} asked for" if reached < asked else "")
 
 
 def in_unit(seconds: float) -> tuple[float, str]:
@@ -115,15 +115,15 @@ def with_uncertainty(value: float, uncertainty: float | None) -> str:
     return f"{value:.{digits - 1}e} ± {uncertainty:.1e}"
 
 
-def text_table(title: str, rows: Sequence[tuple[str, str, str]], notes: Sequence[str] = ()) -> str:
-    """Return a title, rows of name, value and meaning, and notes as lines of text."""
-    names, values = (max((len(row[i]) for row in rows), default=0) for i in (0, 1))
-    lines = [f"  {name:<{names}}  {value:<{values}}  {meaning}".rstrip() for name, value, meaning in rows]
-    return "\n".join([title, *lines, *(f"  note: {note}" for note in notes)])
+def text_table(title: str, rows: Sequence[Sequence[str]]) -> str:
+    """Return a title and rows, the first text of each its name, as lines of text; the last column may be any length."""
+    widths = [max(map(len, column)) for column in zip_longest(*(row[:-1] for row in rows), fillvalue="")]
+    lines = ("  ".join(("", *(f"{text:<{width}}" for text, width in zip(row[:-1], widths, strict=False)), row[-1])) for row in rows)
+    return "\n".join([title, *(line.rstrip() for line in lines)])
 
 
 def html_table(caption: str, rows: Iterable[Sequence[object]], heading: Sequence[str] = ()) -> str:
-    """Return a table for notebooks; the first cell of each row is its name. All texts are escaped."""
+    """Return a table for notebooks; the first cell of each row is its name, but for a row of one cell. All texts are escaped."""
     from html import escape
 
     def line(cells: Sequence[object], tags: Iterable[str]) -> str:
@@ -131,8 +131,27 @@ def html_table(caption: str, rows: Iterable[Sequence[object]], heading: Sequence
         return f"<tr>{''.join(aligned)}</tr>"
 
     top = f"<thead>{line(heading, repeat('th'))}</thead>" if heading else ""
-    body = "".join(line(cells, chain(["th"], repeat("td"))) for cells in rows)
+    body = "".join(line(cells, chain(["th"] if len(cells) > 1 else [], repeat("td"))) for cells in rows)
     return f"<table><caption>{escape(caption)}</caption>{top}<tbody>{body}</tbody></table>"
+
+
+class ShownAsTable:
+    """Base of results that are shown as rows below a title, as text and in notebooks."""
+
+    @property
+    def _caption(self) -> str:
+        """What stands above the rows."""
+        return f"stickslip {type(self).__name__}"
+
+    def _lines(self) -> Sequence[Sequence[str]]:
+        """Return the rows, the first text of each its name."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return text_table(self._caption, self._lines())
+
+    def _repr_html_(self) -> str:
+        return html_table(self._caption, self._lines())
 
 
 def clean(text: str) -> str:
@@ -251,7 +270,7 @@ def _text(value: Any, declared: Any) -> str:
     if isinstance(value, np.ndarray) and value.ndim:
         return f"<array of shape {value.shape}>"
     if isinstance(value, Given):
-        return f"'{value.amount:.{DIGITS}g} {value.unit}'"
+        return f"'{value.amount:.{BRIEF_DIGITS}g} {value.unit}'"
     if isinstance(value, Real) and not isinstance(value, bool | np.bool_ | int):
         return _number(float(value), unit)
     if isinstance(value, tuple) and type(value) is tuple:

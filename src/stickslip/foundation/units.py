@@ -15,7 +15,7 @@ from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
 
-LONGEST = 64
+LONGEST_TEXT = 64
 """Largest number of characters in a quantity; a limit is needed because units come from untrusted files."""
 COMMON_UNITS = (
     *("m", "mm", "cm", "km", "s", "ms", "min", "hour", "day", "year", "kg", "tonne", "m/s", "m/year"),
@@ -26,14 +26,14 @@ COMMON_UNITS = (
 Dimensions = dict[str, int]
 """Powers of the base dimensions of a unit, by their names in pint; a dimension with the power 0 is left out."""
 
-_NAME = r"(?:%g|[A-Za-zµ][A-Za-zµ_]*(?:'s)?)"
+_NAME_OF_UNIT = r"(?:%g|[A-Za-zµ][A-Za-zµ_]*(?:'s)?)"
 _POWER = r"(?:\s*(?:\^|\*\*)\s*-?[1-9]|-?[1-9])"
-_FACTOR = rf"{_NAME}{_POWER}?"
+_FACTOR = rf"{_NAME_OF_UNIT}{_POWER}?"
 _PRODUCT = r"(?:\s*[*/ ]\s*|[.·⋅](?=[A-Za-zµ])|-(?=[A-Za-zµ]))"
 UNIT = rf"(?:/\s*)?{_FACTOR}(?:{_PRODUCT}{_FACTOR})*"
 """Grammar of a unit: names with small powers, m^3, m3 or s-1, apart or joined as in kN.m and ft-lbf; a stroke applies to the next
 name only."""
-_ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME})(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>-?[1-9]))?")
+_ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME_OF_UNIT})(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>-?[1-9]))?")
 _WHOLE = re.compile(rf"1?\s*{UNIT}\s*")
 _RAISED = re.compile(r"(?<=[A-Za-zµ])⁻?[¹²³⁴⁵⁶⁷⁸⁹]")
 """A power as typesetters write it, after a name: N/mm² and s⁻¹, but no 10² m."""
@@ -103,7 +103,7 @@ SPELLINGS = {**dict.fromkeys(("rev", "revs", "r"), "turn"), **dict.fromkeys(("mi
 
 
 def _table() -> dict[str, tuple[Fraction, tuple[int, ...]]]:
-    """Return every name with what `UNITS` says about it."""
+    """Return every name with what `TABLE_OF_UNITS` says about it."""
     symbols = {symbol: symbol for symbol in _SYMBOLS}
     names = {"": symbols | _NAMES}
     names |= {prefix: symbols if len(prefix) == 1 else _NAMES for prefix in _PREFIXES}
@@ -118,18 +118,18 @@ def _table() -> dict[str, tuple[Fraction, tuple[int, ...]]]:
     return table | {name: table[meant] for name, meant in SPELLINGS.items()}
 
 
-UNITS = _table()
+TABLE_OF_UNITS = _table()
 """Factor to m, g and s, and powers of length, mass and time, of each name."""
 
 
 def tabulated(unit: str) -> tuple[Fraction, Dimensions] | None:
     """Return the factor of a unit to m, g and s and its dimensions, or None if it is not made of names of this table alone."""
     factors = list(_ONE_FACTOR.finditer(unit)) if _WHOLE.fullmatch(unit) else []
-    if not factors or any(found["name"] not in UNITS for found in factors):
+    if not factors or any(found["name"] not in TABLE_OF_UNITS for found in factors):
         return None
     total, sums = Fraction(1), [0, 0, 0]
     for found in factors:
-        factor, powers = UNITS[found["name"]]
+        factor, powers = TABLE_OF_UNITS[found["name"]]
         power = int(found["power"] or 1) * (-1 if found["stroke"] else 1)
         total *= factor**power
         sums = [summed + power * one for summed, one in zip(sums, powers, strict=True)]
@@ -143,7 +143,7 @@ def plain_signs(text: str) -> str:
 
 def split_quantity(text: str) -> tuple[float, str] | None:
     """Return number and unit of a text such as "0.05 m/year", or None if the text is not of that form."""
-    found = _QUANTITY.fullmatch(plain_signs(text)) if len(text) <= LONGEST else None
+    found = _QUANTITY.fullmatch(plain_signs(text)) if len(text) <= LONGEST_TEXT else None
     return (float(found["number"]), found["unit"]) if found else None
 
 
@@ -224,7 +224,7 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
         return Fraction(registry.get_root_units(parsed)[0]), dict(parsed.dimensionality)
     except pint.UndefinedUnitError as error:
         name = str(error.args[0])
-        alike = [one for one in (*COMMON_UNITS, *UNITS) if one.casefold() == name.casefold()][:1]
+        alike = [one for one in (*COMMON_UNITS, *TABLE_OF_UNITS) if one.casefold() == name.casefold()][:1]
         known = f"did you mean '{alike[0]}'?" if alike else nearest(name, COMMON_UNITS)
         examples = known if known.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
         raise InputError(f"'{name}' is not a unit; {examples}") from None
@@ -260,7 +260,7 @@ def si_base(text: str) -> tuple[float, str]:
     parts = split_quantity(text)
     if parts is None:
         raise InputError(
-            f"{ascii(text)[:60]} is not a number with a unit" + (f" up to {LONGEST} characters" * (len(text) > LONGEST))
+            f"{ascii(text)[:60]} is not a number with a unit" + (f" up to {LONGEST_TEXT} characters" * (len(text) > LONGEST_TEXT))
         )
     _, powers = _read_unit(parts[1])
     if not set(powers) <= set(_BASE) or any(power != int(power) or abs(power) > 9 for power in powers.values()):

@@ -37,7 +37,7 @@ LARGEST_METADATA = 4_000_000
 """Bytes of the largest file of metadata that is read."""
 METADATA = "zarr.json"
 """Name of the files of metadata."""
-SIZES = {0: 0, 1: 2, 2: 4, 3: 8}
+BYTES_OF_SIZE = {0: 0, 1: 2, 2: 4, 3: 8}
 """Bytes of the field with the size of the content in a frame of Zstandard, by its flag (RFC 8878)."""
 IN_ONE_FOLDER: Any = {"name": "default", "separator": "."}
 """Naming of chunks that puts all chunks of an array into one folder."""
@@ -69,7 +69,7 @@ def unpacked_size(content: bytes) -> float:
         return math.inf
     kind = content[4]
     is_single, dictionary, flag = kind >> 5 & 1, (0, 1, 2, 4)[kind & 3], kind >> 6
-    size = SIZES[flag] or is_single
+    size = BYTES_OF_SIZE[flag] or is_single
     if not size:
         return math.inf
     begin = 5 + (not is_single) + dictionary

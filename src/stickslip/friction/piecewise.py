@@ -155,7 +155,7 @@ It lies between 0.73 +- 0.07 (noise, 50 points) and 0.4 (a sine with five points
 """
 FEWEST_REVERSALS = 5
 """Noise matters if friction turns from rise to fall, or back, at least this often."""
-SMALLEST = 1e-6
+IGNORED_NOISE = 1e-6
 """Noise with a smaller standard deviation (no unit) is ignored: no apparatus resolves it, and single precision rounds by more."""
 
 
@@ -189,7 +189,7 @@ def noise_in(places: Sequence[float], values: Sequence[float]) -> Noise | None:
     differences = y[1:-1] - left * y[:-2] - (1.0 - left) * y[2:]
     size = float(np.sqrt(np.mean(differences**2 / (1.0 + left**2 + (1.0 - left) ** 2))))
     changes = float(np.mean(differences[1:] * differences[:-1] < 0.0))
-    return Noise(size, turns) if changes > MOST_CHANGES and size > SMALLEST else None
+    return Noise(size, turns) if changes > MOST_CHANGES and size > IGNORED_NOISE else None
 
 
 def reversals(values: Sequence[float] | NDArray[np.float64]) -> int:

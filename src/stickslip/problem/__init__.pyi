@@ -2,20 +2,18 @@
 
 from stickslip.problem import features, loading
 from stickslip.problem import selection_rule as selection
-from stickslip.problem.at_first import (
-    far_at_first,  # Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa).
-    far_excess,  # Return the default far stress, that in the slab at the start, minus the reference strength (Pa).
-    # Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start.
-    wave_before,
-)
 from stickslip.problem.drivers.driver import (
     DRIVERS,  # What each kind of driver answers, by `Problem.driver_kind`.
     driver_impedance,  # Return how the driver of a uniform body resists a motion exp(s t) of its end.
     driver_of,  # Return what the driver of a problem answers.
+    far_at_first,  # Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa).
+    far_excess,  # Return the default far stress, that in the slab at the start, minus the reference strength (Pa).
     inflow_of,  # Return the inflow of a problem.
     loading_rate,  # Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
     steady_inflow,  # Return the inflow of a loading that does not vary: its value at 0 s and its growth per second.
     tone_of,  # Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground.
+    # Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start.
+    wave_before,
 )
 from stickslip.problem.drivers.machine import (
     pace_of,  # Return how fast (1/s) the motion of a machine may change by its own size: see `engine.waves.driver`.
@@ -61,14 +59,14 @@ from stickslip.problem.kinds import (
     DRIVERS_OF_WAVES,  # Each kind of driver of a body with waves.
 )
 from stickslip.problem.limits import (
+    # Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces
+    # and 0.1 s.
+    EXACT_TRIPS,
     # Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab.
     LARGEST_SHARE,
     # Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond.
     MOST_PIECES,
     MOST_ROUND_TRIPS,  # Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps.
-    # Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces
-    # and 0.1 s.
-    PATIENCE,
     automatic_length,  # Return the shortest event (s) of automatic lumping.
     check_creep_rtol,  # Check a tolerance of leaps over creep that `simulate` takes (None is automatic).
     check_round_trips,  # Refuse a run of more than 2^53 round trips of `round_trip` seconds, which cannot be counted exactly.
@@ -133,7 +131,7 @@ from stickslip.problem.run_options import (
     LARGEST_HISTORY,  # Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines.
     LARGEST_RTOL,  # Largest relative tolerance of a run.
     MAX_PIECES,  # Largest number of pieces of a history unless `max_pieces` is given: 0.8 GB.
-    RTOL,  # Declares the relative tolerance of a run.
+    RUN_RTOL,  # Declares the relative tolerance of a run.
     BoundedOptions,  # The options that the engine takes: those of a run, and how many pieces its history may have.
     RunOptions,  # How long and how accurately to run a problem, when to stop, and what to call the run.
     read_option,  # Return the value of one option, in SI and in its range whatever is run.
@@ -167,6 +165,7 @@ __all__ = [
     "EDGE",
     "ENOUGH_EVENTS",
     "EVENT_SHARE",
+    "EXACT_TRIPS",
     "FULL_HISTORY",
     "HISTORIES",
     "HISTORIES_ONLY",
@@ -180,10 +179,9 @@ __all__ = [
     "MAY_VARY",
     "MOST_PIECES",
     "MOST_ROUND_TRIPS",
-    "PATIENCE",
     "PERFECT_DELAY",
     "PRESSING",
-    "RTOL",
+    "RUN_RTOL",
     "SELECTION_RULES",
     "SHORT_OF_MEMORY",
     "SILENT",

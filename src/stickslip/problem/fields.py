@@ -14,7 +14,7 @@ from stickslip.foundation.arguments import CheckedArguments, check_type, is_numb
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import KINDS, own_units, si_unit
+from stickslip.foundation.names import KINDS_OF_BODY, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
@@ -207,7 +207,7 @@ class ProblemFields(CheckedArguments):
 
     def _check_kind(self) -> None:
         """Raise InputError if the numbers of the law were given with units of length, and the contact turns, or the other way."""
-        kind, law = KINDS[self.body.load_unit], self.friction
+        kind, law = KINDS_OF_BODY[self.body.load_unit], self.friction
         if law.slips_in not in ("", kind.slip):
             name, units = type(self.body).__name__, f"{kind.slip} and {kind.slip}/s" + " (or deg and rpm)" * (kind.slip == "rad")
             raise InputError(

@@ -7,7 +7,7 @@ from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
 from stickslip.foundation.given import PLACE, Given, Units, display_name, shown_in
-from stickslip.foundation.names import KINDS, si_unit
+from stickslip.foundation.names import KINDS_OF_BODY, si_unit
 from stickslip.foundation.quantities import LawField, NumberSeries, Quantity, fields_of
 from stickslip.foundation.units import si_factor
 from stickslip.problem.loading import VARYING, LoadingHistory
@@ -27,7 +27,7 @@ def units_given(problem: Problem) -> Units:
     load. If it was given in SI, or numbers equally near have several units, results are in SI.
     """
     body, law = problem.body, problem.friction
-    kind = KINDS[problem.load_unit]
+    kind = KINDS_OF_BODY[problem.load_unit]
     in_body = [name for name, (entry, _) in fields_of(type(body)).items() if _unit_of(entry) == "m"]
     groups = {
         "slip_rate": [*([getattr(problem, name)] for name in RATES), list(_in_law(law, "m/s"))],

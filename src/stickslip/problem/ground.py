@@ -78,7 +78,7 @@ class Ground:
         lasting = np.diff(self.start)
         ends = self.velocity[:-1] + lasting * (self.acceleration[:-1] + 0.5 * self.jerk[:-1] * lasting)
         scale = np.abs(self.velocity).max() + abs(self.tone.amplitude)
-        return bool(abs(first) > SAME * scale or (np.abs(self.velocity[1:] - ends) > SAME * scale).any())
+        return bool(abs(first) > NO_JUMP_OF_GROUND * scale or (np.abs(self.velocity[1:] - ends) > NO_JUMP_OF_GROUND * scale).any())
 
     def _place(self, t: ArrayLike, inside: ArrayLike | None = None) -> tuple[Floats, NDArray[np.intp], Floats]:
         time = np.asarray(t, float)
@@ -86,5 +86,5 @@ class Ground:
         return time, n, time - self.start[n]
 
 
-SAME = 1e-12
+NO_JUMP_OF_GROUND = 1e-12
 """A change of the ground's velocity below this share of the largest one (1) is rounding and no jump."""

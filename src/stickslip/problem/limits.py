@@ -22,7 +22,7 @@ PER_ROOT_RTOL = 0.1
 TIGHTEST, LOOSEST = 1e-6, 1e-3
 """Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
 
-PATIENCE = 200
+EXACT_TRIPS = 200
 """Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and
 0.1 s.
 """

@@ -9,7 +9,7 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.loading import VARYING, LoadingHistory
 
-ROUNDING = 1e-12
+SAME_NORMAL_LOAD = 1e-12
 """Relative difference (1) between two normal loads that is rounding by computers."""
 BY_PEOPLE = 1e-5
 """Relative difference (1) that is rounding by people, to six digits: the history is then taken to begin with the body's own."""
@@ -29,7 +29,7 @@ def begun_with_body(history: LoadingHistory, body: BodyOnCharacteristics) -> Loa
     apart = abs(history.first - given)
     if not apart <= BY_PEOPLE * given:
         _refuse(history, body, given, unit)
-    is_same = unit == body.load_unit and apart <= ROUNDING * given
+    is_same = unit == body.load_unit and apart <= SAME_NORMAL_LOAD * given
     return history if is_same else history.scaled(body.normal_load / history.first)
 
 

@@ -38,7 +38,7 @@ LOADING = ("pull_rate", "far_stress", "far_stress_rate", *HISTORIES_ONLY)
 STRESSES = ("far_stress", "far_stress_rate")
 """Those of them that follow the normal load when a contact is pressed harder."""
 
-LISTED = "problem.parameters lists all"
+NUMBERS_LISTED = "problem.parameters lists all"
 """Where all numbers are."""
 
 P = TypeVar("P", bound=ProblemFields)
@@ -102,7 +102,7 @@ class Parameters(Mapping[str, Parameter[P]], Generic[P]):
         if name in self._found:
             return self._found[name]
         known = self._found | {one.name: one for one in self._derived() if one.name not in self._found}
-        return known[full_name(name, known, "parameter ", "is unknown", LISTED)]
+        return known[full_name(name, known, "parameter ", "is unknown", NUMBERS_LISTED)]
 
     def _derived(self) -> Iterator[Parameter[P]]:
         """Yield the numbers that follow from others."""

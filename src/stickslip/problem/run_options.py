@@ -23,7 +23,7 @@ MAX_PIECES = 2_000_000
 LARGEST_HISTORY = 1_000_000_000
 """Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines."""
 DURATION = Quantity("s", "how long to simulate", above=0)
-RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15, at_most=LARGEST_RTOL)
+RUN_RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15, at_most=LARGEST_RTOL)
 EVENTS_WANTED = Count("stop after this number of slip events", below=MOST_EVENTS, key="events")
 CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
 SHORTEST_EVENT = Quantity(
@@ -39,7 +39,7 @@ class RunOptions(CheckedArguments):
     """
 
     duration: Number = declare(DURATION)
-    rtol: float = declare(RTOL, 1e-10)
+    rtol: float = declare(RUN_RTOL, 1e-10)
     title: str = ""
     description: str = ""
     max_events: int | None = declare(EVENTS_WANTED, None)

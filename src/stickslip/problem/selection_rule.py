@@ -25,7 +25,7 @@ PERFECT_DELAY = "perfect-delay"
 SELECTION_RULES = (PERFECT_DELAY, "maxwell", "minimal", "maximal")
 """Names of the built-in rules (`stickslip.contact.rules.selection`)."""
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")
+_NAME_OF_RULE = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")
 """Allowed names of rules: scenario files and saved runs contain them."""
 
 
@@ -90,7 +90,7 @@ def register(name: str, rule: SelectionRule) -> None:
     function (g, stable) that returns a `SelectionTable`. Raises InputError if the name is not allowed or belongs to a built-in
     rule, or the rule cannot be called.
     """
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
+    if not isinstance(name, str) or not _NAME_OF_RULE.fullmatch(name):
         raise InputError(f"selection.register: a name is made of up to 60 letters, digits, - and _, got {ascii(name)[:60]}")
     if name in SELECTION_RULES:
         raise InputError(f"selection.register: '{name}' is the name of a built-in rule; choose another name")
@@ -133,7 +133,7 @@ def checked(rule: Any) -> str | SelectionRule:
     name = name_of(rule)
     if name in registered and registered[name] is rule:
         return name
-    if not _NAME.fullmatch(name) or name in names():
+    if not _NAME_OF_RULE.fullmatch(name) or name in names():
         reason = "is that of another rule" if name in names() else "is not made of letters, digits, - and _"
         raise InputError(f"Problem: selection: the function's name, '{name}', {reason}, and a saved run is known by it; rename it")
     kept: SelectionRule = rule

@@ -22,7 +22,7 @@ from stickslip.run.options import CallOptions
 from stickslip.run.progress import reporting
 from stickslip.run.run_loop import run_to_end
 from stickslip.run.words import WORDS, GivenToCatalogue
-from stickslip.solution.files import CATALOGUE, FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
+from stickslip.solution.files import CATALOGUE, FILE_FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
 from stickslip.solution.observables import (
     EventStream,
     Look,
@@ -156,8 +156,7 @@ def alone_with(rows: Rows) -> AbstractContextManager[None]:
 class Catalogue:
     """The result of a run without a history: its rows, the number of events that are over, and the reason for its end.
 
-    `notes` holds one line each on predictability, energy trapped in waves, leaps over creep, lumped events and rounding, if there
-    is something to report.
+    `notes` are those of a `Solution`, a line each where there is something to report, without what the selection rule decided.
     """
 
     rows: Rows | RowsInMemory
@@ -166,8 +165,6 @@ class Catalogue:
     reached: float
     """Time at the end of the run, s."""
     notes: Mapping[str, str]
-    reach: Reach
-    """How far the contact has gone."""
 
     @property
     def files(self) -> list[Path]:
@@ -257,12 +254,14 @@ class EventRows:
         residual = max(float(run.state.largest_residual), self.residual or 0.0, _residual(run))
         share = float(run.state.slid_unproven / run.state.slid) if run.count.unproven else 0.0
         proof = Proven(residual, 0, 0, int(run.count.unproven), share, float(run.state.missed)).proof(run.problem)
-        about = {"proven": proof.text, "reach": self._reach_note(solution)} | attributes_of(prediction)
+        reach = self._reach_note(solution)
+        about = {"proven": proof.text, "reach": reach} | attributes_of(prediction)
         self.rows.publish(origin(solution) | about, run.problem.load_unit)
         self.save(code)
         self.rows.tidy()
         trapped = trapped_note(solution.history)
         notes = {
+            "reach": reach,
             "short": in_short(proof.short, trapped, prediction.short if prediction else ""),
             "predictability": prediction.text if prediction else "",
             "trapped": trapped,
@@ -272,13 +271,10 @@ class EventRows:
             "proven": proof.text,
         }
         said = {name: note for name, note in notes.items() if note}
-        return Catalogue(self.rows, stream.reported, solution.status, solution.duration, said, self._reach(solution))
-
-    def _reach(self, solution: Solution) -> Reach:
-        return solution.reach.beyond(self.reach)
+        return Catalogue(self.rows, stream.reported, solution.status, solution.duration, said)
 
     def _reach_note(self, solution: Solution) -> str:
-        return self._reach(solution).text(solution.problem)
+        return solution.reach.beyond(self.reach).text(solution.problem)
 
     def _remember(self) -> None:
         if self.run.before_end is None:
@@ -287,7 +283,7 @@ class EventRows:
     def _about(self, so_far: OutputSoFar, rows: Rows) -> dict[str, Any]:
         stream = so_far.stream
         return {
-            CATALOGUE: FORMAT,
+            CATALOGUE: FILE_FORMAT,
             "catalogue": rows.path.name,
             "bytes": so_far.size,
             "digest": rows.digest(so_far.size),

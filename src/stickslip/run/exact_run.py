@@ -12,9 +12,9 @@ from typing_extensions import override
 from stickslip.engine import SPARE, Checkpoint, Session
 from stickslip.problem import (
     ENOUGH_EVENTS,
+    EXACT_TRIPS,
     FULL_HISTORY,
     MOST_PIECES,
-    PATIENCE,
     STATUSES,
     UNDER_WAY,
     Crowd,
@@ -127,7 +127,7 @@ class ExactRun(Session[CallOptions]):
         stream.look(history).tell()
         if not self.keeps_events_only and 2 * stream.needed(history) > self.length:
             cures.append("a catalogue, which keeps events only")
-        if options.creep_rtol == 0.0 and leaps_over(self.problem) and np.unique(trips[history.store.mode != 0]).size > PATIENCE:
+        if options.creep_rtol == 0.0 and leaps_over(self.problem) and np.unique(trips[history.store.mode != 0]).size > EXACT_TRIPS:
             cures.append("leaps (leave out creep_rtol = 0)")
         counts = np.unique(trips, return_counts=True)[1]
         if options.shortest_event == 0.0 and counts.max() > MOST_PIECES and lumps_by_itself(self.problem):

@@ -24,6 +24,7 @@ from stickslip.solution import Solution
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 WHAT: dict[str, Callable[[Solution], bool | int]] = {
     "sticking": lambda run: share_sticking(run.history) > 0.0,
@@ -31,7 +32,7 @@ WHAT: dict[str, Callable[[Solution], bool | int]] = {
     "pulses": lambda run: int(run.events.pulses.sum()),
 }
 """What may change along a parameter: whether the contact sticks in the last third of a run, how many events or pulses it has."""
-SETTLED = "sticking"
+SETTLED_OUTCOME = "sticking"
 """That of them which is asked of the end of a run, and should not depend on its length."""
 WITHIN = 1e-3
 """Default width of the last bracket, as a share of its upper end."""
@@ -90,12 +91,18 @@ class Edge(StudyWithDataset):
     def _about(self) -> Iterable[str]:
         return (self.text, f"{self.parameter} in {self.unit}" if self.unit not in ("", "1") else "")
 
-    def _figure(self) -> Any:
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
         from stickslip.figures.runs import find as drawn
 
-        return drawn
+        return drawn.edge_data(self)
 
-    def _lines(self) -> Iterable[str]:
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.figures.runs import find as drawn
+
+        return drawn.draw_edge
+
+    def _sentences(self) -> Iterable[str]:
         return (self.text,)
 
 
@@ -182,7 +189,7 @@ def find(
         search = _EdgeSearch(scenario, parameter, what, scenario.duration, tell)
         span = search.ends(*ends)
         edge = search.edge(*span, within)
-        return held_in_longer_runs(search, edge, span, within, given=duration is not None) if what == SETTLED else edge
+        return held_in_longer_runs(search, edge, span, within, given=duration is not None) if what == SETTLED_OUTCOME else edge
 
 
 def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lambda text: None) -> FromRest | None:

@@ -25,7 +25,7 @@ MOMENT = 0.1
 """Wall-clock time that one call of the solver should take, s: short enough for Ctrl-C and for reports of progress."""
 FIRST_BUDGET, SMALLEST_BUDGET, LARGEST_BUDGET = 5_000, 100, 20_000
 """Number of steps in the first call, and its bounds in later ones: no call should take seconds when steps suddenly cost more."""
-SHARE = 0.1
+SHARE_OF_TASKS = 0.1
 """Largest share of the wall-clock time that any periodic task may take."""
 
 New = TypeVar("New", bound=NewEvents)
@@ -36,7 +36,7 @@ Result_co = TypeVar("Result_co", covariant=True)
 
 @dataclass
 class NowAndThen:
-    """A timer for a periodic task: due after `every` seconds of wall clock, but never so often that it takes more than SHARE."""
+    """A timer for a periodic task: due after `every` seconds of wall clock, but so rarely that it takes at most SHARE_OF_TASKS."""
 
     every: float
     due_at: float = field(default_factory=time.monotonic)
@@ -57,7 +57,7 @@ class NowAndThen:
         start = time.monotonic()
         yield
         end = time.monotonic()
-        self.due_at = end + max(self.every, (end - start) / SHARE)
+        self.due_at = end + max(self.every, (end - start) / SHARE_OF_TASKS)
 
 
 class Sink(Protocol[New_contra, Result_co]):

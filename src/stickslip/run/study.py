@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.show import ShownAsTable
 from stickslip.problem import in_given_units
 from stickslip.run.progress import reporting
 from stickslip.solution import Solution, known_to_pyplot
@@ -45,7 +45,7 @@ def uninterrupted(solution: Solution) -> Solution:
     return solution
 
 
-class Study(NamesAttributes):
+class Study(NamesAttributes, ShownAsTable):
     """The result of a study: a table, a text and a figure."""
 
     table: Any
@@ -64,33 +64,31 @@ class Study(NamesAttributes):
 
         The keywords `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`.
         """
-        figure: Figure = self._figure().draw(self._drawn(), **place)
+        figure: Figure = self._figure()(self._drawn(), **place)
         return known_to_pyplot(figure, place)
 
     def _drawn(self) -> Any:
         """Return what the figure is drawn from: the result, or its dataset."""
         return self
 
-    def _figure(self) -> Any:
-        """Return the module that draws it: `draw(result)`, or `data(result)` and `draw(dataset)`."""
+    def _figure(self) -> Callable[..., Any]:
+        """Return the function that draws the result, or its dataset."""
         raise NotImplementedError
 
     def _shown_table(self) -> pd.DataFrame:
         return self.table  # type: ignore[no-any-return]
 
-    def _lines(self) -> Iterable[str]:
-        """Return what `repr` shows below the name; empty lines are left out."""
+    def _sentences(self) -> Iterable[str]:
+        """Return what is said of the result; empty texts are left out."""
         raise NotImplementedError
 
     @in_given_units
-    def __repr__(self) -> str:
-        return "\n".join([f"stickslip {type(self).__name__}", *(f"  {line}" for line in self._lines() if line)])
+    def _lines(self) -> list[tuple[str, ...]]:
+        return [(text,) for text in self._sentences() if text]
 
     @in_given_units
     def _repr_html_(self) -> str:
-        lines = "".join(f"<div>{escape(line)}</div>" for line in self._lines() if line)
-        table = self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)
-        return f"<div><b>stickslip {type(self).__name__}</b>{lines}{table}</div>"
+        return super()._repr_html_() + self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)
 
 
 class StudyWithDataset(Study):
@@ -98,7 +96,7 @@ class StudyWithDataset(Study):
 
     def to_dataset(self) -> xr.Dataset:
         """Return what `plot` draws, in SI units."""
-        return self._figure().data(self)  # type: ignore[no-any-return]
+        raise NotImplementedError
 
     def _drawn(self) -> Any:
         return self.to_dataset()

@@ -3,6 +3,10 @@
 from stickslip.solution.accessors import (
     known_to_pyplot,  # Return what was drawn; if it is a figure of its own, pyplot knows and shows it from now on.
 )
+from stickslip.solution.account import (
+    account_of,  # Return how a run went: slip, what ended it and when (s), and what the options of the run came to.
+    notes_in,  # Return what is noted of a whole run; not `everything`: in short, if `notes` has that.
+)
 from stickslip.solution.evaluation import (
     CURVES,  # Quantities that every run can draw against time.
     Curve,  # The names of curves, as types.
@@ -27,9 +31,11 @@ __all__ = [
     "Readings",
     "Solution",
     "Window",
+    "account_of",
     "choose_interval",
     "fronts_of",
     "known_to_pyplot",
     "last_large_event",
+    "notes_in",
     "times_of",
 ]

@@ -74,7 +74,7 @@ class Plots(NamesAttributes, Generic[Run]):
         """
         from stickslip.figures.runs import run
 
-        return known_to_pyplot(run.draw(self._run, start, end, **place), place)
+        return known_to_pyplot(run.draw_run(self._run, start, end, **place), place)
 
     def slip(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the slip against time; in a window, the slip since the event began."""
@@ -147,7 +147,7 @@ class Plots(NamesAttributes, Generic[Run]):
         """
         from stickslip.figures.runs import energy
 
-        return known_to_pyplot(energy.draw(energy.data(self._run, start, end), **place), place)
+        return known_to_pyplot(energy.draw_energy(energy.energy_data(self._run, start, end), **place), place)
 
     @in_given_units
     def animation(
@@ -169,7 +169,7 @@ class Plots(NamesAttributes, Generic[Run]):
         from stickslip.figures.runs import animation
 
         animation.check_animation(Path(path), "animation:")
-        return animation.write(animation.data(self._run, start, end, frames), path, progress=progress)
+        return animation.write(animation.animation_data(self._run, start, end, frames), path, progress=progress)
 
 
 def _drawn(plots: Plots[Any], draw: Callable[..., T], *given: Any, **place: Any) -> T:

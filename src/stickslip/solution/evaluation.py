@@ -240,7 +240,7 @@ class Readings(NamesAttributes):
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points))
         if set(names) <= set(AT_DRIVE):
-            from stickslip.solution.observables.at_driver import fronts_at_driver
+            from stickslip.solution.observables.driver_of_waves import fronts_at_driver
 
             fronts = self._observables.fronts_drawn(fronts_at_driver(self.history))
             breaks = fronts[(fronts >= start) & (fronts <= end)]

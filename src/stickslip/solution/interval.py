@@ -66,19 +66,19 @@ def bounces_of(time: float, end: float, round_trip: float, reflection: float) ->
     return np.asarray(time + 0.5 * round_trip * np.arange(max(count, 2)))
 
 
-LONG = 50
+LONG_VIEW = 50
 """Of a run over more round trips than this, only the time around one slip event is shown: waves could not be seen otherwise."""
 
 
 def choose_interval(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
     """Return the run or a window on it, and the start and end (s) of the interval to be drawn.
 
-    The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG` round trips (of a
-    slab, through all its layers; periods of a block) the last event whose slip is at least 99 % of the largest, in local time.
+    The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG_VIEW` round trips (of
+    a slab, through all its layers; periods of a block) the last event whose slip is at least 99 % of the largest, in local time.
     Raises InputError if the interval is empty.
     """
     round_trip = readings.problem.body.longest_way
-    if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
+    if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG_VIEW * round_trip:
         slips = readings.events.slip.to_numpy(float)
         if len(slips):
             readings = readings.window(last_large_event(slips), before=0.25 * round_trip)

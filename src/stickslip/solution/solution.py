@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import brief, exactly, how_long, html_table
+from stickslip.foundation.show import ShownAsTable, brief, exactly, how_long
 from stickslip.problem import Problem, RunOptions, Status, check_event_rate, default_event_rate, in_given_units
 from stickslip.problem.scenarios import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
+from stickslip.solution.account import Line, account_of, notes_in
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,7 +46,7 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.runs import catalogue
 
-        return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
+        return known_to_pyplot(catalogue.draw_catalogue(catalogue.catalogue_data(self._run, event), **place), place)
 
     @in_given_units
     def path(self, **place: Unpack[Place]) -> Figure | Axes:
@@ -55,11 +56,11 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.contact import admissible
 
-        return known_to_pyplot(admissible.draw(admissible.data(self._run.problem, self._run), **place), place)
+        return known_to_pyplot(admissible.draw_admissible(admissible.admissible_data(self._run.problem, self._run), **place), place)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Solution(Exports):
+class Solution(Exports, ShownAsTable):
     """A finished run.
 
     Times are in s from the start of the run. Methods take scalars or arrays and return arrays of the same shape. `side` ("left"
@@ -239,8 +240,25 @@ class Solution(Exports):
         """The time that the run reached and, if it ended early, the time that was asked for."""
         return how_long(self.duration, self.asked_duration)
 
-    def _lines(self) -> list[tuple[str, str]]:
-        problem, events = self.problem, self.events
+    @property
+    def notes(self) -> dict[str, str]:
+        """What is noted of the run, a line each, by the words of files: see `stickslip.solution.account`."""
+        return {
+            "reach": self.reach_note,
+            "creep": self.creep_note,
+            "lumping": self.lumping_note,
+            "selection": self.selection_note,
+            "short": self.short_note,
+            "trapped": self.trapped_note,
+            "predictability": self.horizon_note,
+            "proven": self.proven.text,
+            "rounding": self.rounding_note,
+        }
+
+    @in_given_units
+    def _lines(self) -> list[Line]:
+        """Return what is said of the run, with its body, law and loading, in lines of a name and a text."""
+        problem, events, notes = self.problem, self.events, self.notes
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
         slip, rate = (problem.unit_of(name) for name in ("slip", "slip_rate"))
         largest = ""
@@ -249,21 +267,13 @@ class Solution(Exports):
             most = float(slips[np.abs(slips).argmax()])
             largest = f", largest slip {brief(most, slip)}, peak rate {exactly(events.peak_rate.max(), rate, 6)}"
         return [
-            ("slip", self.reach_note),
             ("body", repr(problem.body)),
             ("friction", problem.law_text),
             ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
-            ("run", f"{self.span_text}, rtol {self.rtol:g}, {len(self.history)} pieces"),
-            ("status", str(self.status)),
+            *account_of(self.scenario(), self.status, self.duration, notes),
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
-            ("selection", self.selection_note),
-            ("proven", self.proven.text),
-            *([("creep", self.creep_note)] if self.creep_note else []),
-            *([("lumping", self.lumping_note)] if self.lumping_note else []),
-            *([("rounding", self.rounding_note)] if self.rounding_note else []),
-            *([("trapped", self.trapped_note)] if self.trapped_note else []),
-            *([("horizon", self.horizon_note)] if self.horizon_note else []),
+            *notes_in(notes),
         ]
 
     @cached_property
@@ -324,11 +334,3 @@ class Solution(Exports):
     def selection_note(self) -> str:
         """One line that says whether the result depends on the selection rule."""
         return self.rule_influence.note
-
-    @in_given_units
-    def __repr__(self) -> str:
-        return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])
-
-    @in_given_units
-    def _repr_html_(self) -> str:
-        return html_table("stickslip Solution", self._lines())

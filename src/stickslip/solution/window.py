@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from stickslip.engine import Epoch, History
 
-MARGIN = 0.1
+MARGIN_OF_EVENT = 0.1
 """Default time shown on either side of an event, as a share of its duration."""
 
 
@@ -48,7 +48,7 @@ class Window(Exports):
         return self.solution.problem
 
     @property
-    def title(self) -> str:  # type: ignore[override]  # read only
+    def title(self) -> str:
         """The title of the run."""
         return self.solution.title
 
@@ -110,6 +110,6 @@ def window_around(
     history = solution.history.seen_from(Epoch(int(event.start_row), float(event.start_offset)))
     if math.isnan(lasts):
         lasts = float(history.end[-1])
-    first = BEFORE.check("window", "before", MARGIN * lasts if before is None else before)
-    last = AFTER.check("window", "after", lasts + MARGIN * lasts if after is None else after)
+    first = BEFORE.check("window", "before", MARGIN_OF_EVENT * lasts if before is None else before)
+    last = AFTER.check("window", "after", lasts + MARGIN_OF_EVENT * lasts if after is None else after)
     return Window(solution, history, event, first, last)

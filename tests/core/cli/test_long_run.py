@@ -199,7 +199,7 @@ def test_a_catalogue_whose_history_is_full_says_how_it_goes_on(command, tmp_path
 
 
 def test_a_large_file_is_named_with_its_size(command, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.cli.output.files.LARGE", 1000)
+    monkeypatch.setattr("stickslip.cli.output.files.LARGE_FILE", 1000)
     shown = command("run", "fig6-slab", "--out", "run.nc")
     assert shown.out.endswith(f"written: run.nc ({file_size(Path('run.nc').stat().st_size)})\n")
 

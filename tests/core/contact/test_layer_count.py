@@ -222,7 +222,7 @@ def test_no_sentence_contradicts_its_verdict(stable: bool | None, growth: float)
 
 
 def test_what_takes_too_many_pieces_to_count_is_not_decided(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(layer_count, "HALVINGS", 1)
+    monkeypatch.setattr(layer_count, "CUTS_OF_PIECE", 1)
     monkeypatch.setattr(LayerModes, "found_growing", [])
     sliding = sliding_of(APART, TWO_STATES, 0.64)[0]
     assert sliding.verdict == "not decided"

@@ -22,7 +22,7 @@ from stickslip.engine.series.polynomial import (
     restrict,
 )
 from stickslip.engine.state.layout import TERMS, Ball
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.text import to_text
@@ -220,18 +220,18 @@ def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: st
     """`radii` uses what the series has left. Relative 1e-14: a processor may fuse products and sums otherwise in lanes."""
     functions, constants = functions_of(FORMULAS[name], 0.0)
     rng = np.random.default_rng(3)
-    c, k, load, series, ball = (apart(rows, WIDTH) for rows in (len(constants), 12, TERMS, 2 * TERMS, Ball.total))
+    c, k, load, series, ball = (apart(rows, SIMD_WIDTH) for rows in (len(constants), 12, TERMS, 2 * TERMS, Ball.total))
     c[:] = constants[:, None]
     k[:] = np.array([9.8, 100.0, 1.0, 0.05, 0.0, 0.0, 0.0, 3.0, 0.5, 0.1, 1.0, 0.0])[:, None]
-    k[5] = rng.uniform(0.05, 0.3, WIDTH)
-    load[0], ball[0], ball[1] = 60.0, rng.uniform(1e-3, 0.1, WIDTH), rng.uniform(1e-3, 0.1, WIDTH)
+    k[5] = rng.uniform(0.05, 0.3, SIMD_WIDTH)
+    load[0], ball[0], ball[1] = 60.0, rng.uniform(1e-3, 0.1, SIMD_WIDTH), rng.uniform(1e-3, 0.1, SIMD_WIDTH)
     pointers = [block.ctypes.data for block in (c, k, load, series, ball)]
     ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(functions.address("motion_jets"))(*pointers[:4])
     three = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3)
     three(functions.address("radii_in_lanes"))(pointers[0], pointers[3], pointers[4])
     double = ctypes.POINTER(ctypes.c_double)
     tree = e.as_expression(FORMULAS[name](elementary, e.SLIP, e.RATE))
-    for n in range(WIDTH):
+    for n in range(SIMD_WIDTH):
         own = [np.ascontiguousarray(block[:, n]) for block in (c, k, load, np.zeros_like(series), ball)]
         own[4][FRICTION] = 0.0
         JET(functions.address("motion_jet"))(*(array.ctypes.data_as(double) for array in own[:4]))

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.engine.input.prepare import SAFETY, first_disc
+from stickslip.engine.input.prepare import SHARE_OF_TOLERANCE, first_disc
 from stickslip.engine.state.layout import Counts
 from tests.core.engine.certified_runs import RUNS, coefficient, duration, shortfall
 
@@ -58,7 +58,7 @@ def test_the_first_disc_is_the_one_that_serves_the_run(rtol: float) -> None:
     scenario = ss.load_scenario("fig5-slab-reconstructed")
     run = ss.simulate(scenario.problem, scenario.problem.round_trip_time, rtol)
     assert run.checkpoint is not None
-    assert abs(Counts(run.checkpoint.count).disc - int(first_disc(rtol * SAFETY))) <= 1
+    assert abs(Counts(run.checkpoint.count).disc - int(first_disc(rtol * SHARE_OF_TOLERANCE))) <= 1
 
 
 # ---- what follows from it -------------------------------------------------------------------------------------------------

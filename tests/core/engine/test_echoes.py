@@ -9,7 +9,7 @@ import stickslip as ss
 from stickslip.engine.history.phase_index import Phases
 from stickslip.engine.session import Session
 from stickslip.engine.state import layout as at
-from stickslip.engine.waves.echo_queue import NOTHING
+from stickslip.engine.waves.echo_queue import NO_PIECE
 from stickslip.run.options import CallOptions
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
@@ -58,7 +58,7 @@ def test_echo_queue_finds_every_onset(problem: ss.Problem) -> None:
     run, met = Session.begin(problem, CallOptions(2000.0)), 0
     impedance, ramp = SLAB.impedance, float(run.setup.params.ramp)
     while run.advance(1) == -1 and met < 150:
-        between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING
+        between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NO_PIECE
         if not between_trips or run.count.new_from != run.length or run.count.mode != 0:
             continue
         store = at.trimmed(run.store, run.length)

@@ -15,7 +15,7 @@ from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
 from stickslip.engine.lanes.workspace import apart
 from stickslip.engine.series import ball_radii
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 from stickslip.foundation.kernels.uncompiled import MATHS
 from stickslip.friction import LAWS
 from tests.core.engine.drawn import example_law
@@ -46,7 +46,7 @@ def agreement(writer: FormulaWriter, part: str, rng: np.random.Generator) -> flo
         given = [drawn(rng, writer.size + ROOM, kind, lanes) for kind in kinds]
         plain = [one if isinstance(one, float) else np.array(one, ndmin=2).reshape(len(one), -1) for one in given]
         before = np.concatenate([one.ravel() for one in plain if isinstance(one, np.ndarray)])
-        for lane in range(WIDTH if lanes else 1):
+        for lane in range(SIMD_WIDTH if lanes else 1):
             columns = [one if isinstance(one, float) else one[:, lane] for one in plain]
             with np.errstate(all="ignore"):
                 exec(code, IN_PYTHON | dict(zip((name.strip("[]") for name in names), columns, strict=True)))
@@ -60,7 +60,7 @@ def drawn(rng: np.random.Generator, size: int, kind: Any, lanes: bool) -> Block 
     """Random numbers over seven orders of magnitude, half of the arrays without negative ones."""
     if kind is ctypes.c_double:
         return float(rng.normal())
-    block = apart(size, WIDTH) if lanes else np.zeros(size)
+    block = apart(size, SIMD_WIDTH) if lanes else np.zeros(size)
     block[:] = rng.normal(size=block.shape) * 10.0 ** rng.integers(-3, 4)
     if rng.random() < 0.5:
         np.abs(block, out=block)

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import stickslip as ss
 from stickslip.engine.series import radau_nodes
-from stickslip.engine.series.radau_nodes import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES
+from stickslip.engine.series.radau_nodes import DERIVATIVE, INTEGRAL, NODES_OF_STEP, POINT, STAGES
 from stickslip.engine.state.layout import TERMS
 from tests.core.engine.compiled import compiled
 from tests.core.engine.states_truth import Truth, block_truth
@@ -32,8 +32,8 @@ def test_the_weights_integrate_to_the_order_of_radau() -> None:
 
 
 def test_derivatives_and_integrals_are_exact_for_polynomials() -> None:
-    for k in range(POINTS):
-        slope = k * POINT ** (k - 1) if k else np.zeros(POINTS)
+    for k in range(NODES_OF_STEP):
+        slope = k * POINT ** (k - 1) if k else np.zeros(NODES_OF_STEP)
         assert DERIVATIVE @ POINT**k == pytest.approx(slope, rel=0.0, abs=1e-11)
         assert INTEGRAL @ POINT**k == pytest.approx(POINT ** (k + 1) / (k + 1), rel=0.0, abs=1e-14)
 

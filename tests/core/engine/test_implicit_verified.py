@@ -15,7 +15,14 @@ import pytest
 from scipy.integrate import odeint, solve_ivp
 
 import stickslip as ss
-from stickslip.engine.series.radau_nodes import DERIVATIVE_IN_MIDDLE, INTEGRAL_TO_MIDDLE, MIDDLE, POINT, POINTS, VALUE_IN_MIDDLE
+from stickslip.engine.series.radau_nodes import (
+    DERIVATIVE_IN_MIDDLE,
+    INTEGRAL_TO_MIDDLE,
+    MIDDLE,
+    NODES_OF_STEP,
+    POINT,
+    VALUE_IN_MIDDLE,
+)
 
 NORMAL = 1e8
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, NORMAL)
@@ -25,7 +32,7 @@ FALLING = ss.friction.HyperbolicRate(0.8, 0.3, 0.05)
 
 def test_values_between_the_points_are_exact_for_polynomials() -> None:
     """Absolute 1e-13 for values and integrals, 1e-11 for slopes."""
-    for k in range(POINTS):
+    for k in range(NODES_OF_STEP):
         slope = k * MIDDLE ** (k - 1) if k else np.zeros(len(MIDDLE))
         assert VALUE_IN_MIDDLE @ POINT**k == pytest.approx(MIDDLE**k, rel=0.0, abs=1e-13)
         assert DERIVATIVE_IN_MIDDLE @ POINT**k == pytest.approx(slope, rel=0.0, abs=1e-11)

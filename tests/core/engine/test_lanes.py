@@ -26,7 +26,7 @@ from stickslip.engine.series.step_size import length_at
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.kernels.memory.addresses import ahead, floats, integers
 from stickslip.foundation.kernels.memory.pointers import rows_of
-from stickslip.foundation.kernels.memory.simd import WIDTH, chosen, store_across
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH, chosen, store_across
 from tests.core.engine.compiled import compiled
 from tests.core.engine.formulas import FORMULAS, JET, functions_of
 
@@ -52,7 +52,7 @@ WITH_MASS = ("cos", "exp", "expm1", "arcsinh", "product", "log1p")
 
 def aligned(rows: int) -> Block:
     """Rows of lanes, where the processor wants them."""
-    return apart(rows, WIDTH)
+    return apart(rows, SIMD_WIDTH)
 
 
 def series(seed: int) -> Block:
@@ -77,7 +77,7 @@ def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
 
     block, out = series(3), aligned(1)
     side_by_side(block.ctypes.data, out.ctypes.data)
-    columns = [np.ascontiguousarray(block[:, n]) for n in range(WIDTH)]
+    columns = [np.ascontiguousarray(block[:, n]) for n in range(SIMD_WIDTH)]
     assert out[0].tolist() == [alone(column.ctypes.data) for column in columns]
     assert len(set(out[0].tolist())) > 1
 
@@ -95,7 +95,7 @@ def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
 
     block, powers, out = series(4), aligned(TERMS), aligned(TERMS)
     side_by_side(block.ctypes.data, powers.ctypes.data, out.ctypes.data)
-    for n in range(WIDTH):
+    for n in range(SIMD_WIDTH):
         column, own_powers, own = np.ascontiguousarray(block[:, n]), np.zeros(TERMS), np.zeros(TERMS)
         alone(column.ctypes.data, own_powers.ctypes.data, own.ctypes.data)
         assert out[:, n].tolist() == own.tolist()
@@ -110,9 +110,9 @@ def test_comparisons_choose_lane_by_lane() -> None:
         return (a < b) | (a <= 0.0)
 
     numbers = np.array([[1.0, -1.0, 3.0, 2.0, np.nan, 0.0, 7.0, 2.5], [0.0, 2.0, 0.0, 2.0, 1.0, np.nan, 9.0, 2.0]])
-    for first in range(0, 8, WIDTH):
+    for first in range(0, 8, SIMD_WIDTH):
         block, out = aligned(2), aligned(2)
-        block[:] = a, b = numbers[:, first : first + WIDTH]
+        block[:] = a, b = numbers[:, first : first + SIMD_WIDTH]
         bits = side_by_side(block.ctypes.data, out.ctypes.data)
         assert np.array_equal(out[0], np.where((a > b) & ~(a >= 3.0), a, -b), equal_nan=True)
         assert np.array_equal(out[1], np.where(a == b, 1.0, b), equal_nan=True)
@@ -124,13 +124,13 @@ def test_rows_in_lanes_are_stored_across_as_columns() -> None:
     def store(block: int, targets: int) -> None:
         store_across(rows_of(block), integers(targets), 2)
 
-    block, out = aligned(WIDTH + 2), np.zeros((WIDTH, WIDTH + 3))
+    block, out = aligned(SIMD_WIDTH + 2), np.zeros((SIMD_WIDTH, SIMD_WIDTH + 3))
     block[:] = np.arange(block.size).reshape(block.shape)
     targets = np.array([row.ctypes.data for row in out])
     store(block.ctypes.data, targets.ctypes.data)
-    assert np.array_equal(out[:, 2 : WIDTH + 2], block[2:].T)
+    assert np.array_equal(out[:, 2 : SIMD_WIDTH + 2], block[2:].T)
     assert not out[:, :2].any()
-    assert not out[:, WIDTH + 2 :].any()
+    assert not out[:, SIMD_WIDTH + 2 :].any()
 
 
 @pytest.mark.sampled(every=3)
@@ -142,11 +142,11 @@ def test_series_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     c, k, load, side_by_side = aligned(len(constants)), aligned(12), series(5), aligned(2 * TERMS)
     c[:] = constants[:, None]
     k[:] = np.array([9.8, 100.0, 1.0, 0.05, 0.01, 0.0, 0.0, 3.0, 0.5, 0.1, 1.0, 0.0])[:, None]
-    k[5], k[3] = random.uniform(0.0, 0.3, WIDTH), random.uniform(0.02, 0.1, WIDTH)
+    k[5], k[3] = random.uniform(0.0, 0.3, SIMD_WIDTH), random.uniform(0.02, 0.1, SIMD_WIDTH)
     load[0] += 60.0
     address = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(functions.address(part + "s"))
     address(*(block.ctypes.data for block in (c, k, load, side_by_side)))
-    for n in range(WIDTH):
+    for n in range(SIMD_WIDTH):
         own = [np.ascontiguousarray(block[:, n]) for block in (c, k, load, np.zeros_like(side_by_side))]
         JET(functions.address(part))(*(array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for array in own))
         assert side_by_side[:, n].tolist() == own[3].tolist()

@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine import on_demand
-from stickslip.engine.on_demand import PARTS, function_of
+from stickslip.engine.on_demand import PART_MODULES, function_of
 from stickslip.engine.session import Session
 from stickslip.engine.state.layout import EnginePart, NearFold
 from stickslip.engine.state.workspace import Run
@@ -34,16 +34,18 @@ NEEDED = {
 @pytest.mark.parametrize("what", NEEDED)
 def test_a_run_gets_the_parts_that_it_needs(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     problem, duration, parts = NEEDED[what]
-    monkeypatch.setattr(on_demand, "_at_hand", np.zeros(len(PARTS), np.int64))
+    monkeypatch.setattr(on_demand, "_at_hand", np.zeros(len(PART_MODULES), np.int64))
     run = ss.simulate(problem, duration)
-    assert {part for part, address in zip(PARTS, on_demand._at_hand, strict=True) if address} - {EnginePart.ECHO_QUEUE} == parts
+    assert {part for part, address in zip(PART_MODULES, on_demand._at_hand, strict=True) if address} - {
+        EnginePart.ECHO_QUEUE
+    } == parts
     if problem is DIPPING:
         assert run.slip(run.history.duration) == pytest.approx(3.0 * math.asin(60.0 / 61.0), rel=1e-6)
 
 
 def test_each_part_is_a_kernel_in_its_module() -> None:
-    assert set(PARTS) == set(EnginePart) - {EnginePart.NONE}
-    assert {part: function_of(part).__name__ for part in PARTS} == {part: part.name.lower() for part in PARTS}
+    assert set(PART_MODULES) == set(EnginePart) - {EnginePart.NONE}
+    assert {part: function_of(part).__name__ for part in PART_MODULES} == {part: part.name.lower() for part in PART_MODULES}
 
 
 def passed(takes_part_away: bool) -> tuple[int, np.ndarray]:

@@ -282,7 +282,7 @@ def test_bounds_never_hide_a_change_of_sign() -> None:
 
 @pytest.mark.parametrize("name", ["block that heals", "slab that heals", "folds, lossy", "rate law, maximal"])
 def test_a_search_from_the_end_finds_the_waves_in_the_body(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.engine.history.phase_index.FEW", 4)
+    monkeypatch.setattr("stickslip.engine.history.phase_index.RECENT_PIECES", 4)
     history = ss.simulate(*RUNS[name]).history
     for one, other in zip(
         standing_behind(history.store, history.round_trip_time),

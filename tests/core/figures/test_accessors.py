@@ -36,7 +36,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
     """Return a run and the numbers that its figure shows."""
     problem, duration, _ = DRAWN[name]
     run = ss.simulate(problem, duration, rtol=1e-12)
-    return run, energy.data(run)
+    return run, energy.energy_data(run)
 
 
 @pytest.mark.usefixtures("coarse")
@@ -45,7 +45,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
 def test_areas_stack_up_to_the_total(name: str) -> None:
     """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""
     (run, dataset), parts = drawn(name), DRAWN[name][2]
-    axes = energy.draw(dataset).axes[0]
+    axes = energy.draw_energy(dataset).axes[0]
     (line,) = axes.lines
     time, total = (np.asarray(values, float) for values in (line.get_xdata(), line.get_ydata()))
     x, y = np.asarray(axes.collections[-1].get_paths()[0].vertices).T
@@ -55,7 +55,11 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     assert np.isin(time, places).all()
     top = highest[np.searchsorted(places, time)]
     assert top == pytest.approx(total, rel=0.0, abs=1e-9 * total.max())
-    assert [name for name in energy.PARTS if energy.PARTS[name][0] in [area.get_label() for area in axes.collections]] == parts
+    assert [
+        name
+        for name in energy.PARTS_OF_ENERGY
+        if energy.PARTS_OF_ENERGY[name][0] in [area.get_label() for area in axes.collections]
+    ] == parts
     assert all((dataset[part] >= -1e-12 * dataset.total.max()).all() for part in parts)
     assert worst_imbalance(run) < 1e-9
 
@@ -64,7 +68,7 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
 @pytest.mark.usefixtures("coarse")
 def test_the_parts_miss_the_total_if_one_is_left_out() -> None:
     _, dataset = drawn("slab, lossy")
-    without = sum(dataset[part] for part in energy.PARTS if part != "radiated")
+    without = sum(dataset[part] for part in energy.PARTS_OF_ENERGY if part != "radiated")
     assert float(abs(without - dataset.total).max() / dataset.total.max()) > 0.1
 
 
@@ -85,7 +89,7 @@ def test_a_long_run_is_shown_around_its_event_with_units() -> None:
 def test_a_block_at_rest_can_be_drawn() -> None:
     """All its energies are zero: there is nothing to stack."""
     rest = ss.simulate(ss.Problem(BLOCK_PROBLEM.body, BLOCK_PROBLEM.friction, pull_rate=0.0, initial_excess=-1e6), 10.0)
-    (axes,) = energy.draw(energy.data(rest)).axes
+    (axes,) = energy.draw_energy(energy.energy_data(rest)).axes
     assert not axes.collections
     assert not axes.lines[0].get_ydata().any()
 

@@ -16,7 +16,7 @@ from stickslip.contact.regime_map import regime_map
 from stickslip.contact.steady import steady_traction
 from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
-from stickslip.figures.runs.run import draw
+from stickslip.figures.runs.run import draw_run
 from stickslip.figures.style import INK, image
 from stickslip.foundation.axis import Axis
 from tests.core.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, illegible, labels, size_of
@@ -25,7 +25,7 @@ LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initi
 
 
 def test_systems_show_the_papers_symbols() -> None:
-    figure = systems.draw(systems.data(BLOCK_PROBLEM, SLAB_PROBLEM))
+    figure = systems.draw_systems(systems.systems_data(BLOCK_PROBLEM, SLAB_PROBLEM))
     shown = {text.get_text() for axes in figure.axes for text in axes.texts}
     assert {"$m$", "$K$", "$S$", "$V$", "$h$", r"$\tau$", "$u(t)$", "$u(0,t)$", "$D_0+Vt$", "$u(h,t)=D_0+Vt$"} <= shown
 
@@ -49,7 +49,7 @@ def test_corners_of_an_irregular_contact_have_their_closed_form() -> None:
 def test_a_regular_contact_has_no_corners() -> None:
     regular = replace(SLAB_PROBLEM, friction=replace(LAW, alpha=0.1))
     assert resistance.corners(regular, 6.0) == {}
-    figure = resistance.draw(resistance.data({"regular": regular, "irregular": SLAB_PROBLEM}, 6.0))
+    figure = resistance.draw_resistance(resistance.resistance_data({"regular": regular, "irregular": SLAB_PROBLEM}, 6.0))
     dashed = [sum(line.get_linestyle() == "--" for line in axes.lines) for axes in figure.axes]
     assert dashed == [0, 1]
 
@@ -72,7 +72,7 @@ def lines_of(figure: Figure) -> dict[str, np.ndarray]:
 
 
 def test_the_set_of_any_problem_is_coloured_by_stability() -> None:
-    figure = admissible.draw(admissible.data(SLAB_PROBLEM))
+    figure = admissible.draw_admissible(admissible.admissible_data(SLAB_PROBLEM))
     drawn = lines_of(figure)
     assert {"stick", "slip, stable", "slip, unstable", "jump, perfect-delay"} == set(drawn)
     assert all(has_unit(text) for text in labels(figure))
@@ -87,7 +87,7 @@ def test_the_set_of_any_problem_is_coloured_by_stability() -> None:
 
 def test_a_run_is_drawn_over_its_set() -> None:
     solution = ss.simulate(LOOP, 5.7)
-    figure = admissible.draw(admissible.data(LOOP, solution))
+    figure = admissible.draw_admissible(admissible.admissible_data(LOOP, solution))
     rate, load = lines_of(figure)["run"].T
     assert load.min() == pytest.approx(60.0, abs=0.1)
     assert load.max() == pytest.approx(60.0 + 9.8 * 2.6, rel=1e-9)
@@ -99,7 +99,7 @@ def test_a_run_is_drawn_over_its_set() -> None:
 def test_under_a_slip_law_the_run_is_drawn_over_the_set_of_each_slip() -> None:
     """Each set and each point in slip satisfy load = Z v + S (mu0 + a sin(omega u)) at their own slip: relative 1e-9."""
     run = ss.simulate("fig5-slab-reconstructed")
-    data = admissible.data(run.problem, run)
+    data = admissible.admissible_data(run.problem, run)
 
     def load(slip: np.ndarray, rate: np.ndarray) -> np.ndarray:
         return 9.8e6 * rate + 1e8 * (1.0 + 0.5 * np.sin(50.0 * slip))
@@ -111,7 +111,7 @@ def test_under_a_slip_law_the_run_is_drawn_over_the_set_of_each_slip() -> None:
     slips = data.path_slip_rate.values > 0.0
     on_path = load(data.path_law_slip.values[slips], data.path_slip_rate.values[slips])
     assert data.path_excess.values[slips] + strength == pytest.approx(on_path, rel=1e-9, abs=0.0)
-    figure = admissible.draw(data)
+    figure = admissible.draw_admissible(data)
     bar = figure.axes[1]
     assert bar.get_ylabel() == "slip $u$ (mm)"
     figure.draw_without_rendering()
@@ -121,7 +121,7 @@ def test_under_a_slip_law_the_run_is_drawn_over_the_set_of_each_slip() -> None:
 
 def test_arrows_follow_the_path_from_its_start() -> None:
     solution = ss.simulate(LOOP, 5.7)
-    axes = admissible.draw(admissible.data(LOOP, solution)).axes[0]
+    axes = admissible.draw_admissible(admissible.admissible_data(LOOP, solution)).axes[0]
     path = lines_of(axes.figure)["run"]
     (start,) = lines_of(axes.figure)["its start"]
     assert start.tolist() == path[0].tolist()
@@ -141,7 +141,7 @@ def test_arrows_follow_the_path_from_its_start() -> None:
 
 def test_near_the_critical_value_loads_are_differences() -> None:
     critical = replace(SLAB_PROBLEM, friction=replace(LAW, alpha=0.196 + 1e-6))
-    figure = admissible.draw(admissible.data(critical))
+    figure = admissible.draw_admissible(admissible.admissible_data(critical))
     text = figure.axes[0].get_ylabel()
     assert "minus static strength" in text
     _, load = lines_of(figure)["slip, unstable"].T
@@ -150,7 +150,7 @@ def test_near_the_critical_value_loads_are_differences() -> None:
 
 def test_slip_backwards_shows_the_mirrored_set() -> None:
     backwards = replace(SLAB_PROBLEM, initial_excess=None, initial_load=-81e6)
-    figure = admissible.draw(admissible.data(backwards, ss.simulate(backwards, 12.0)))
+    figure = admissible.draw_admissible(admissible.admissible_data(backwards, ss.simulate(backwards, 12.0)))
     low, high = figure.axes[0].get_xlim()
     assert low == -high < 0.0
     assert lines_of(figure)["run"][:, 0].min() < 0.0
@@ -158,7 +158,7 @@ def test_slip_backwards_shows_the_mirrored_set() -> None:
 
 def test_a_plateau_is_drawn_as_a_continuum() -> None:
     law = ss.friction.PiecewiseLinearRate((0.0, 1.0, 2.0, 6.0), (0.6, 0.65, 0.65 - 0.098, 0.5))
-    drawn = lines_of(admissible.draw(admissible.data(replace(SLAB_PROBLEM, friction=law))))
+    drawn = lines_of(admissible.draw_admissible(admissible.admissible_data(replace(SLAB_PROBLEM, friction=law))))
     rate, load = drawn["slip, continuum"].T
     flat = np.isfinite(load) & (rate >= 1.0) & (rate <= 2.0)
     assert load[flat] == pytest.approx(np.full(flat.sum(), 74.8), rel=1e-14)
@@ -167,7 +167,7 @@ def test_a_plateau_is_drawn_as_a_continuum() -> None:
 @pytest.mark.parametrize("body", [BLOCK, replace(SLAB, contact_mass=1.0)])
 def test_inertia_leaves_no_set_to_draw(body: ss.SpringBlock | ss.ElasticSlab) -> None:
     with pytest.raises(ss.InputError, match="inertia"):
-        admissible.data(replace(SLAB_PROBLEM, body=body))
+        admissible.admissible_data(replace(SLAB_PROBLEM, body=body))
 
 
 def test_the_result_of_uniqueness_draws_its_set() -> None:
@@ -183,7 +183,7 @@ def test_the_result_of_uniqueness_draws_its_set() -> None:
 
 def test_the_map_of_regimes_marks_the_problem() -> None:
     found = regime_map(SLAB_PROBLEM, Axis("alpha", 0.01, 10.0, 6, log=True), Axis("normal_stress", 1e7, 5e8, 5))
-    figure = regimes.draw(SLAB_PROBLEM, found)
+    figure = regimes.draw_regimes(SLAB_PROBLEM, found)
     assert labels(figure) == [r"weakening parameter $\alpha$ (s/m)", "normal stress $S$ on the contact (MPa)"]
     assert lines_of(figure)["the scenario"].tolist() == [[1.0, 100.0]]
     (curve,) = figure.axes[0].collections[1:]
@@ -198,7 +198,7 @@ def test_the_map_of_regimes_marks_the_problem() -> None:
 @pytest.fixture(scope="module")
 def side_by_side() -> xr.Dataset:
     solutions = {"block": ss.simulate(BLOCK_PROBLEM, 7.0), "slab": ss.simulate(SLAB_PROBLEM, 7.0)}
-    return comparison.data(solutions, 7.0)
+    return comparison.comparison_data(solutions, 7.0)
 
 
 def test_comparison_draws_the_shock_at_the_start(side_by_side: xr.Dataset) -> None:
@@ -209,17 +209,17 @@ def test_comparison_draws_the_shock_at_the_start(side_by_side: xr.Dataset) -> No
 
 
 def test_systems_are_compared_over_the_same_time_in_the_same_units(side_by_side: xr.Dataset) -> None:
-    figure = comparison.draw(side_by_side)
+    figure = comparison.draw_comparison(side_by_side)
     assert len({axes.get_xlim() for axes in figure.axes}) == 1
     assert figure.axes[0].get_ylabel() == figure.axes[1].get_ylabel() == "slip $u$ (m)"
     assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(d)", "(b)", "(e)", "(c)", "(f)"]
     small = side_by_side.assign(block_slip=1e-6 * side_by_side.block_slip.assign_attrs(side_by_side.block_slip.attrs))
     small["block_slip"].attrs = side_by_side.block_slip.attrs
-    assert comparison.draw(small).axes[0].get_ylabel() == "slip $u$ (µm)"
+    assert comparison.draw_comparison(small).axes[0].get_ylabel() == "slip $u$ (µm)"
 
 
 def test_figures_are_legible_and_name_their_units(side_by_side: xr.Dataset) -> None:
-    for figure, shown in ((comparison.draw(side_by_side), 8), (draw(ss.simulate(SLAB_PROBLEM, 7.0)), 4)):
+    for figure, shown in ((comparison.draw_comparison(side_by_side), 8), (draw_run(ss.simulate(SLAB_PROBLEM, 7.0)), 4)):
         assert len(labels(figure)) == shown
         assert all(has_unit(text) for text in labels(figure))
         assert illegible(figure) == []
@@ -228,19 +228,19 @@ def test_figures_are_legible_and_name_their_units(side_by_side: xr.Dataset) -> N
 def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: Path) -> None:
     side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
     again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
-    assert image(comparison.draw(side_by_side), "png", 50.0) == image(comparison.draw(again), "png", 50.0)
+    assert image(comparison.draw_comparison(side_by_side), "png", 50.0) == image(comparison.draw_comparison(again), "png", 50.0)
 
 
 def test_years_are_shown_as_years() -> None:
-    figure = draw(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
+    figure = draw_run(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
     assert figure.axes[2].get_xlabel().endswith("(year)")
     assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
 
 
 def test_the_same_figure_gives_the_same_bytes() -> None:
-    dataset = systems.data(BLOCK_PROBLEM, SLAB_PROBLEM)
+    dataset = systems.systems_data(BLOCK_PROBLEM, SLAB_PROBLEM)
     for kind in ("png", "svg"):
-        assert image(systems.draw(dataset), kind) == image(systems.draw(dataset), kind)
+        assert image(systems.draw_systems(dataset), kind) == image(systems.draw_systems(dataset), kind)
 
 
 @pytest.mark.parametrize("gives_way", [False, True])

@@ -156,7 +156,7 @@ def test_snapshots_of_an_event_show_displacement_since_it_began(run: ss.Solution
 
 
 def test_a_frame_shows_its_moment(run: ss.Solution) -> None:
-    dataset = animation.data(run, 0.0, 8.0, frames=9)
+    dataset = animation.animation_data(run, 0.0, 8.0, frames=9)
     figure = animation.frame(dataset, 3)
     x = dataset.x.values
     profile, stress = (axes.lines[-1].get_xydata() for axes in figure.axes[:2])
@@ -181,7 +181,7 @@ def test_a_gif_has_every_frame_and_they_differ(run: ss.Solution, tmp_path: Path)
         for n in range(5):
             film.seek(n)
             frames.append(np.asarray(film.convert("L"), float))
-    whole = animation.frame(animation.data(run, 0.0, 8.0, frames=5), 2)
+    whole = animation.frame(animation.animation_data(run, 0.0, 8.0, frames=5), 2)
     whole.savefig(tmp_path / "frame.png", dpi=100)
     drawn = np.asarray(Image.open(tmp_path / "frame.png").convert("L"), float)
     differences = [float(np.abs(frame - drawn).mean()) for frame in frames]
@@ -238,7 +238,7 @@ def test_a_block_has_no_inside_to_draw(draw: str) -> None:
     ],
 )
 def test_times_outside_the_run_are_refused(run: ss.Solution, start: float | None, end: float | None, text: str) -> None:
-    for draw in (inside.space_time_data, animation.data):
+    for draw in (inside.space_time_data, animation.animation_data):
         with pytest.raises(ss.InputError, match=text):
             draw(run, start, end)
 

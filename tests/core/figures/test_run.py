@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.figures.runs.packed import PEAKS, RANGE
-from stickslip.figures.runs.run import draw
+from stickslip.figures.runs.run import draw_run
 from stickslip.problem.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from tests.core.figures.legible import size_of
 
@@ -31,7 +31,7 @@ HISTORIES = {
 @pytest.mark.parametrize("edges", [(None, None), (3.5, 4.5)])
 def test_the_panel_shows_the_history(history: LoadingHistory, edges: tuple[float | None, float | None]) -> None:
     run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=history, initial_excess=-1e11), 9.0)
-    figure = draw(run, *edges)
+    figure = draw_run(run, *edges)
     panel = figure.axes[3]
     time, rate = panel.lines[0].get_xydata().T
     assert (time[0], time[-1]) == (edges[0] or 0.0, edges[1] or 9.0)
@@ -46,7 +46,7 @@ def test_the_panel_shows_the_history(history: LoadingHistory, edges: tuple[float
 
 def test_a_far_stress_is_drawn_in_its_unit() -> None:
     scenario = ss.load_scenario("stress-pulse-slab")
-    figure = draw(ss.simulate(scenario))
+    figure = draw_run(ss.simulate(scenario))
     time, stress = figure.axes[3].lines[0].get_xydata().T
     assert figure.axes[3].get_ylabel() == "far stress\n(MPa)"
     assert dict(zip(time, stress, strict=True))[2.0] == pytest.approx(6.06, rel=1e-12)
@@ -56,11 +56,11 @@ def test_thousands_of_periods_are_a_band_and_a_window_shows_its_own() -> None:
     """Over years as wide as the tide swings; around an event the tide as it is then, in local time."""
     tide = Sinusoidal(1.1e-9, 2e-8, period=12.42 * HOUR)
     run = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=tide, initial_excess=-1e10), 1000 * HOUR)
-    figure = draw(run)
+    figure = draw_run(run)
     corners = figure.axes[3].collections[0].get_paths()[0].vertices[:, 1]
     assert (corners.min(), corners.max()) == (pytest.approx(-18.9, rel=1e-12), pytest.approx(21.1, rel=1e-12))  # nm/s
     window = run.window(0, before=5 * HOUR, after=5 * HOUR)
-    figure = draw(window)
+    figure = draw_run(window)
     time, rate = figure.axes[3].lines[0].get_xydata().T
     begun = run.events.start[0]
     np.testing.assert_allclose(1e-9 * rate, tide.at(time + begun), rtol=0.0, atol=1e-12 * 2e-8)
@@ -70,7 +70,7 @@ def test_thousands_of_periods_are_a_band_and_a_window_shows_its_own() -> None:
 
 def test_a_steady_loading_has_no_panel() -> None:
     steady = ss.simulate(replace(ss.load_scenario("fig6-slab").problem), 7.0)
-    figure = draw(steady)
+    figure = draw_run(steady)
     assert len(figure.axes) == 3
     assert figure.get_size_inches().tolist() == [6.4, 5.6]
 
@@ -121,7 +121,7 @@ def test_a_rest_of_any_length_shows_how_far_the_waves_in_the_body_swing_the_load
 
 def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
     run = ss.simulate("granite-slab", 200.0)
-    figure = draw(run)
+    figure = draw_run(run)
     (stress,) = figure.axes[2].collections
     lows, highs = (np.sort(stress.get_paths()[0].vertices[:, 1])[part] for part in (slice(400), slice(-400, None)))
     rests = 1e-6 * run.events.traction_after
@@ -134,7 +134,7 @@ def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
 def test_slip_rates_of_many_events_are_their_peaks_and_no_filled_band() -> None:
     """A band would say that the contact slips all the time: of 477 events each peak is a point, at its time and its rate."""
     run = ss.simulate("granite-slab", 200.0)
-    figure = draw(run)
+    figure = draw_run(run)
     rate = figure.axes[1]
     assert not rate.collections
     (peaks,) = (line for line in rate.lines if line.get_label() == PEAKS)
@@ -147,7 +147,7 @@ def test_slip_rates_of_many_events_are_their_peaks_and_no_filled_band() -> None:
 
 @pytest.mark.parametrize("last", [19.0, 40.0, 100.0])
 def test_the_slip_rate_of_tens_and_hundreds_of_events_is_a_curve(last: float) -> None:
-    figure = draw(LONG, 0.0, last)
+    figure = draw_run(LONG, 0.0, last)
     assert [len(panel.collections) for panel in figure.axes] == [0, 0, 0]
     time, rate = figure.axes[1].lines[0].get_xydata().T
     events = LONG.events[LONG.events.start < last - 0.1]
@@ -160,14 +160,14 @@ def test_the_slip_rate_of_tens_and_hundreds_of_events_is_a_curve(last: float) ->
 
 def test_load_and_traction_are_both_seen_where_they_coincide() -> None:
     """A resting contact bears its load: the dashes of the load lie above the line of the traction."""
-    figure = draw(ss.simulate("direct-shear-block"))
+    figure = draw_run(ss.simulate("direct-shear-block"))
     above = {line.get_label().split()[0]: line.get_zorder() for line in figure.axes[2].lines}
     assert above["spring"] > above["friction"]
 
 
 def test_slip_that_hardly_changes_is_drawn_as_its_change() -> None:
     run = ss.simulate("fig5-slab-printed")
-    panel = draw(run).axes[0]
+    panel = draw_run(run).axes[0]
     assert panel.get_ylabel() == "change of slip $u$ (mm)"
     assert panel.lines[0].get_ydata()[[0, -1]] == pytest.approx([0.0, 1e3 * (run.slip(12.0) - run.slip(0.0))], rel=1e-12)
 
@@ -213,7 +213,7 @@ def drawn(axes: Axes) -> np.ndarray:
 def test_the_response_fills_its_axes(name: str) -> None:
     """Slip rate, friction against time and against slip: what happens after a thousandth of the run takes over half the height."""
     solution = run(name)
-    figure, late = draw(solution), 1e-3 * solution.duration
+    figure, late = draw_run(solution), 1e-3 * solution.duration
     time, (rate, traction) = solution.curves_together(("slip_rate", "traction"))
     friction = traction[time > late] / solution.problem.normal
     expected = {"slip rate": np.abs(rate[time > late]), "friction": friction, "friction coefficient": friction}
@@ -228,7 +228,7 @@ def test_the_response_fills_its_axes(name: str) -> None:
 
 def test_friction_after_velocity_steps_is_that_of_steady_sliding() -> None:
     """mu0 + (a - b) ln(v/v0): at the end of 50 s at 10 µm/s relative 1e-6, in both panels, against slip at 0.7 mm."""
-    figure = draw(run("velocity-steps-block"))
+    figure = draw_run(run("velocity-steps-block"))
     steady = 0.6 + (0.010 - 0.013) * np.log(10.0)
     time, friction = drawn(panel(figure, "friction")).T
     assert np.interp(249.9, time, friction) == pytest.approx(steady, rel=1e-6, abs=0.0)
@@ -242,7 +242,7 @@ def test_friction_after_velocity_steps_is_that_of_steady_sliding() -> None:
 @pytest.mark.parametrize("name", NEVER_STICK)
 def test_friction_is_traction_over_normal_load_at_its_slip(name: str) -> None:
     solution = run(name)
-    axes = panel(draw(solution), "friction", "slip")
+    axes = panel(draw_run(solution), "friction", "slip")
     time, (_, traction) = solution.curves_together(("load", "traction"))
     points = np.stack([solution.slip(time) / size_of(axes.get_xlabel()), traction / solution.problem.normal], axis=1)
     shown = drawn(axes)
@@ -263,40 +263,46 @@ def test_a_figure_of_the_start_alone_shows_it() -> None:
     at_rest = {"initial.load": "30 kN", "initial.state": "10 s", "initial.rate": 0.0}
     solution = ss.simulate(ss.scenarios["velocity-steps-block"].with_values(at_rest))
     period = solution.problem.body.round_trip_time
-    rates = drawn(panel(draw(solution, 0.0, period), "slip rate"))[:, 1]
-    whole = drawn(panel(draw(solution), "slip rate"))[:, 1]
+    rates = drawn(panel(draw_run(solution, 0.0, period), "slip rate"))[:, 1]
+    whole = drawn(panel(draw_run(solution), "slip rate"))[:, 1]
     assert rates.min() < 1e-3 * whole.min()
 
 
 def test_loads_of_a_block_are_forces() -> None:
     """In names and units, also where friction is drawn as a coefficient."""
-    figure = draw(run("fig6-block-reconstructed"))
+    figure = draw_run(run("fig6-block-reconstructed"))
     assert figure.axes[2].get_ylabel() == "friction and\nspring force (TN)"
     assert {text.get_text().split()[0] for text in figure.legends[0].get_texts()} == {"spring", "friction"}
     assert run("fig6-block-reconstructed").plot.load().axes[0].get_ylabel() == r"spring force $\beta$ (TN)"
-    assert "spring force" in draw(run("velocity-steps-block")).legends[0].get_texts()[0].get_text()
+    assert "spring force" in draw_run(run("velocity-steps-block")).legends[0].get_texts()[0].get_text()
 
 
 def test_every_line_has_an_entry_in_the_legend() -> None:
-    figure = draw(run("fig6-slab"))
+    figure = draw_run(run("fig6-slab"))
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         r"load $\beta$",
         r"traction $\tau$",
         "shock (jump of the slip rate)",
     ]
-    tides = {text.get_text() for text in draw(run("tides-block")).legends[0].get_texts()}
+    tides = {text.get_text() for text in draw_run(run("tides-block")).legends[0].get_texts()}
     assert {"range of the tone", "pull rate without its tone"} <= tides
     assert "shock (jump of the slip rate)" not in tides
 
 
 def test_stresses_far_from_zero_are_not_drawn_from_zero() -> None:
-    axes = panel(draw(run("stress-pulse-slab")), "traction")
+    axes = panel(draw_run(run("stress-pulse-slab")), "traction")
     low, high = axes.get_ylim()
     assert 5.0 < low < high < 7.0  # MPa
 
 
 def test_panels_have_letters_in_their_order() -> None:
-    assert [axes.get_title(loc="left") for axes in draw(run("velocity-steps-block")).axes] == ["(a)", "(b)", "(c)", "(d)", "(e)"]
+    assert [axes.get_title(loc="left") for axes in draw_run(run("velocity-steps-block")).axes] == [
+        "(a)",
+        "(b)",
+        "(c)",
+        "(d)",
+        "(e)",
+    ]
 
 
 @pytest.mark.parametrize("name", ["granite-slab", "direct-shear-block"])

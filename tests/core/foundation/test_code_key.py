@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.engine.history.status import DECIDE, engine_key
+from stickslip.engine.history.status import RUN_CODE, engine_key
 from stickslip.foundation import code_key
 from stickslip.foundation.code_key import PACKAGE, key_of, key_of_files, key_of_folders
 from stickslip.foundation.sealed_files import read_sealed, write_sealed
@@ -128,7 +128,7 @@ def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path, monk
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a copy of one file of each folder that decides a run: to make the key of all takes a second."""
     package = tmp_path_factory.mktemp("copy") / "stickslip"
-    for name in DECIDE:
+    for name in RUN_CODE:
         file = next(path for path in sorted((PACKAGE / name).rglob("*.py")) if b"def " in path.read_bytes())
         (package / file.relative_to(PACKAGE)).parent.mkdir(parents=True)
         shutil.copy(file, package / file.relative_to(PACKAGE))
@@ -145,18 +145,18 @@ EDITS: dict[str, tuple[Callable[[str], str], bool]] = {
 
 
 @pytest.mark.parametrize("edit", EDITS)
-@pytest.mark.parametrize("name", DECIDE)
+@pytest.mark.parametrize("name", RUN_CODE)
 def test_the_key_of_a_checkpoint_is_of_what_is_executed_in_every_folder_that_decides_a_run(
     copy: Path, name: str, edit: str
 ) -> None:
-    before = key_of_folders(DECIDE, "", copy)
+    before = key_of_folders(RUN_CODE, "", copy)
     (file,) = (copy / name).rglob("*.py")
     text = file.read_text(encoding="utf-8")
     change, changes_key = EDITS[edit]
     file.write_text(change(text), encoding="utf-8")
     try:
         assert file.read_text(encoding="utf-8") != text
-        assert (key_of_folders(DECIDE, "", copy) != before) == changes_key
+        assert (key_of_folders(RUN_CODE, "", copy) != before) == changes_key
     finally:
         file.write_text(text, encoding="utf-8")
 
@@ -164,9 +164,9 @@ def test_the_key_of_a_checkpoint_is_of_what_is_executed_in_every_folder_that_dec
 def test_a_checkpoint_has_the_key_of_all_these_folders_and_of_those_that_an_extension_adds() -> None:
     from stickslip.foundation.kernels.code import SOURCES
 
-    assert engine_key() == key_of_folders(DECIDE, SOURCES)
+    assert engine_key() == key_of_folders(RUN_CODE, SOURCES)
     assert engine_key("foundation") == key_of_folders(["foundation"], engine_key()) != engine_key()
-    assert all((PACKAGE / name).is_dir() for name in DECIDE)
+    assert all((PACKAGE / name).is_dir() for name in RUN_CODE)
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation import memory
-from stickslip.foundation.memory import SHARE, SMALL, chosen_memory, free_memory, granted, size_of
+from stickslip.foundation.memory import SHARE_OF_MEMORY, SMALL, chosen_memory, free_memory, granted, size_of
 
 GB = 1_000_000_000
 
@@ -38,7 +38,7 @@ def test_a_run_that_grows_refuses_what_is_no_size(monkeypatch: pytest.MonkeyPatc
 
 def test_what_is_set_counts_in_place_of_what_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STICKSLIP_MEMORY", "6 MB")
-    assert granted(5e6, 3e6) == SHARE * 6e6
+    assert granted(5e6, 3e6) == SHARE_OF_MEMORY * 6e6
     assert granted(5e5, 3e6) == 5e5
 
 
@@ -49,7 +49,7 @@ def test_a_small_result_is_granted_without_a_look(monkeypatch: pytest.MonkeyPatc
 
 def test_what_a_result_has_taken_counts_as_free(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "free_memory", lambda: 5.0 * GB)
-    assert granted(4.0 * GB, 1.0 * GB) == SHARE * 6.0 * GB
+    assert granted(4.0 * GB, 1.0 * GB) == SHARE_OF_MEMORY * 6.0 * GB
     assert granted(0.5 * GB, 1.0 * GB) == 0.5 * GB
 
 

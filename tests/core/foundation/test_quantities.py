@@ -20,7 +20,7 @@ from stickslip.foundation.units import (
     _TORQUES,
     COMMON_UNITS,
     SPELLINGS,
-    UNITS,
+    TABLE_OF_UNITS,
     _looked_up,
     si_factor,
     split_quantity,
@@ -113,14 +113,14 @@ def test_other_units_are_refused(unit: str, si: str, message: str) -> None:
     assert str(caught.value) == message
 
 
-@pytest.mark.parametrize("name", sorted(set(UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES}))
+@pytest.mark.parametrize("name", sorted(set(TABLE_OF_UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES}))
 def test_every_name_of_the_table_is_what_the_library_of_units_says(name: str) -> None:
     assert tabulated(name) == _looked_up(name, "")
 
 
 def test_units_made_of_several_names_are_what_the_library_of_units_says() -> None:
     draw = random.Random(1)
-    names = sorted(set(UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES})
+    names = sorted(set(TABLE_OF_UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES})
     for _ in range(500):
         factors = [draw.choice(names) + draw.choice(["", "", "^2", "**-1", " ^ 3", "^-9", "-2"]) for _ in range(draw.randint(1, 4))]
         unit = (

@@ -187,7 +187,7 @@ def test_an_edge_and_steady_sliding_are_drawn(tmp_path: Path):
     assert drawn.bracket.values.tolist() == [edge.low, edge.high]
     assert drawn.given.values.tolist() == edge.table.sticking.astype(float).tolist()
     found = ss.studies.steady(AXIS)
-    curve = steady.data(found)
+    curve = steady.steady_data(found)
     at = int(np.argmin(np.abs(curve.slip_rate.values - found.changes[0].rate)))
     assert curve.stable.values[at:].all()
     assert not curve.stable.values[:at].any()

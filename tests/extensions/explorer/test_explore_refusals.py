@@ -7,7 +7,6 @@ import pytest
 from tests.command_line import Command, check_refusal
 
 CASES = [
-    (["explore", "--static", "tour", "--set", "alpha=1"], "explore: --static writes the guided tour, which has scenarios of its"),
     (["explore", "--port", "70000"], "explore: --port must be a whole number"),
     (["explore", "--sessions", "0"], "explore: --sessions must be a whole number, at least 1, got '0'"),
     (["explore", "--allow-origin", "*"], "explore: --allow-origin must be NAME or NAME:PORT, got '*'"),

@@ -336,7 +336,7 @@ def test_energy_picture_of_a_slab_on_shaken_ground_is_that_of_the_run() -> None:
 
 def test_pictures_of_a_long_run_are_told_of_and_end_for_newer_work_but_not_for_a_stop(monkeypatch: pytest.MonkeyPatch) -> None:
     """A stop ends the run; what there is of it is shown, with all pictures."""
-    monkeypatch.setattr("stickslip.extensions.explorer.model.solve.LONG", 0)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.solve.PIECES_OF_LONG_RUN", 0)
     lines: list[str] = []
 
     def told(text: str, end: type[BaseException]) -> None:
@@ -457,7 +457,7 @@ def test_pictures_over_many_round_trips_show_means_over_one_of_the_exact_energie
 @on_slabs
 def test_pictures_of_means_are_those_of_waves_within_a_pixel(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = answer(name)
-    monkeypatch.setattr("stickslip.extensions.explorer.model.sampled_waves.MANY", 0)
+    monkeypatch.setattr("stickslip.extensions.explorer.model.sampled_waves.MANY_PLACES", 0)
     shown = ShownInterval.of(exact.solution)
     waves = SampledWaves(shown)
     assert len(waves.samples.wave) == EVEN * PHASES

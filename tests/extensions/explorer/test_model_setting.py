@@ -17,9 +17,9 @@ from stickslip.extensions.explorer.model.controls import Control, controls_of, u
 from stickslip.extensions.explorer.model.difference import difference, toml_of
 from stickslip.extensions.explorer.model.exchange import with_kind
 from stickslip.extensions.explorer.model.ranges import range_of
-from stickslip.extensions.explorer.model.setting import LONGEST, Setting, parameters_of, setting_of
+from stickslip.extensions.explorer.model.setting import LONGEST_SETTING, Setting, parameters_of, setting_of
 from stickslip.extensions.explorer.model.solve import solve
-from stickslip.extensions.explorer.page.controls import FIRST, offered, with_expression
+from stickslip.extensions.explorer.page.controls import FIRST_SCENARIO, offered, with_expression
 from stickslip.extensions.explorer.page.files import opened
 from stickslip.foundation.errors import InputError
 from stickslip.friction import LAWS
@@ -284,7 +284,7 @@ def test_scenarios_are_offered_once_each_with_the_paper_first() -> None:
     assert sections[1:] == sorted(sections[1:])
     assert [one.section for one in found] == sorted((one.section for one in found), key=sections.index)
     assert all(one.title and one.description for one in found)
-    assert FIRST in NAMES
+    assert FIRST_SCENARIO in NAMES
 
 
 # ---- links ------------------------------------------------------------------------------------------------------------------
@@ -341,9 +341,9 @@ DEEP = base64.urlsafe_b64encode(zlib.compress(b"[" * 100_000, 9)).decode()
         ({"scenario": "fig6-slab", "friction.alpah": "1"}, "did you mean 'alpha'?"),
         ({"scenario": "fig6-slab", "friction.file": "/etc/passwd"}, "[friction] file is unknown"),
         ({"scenario": "fig6-slab", "friction.alpha.x": "1"}, "not the place of an entry"),
-        ({"scenario": "fig6-slab", "friction.alpha": "1" * LONGEST}, "more than"),
+        ({"scenario": "fig6-slab", "friction.alpha": "1" * LONGEST_SETTING}, "more than"),
         ({"scenario": "mine", "document": "AAAA"}, "broken or too large"),
-        ({"scenario": "mine", "document": BOMB[:LONGEST]}, "link:"),
+        ({"scenario": "mine", "document": BOMB[:LONGEST_SETTING]}, "link:"),
         ({"scenario": "mine", "document": DEEP}, "broken or too large"),
         ({"scenario": "", "document": "AAAA"}, "name"),
         ({"scenario": "mine", "document": base64.urlsafe_b64encode(zlib.compress(b"{}")).decode()}, "[body] is missing"),
@@ -357,7 +357,7 @@ def test_bad_link_is_refused_in_one_line(parameters: dict[str, str], part: str) 
 
 def test_document_that_unpacks_to_more_than_allowed_is_not_unpacked() -> None:
     packed = base64.urlsafe_b64encode(zlib.compress(json.dumps({"body": "a" * 2_000_000}).encode(), 9)).decode()
-    assert len(packed) < LONGEST
+    assert len(packed) < LONGEST_SETTING
     with pytest.raises(InputError, match="too large"):
         setting_of({"scenario": "mine", "document": packed})
 

@@ -93,7 +93,7 @@ def test_nothing_is_said_of_work_that_is_soon_finished(page: Page, monkeypatch: 
 
 
 def test_the_latest_of_the_requests_that_wait_is_the_next_one(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(desks, "PATIENCE", LONG)
+    monkeypatch.setattr(desks, "TIME_TO_FINISH", LONG)
     first = Held("first")
     page.ask(first)
     assert first.begun.wait(LONG)
@@ -105,7 +105,7 @@ def test_the_latest_of_the_requests_that_wait_is_the_next_one(page: Page, monkey
 
 
 def test_work_that_takes_long_is_dropped_for_a_newer_request(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(desks, "PATIENCE", 0.0)
+    monkeypatch.setattr(desks, "TIME_TO_FINISH", 0.0)
     long = Held()
     page.ask(long)
     assert long.begun.wait(LONG)
@@ -204,7 +204,7 @@ def test_one_desk_does_not_wait_for_another(page: Page) -> None:
 def test_a_run_of_days_ends_for_a_newer_value_at_a_stop_and_with_its_page(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     """The work of the explorer itself: a newer value drops it, a stop shows it as far as it came, and no run outlives its page."""
     monkeypatch.setattr(solving, "MOST_PIECES", 10**9)
-    monkeypatch.setattr(desks, "PATIENCE", 0.0)
+    monkeypatch.setattr(desks, "TIME_TO_FINISH", 0.0)
     days = {"body.contact_mass": 1e6, "loading.pull_rate": 0.1, "run.duration": 1e9, "run.rtol": 1e-12}
     endless = partial(solve, load_scenario("fig6-slab").with_values(days))
 

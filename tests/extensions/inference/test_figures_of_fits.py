@@ -68,10 +68,10 @@ def test_the_lower_panel_shows_the_differences_and_the_residual(name: str) -> No
 
 @pytest.mark.parametrize("name", FITS)
 def test_bands_are_one_and_two_standard_errors(name: str) -> None:
-    result, dataset = result_of(name), figure_of.data(result_of(name))
+    result, dataset = result_of(name), figure_of.measured_data(result_of(name))
     along = dataset["along"].values
     mu, error = result.band(*((along, 0.0) if name == "slip" else (0.0, along)))
-    figure = figure_of.draw(dataset)
+    figure = figure_of.draw_measured(dataset)
     heights = []
     for band in figure.axes[0].collections:
         ends = band.get_paths()[0].vertices

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.inference.figures.measured import data
+from stickslip.extensions.inference.figures.measured import measured_data
 from stickslip.friction import FromTable, Points, fit, smooth
 
 RPM = 2.0 * np.pi / 60.0
@@ -42,7 +42,7 @@ def test_a_fitted_law_knows_that_its_numbers_are_angles() -> None:
     assert ss.Problem(STRING.body, found.law, initial_excess=0.0).friction == found.law
     with pytest.raises(ss.InputError, match=r"has numbers in rad or rad/s, but a contact of ElasticSlab slides"):
         ss.Problem(SLAB.body, found.law, initial_excess=0.0)
-    drawn = data(found)["place"].attrs
+    drawn = measured_data(found)["place"].attrs
     assert drawn["units"] == "rad/s"
     with pytest.raises(ss.InputError, match=r"^fit: start rate must be a number in rad/s or a text"):
         fit(Points.read(TABLE), "exponential-stribeck", start={"rate": "1 mm/s"})

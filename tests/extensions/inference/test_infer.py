@@ -258,7 +258,7 @@ def test_samples_go_on_bit_for_bit_where_a_program_that_was_killed_has_left_them
     rows, path = record().iloc[::3], tmp_path / "walk.nc"
     whole = inferred(rows, **asked)
     monkeypatch.setattr("stickslip.extensions.inference.certainty.kept_walk.EVERY", 0.0)
-    monkeypatch.setattr("stickslip.extensions.inference.certainty.kept_walk.SHARE", math.inf)
+    monkeypatch.setattr("stickslip.extensions.inference.certainty.kept_walk.SHARE_OF_WRITING", math.inf)
 
     def die(text: str) -> None:
         if "sampling: step 21 " in text:

@@ -26,7 +26,7 @@ from stickslip.extensions.inference.fit.memory import (
 )
 from stickslip.extensions.inference.fit.model import Model
 from stickslip.extensions.inference.fit.part import Part, shortened
-from stickslip.extensions.inference.fit.setup import LATER, LEAST, at_rests, own_of, parts_of, scales_of
+from stickslip.extensions.inference.fit.setup import LATER, SAMPLES_OF_PART, at_rests, own_of, parts_of, scales_of
 from stickslip.extensions.inference.fitted_record import FittedRecord
 from stickslip.extensions.inference.record import loading
 from stickslip.extensions.inference.record.features import Samples, features_in
@@ -116,7 +116,7 @@ def test_parts_between_rests_begin_a_little_after_each_event() -> None:
     lasting = np.diff([*lows, 40.0])
     assert begins[0] == 0.0
     assert np.allclose(begins[1:], np.array(lows) + LATER * lasting, atol=0.05)
-    assert all(len(one.record) >= LEAST for one in found)
+    assert all(len(one.record) >= SAMPLES_OF_PART for one in found)
 
 
 @pytest.mark.parametrize(("number", "share", "stay"), [(2, 0.1, 1), (2, 0.5, 1), (3, 0.3, 2), (3, 0.9, 1), (2, 0.0, 2)])

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.headings import COLUMNS, find
+from stickslip.foundation.headings import KNOWN_COLUMNS, find
 from stickslip.foundation.text_columns import read_text
 from tests.extensions.inference.laboratory import correlated
 
@@ -52,7 +52,7 @@ HEADINGS = [
 
 @pytest.mark.parametrize(("heading", "column", "factor"), HEADINGS)
 def test_headings_of_laboratories_are_understood_with_their_units(heading: str, column: str | None, factor: float) -> None:
-    wanted = tuple(name for name in COLUMNS if name not in ("pull_rate", "far_stress"))
+    wanted = tuple(name for name in KNOWN_COLUMNS if name not in ("pull_rate", "far_stress"))
     found = find([heading], wanted, "a.csv")
     assert list(found) == ([] if column is None else [column])
     if column is not None:

@@ -82,7 +82,7 @@ def test_a_contact_that_has_no_reach_has_no_process_zone() -> None:
 def test_weights_do_not_depend_on_how_many_are_made_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
     frequencies = np.array([0.0, 1.0, 20.0])
     whole = echoes.echo_weights(frequencies, 10, 2.0, 30)
-    monkeypatch.setattr(echoes, "BLOCK", 50)
+    monkeypatch.setattr(echoes, "EVALUATIONS_TOGETHER", 50)
     assert all(np.array_equal(one, other) for one, other in zip(whole, echoes.echo_weights(frequencies, 10, 2.0, 30), strict=True))
 
 

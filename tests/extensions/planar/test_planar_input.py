@@ -124,7 +124,7 @@ def rough(low: float, high: float) -> np.ndarray:
 def test_many_different_nodes_have_the_numbers_of_a_problem_each(problem: Any, along: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     grid = {"nodes": 32, "length": 2e4, "width": 1e4, "width_nodes": 16}
     few = ss.PlanarSlab(problem, along=along, **grid)
-    monkeypatch.setattr("stickslip.extensions.planar.nodes.MANY", 1000)
+    monkeypatch.setattr("stickslip.extensions.planar.nodes.NODES_ALL_CHECKED", 1000)
     each = ss.PlanarSlab(problem, along=along, **grid)
     assert (len(few.values.problems) <= 256, len(each.values.problems)) == (True, 512)
     for name in ("normal", "load", "excess", "slip", "law_slip", "states", "static_excess", "knots"):

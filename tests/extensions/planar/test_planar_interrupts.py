@@ -22,7 +22,7 @@ def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
     with monkeypatch.context() as changed:
         changed.setattr("stickslip.run.run_loop.FIRST_BUDGET", 4)
         changed.setattr("stickslip.run.run_loop.next_budget", lambda *_: 4)
-        changed.setattr("stickslip.extensions.planar.run.NODES", 32)
+        changed.setattr("stickslip.extensions.planar.run.NODES_OF_BUDGET", 32)
         assert not lost(lambda: ss.simulate(slab, 6.0, frames=1), heard)
 
 

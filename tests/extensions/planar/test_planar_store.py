@@ -123,7 +123,7 @@ def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, wh
             raise Killed
         return real(*given)
 
-    monkeypatch.setattr(run_loop, "SHARE", 1e9)  # a checkpoint at each frame
+    monkeypatch.setattr(run_loop, "SHARE_OF_TASKS", 1e9)  # a checkpoint at each frame
     monkeypatch.setattr(module, place, dies)
     with pytest.raises(Killed):
         ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, checkpoint_every=0.0)
@@ -165,7 +165,7 @@ def test_two_devices_continue_what_one_device_began(store: Path, whole: Any) -> 
 
 @pytest.mark.slow
 def test_xarray_reads_a_folder_while_the_run_continues(tmp_path: Path, monkeypatch: Any) -> None:
-    monkeypatch.setattr(run_loop, "SHARE", 1e9)  # a checkpoint at each frame
+    monkeypatch.setattr(run_loop, "SHARE_OF_TASKS", 1e9)  # a checkpoint at each frame
     seen = []
 
     def look(report: PlanarReport) -> None:
@@ -241,7 +241,7 @@ def edited(path: Path, **changes: Any) -> None:
     """Change attributes of a folder, and give it a checksum that fits: what only somebody who means it does."""
     group = zarr.open_group(path, mode="r+")
     group.attrs.update(changes)
-    group.attrs.update({"digest": planar_layout.FORMAT.digest_of(group.attrs)})
+    group.attrs.update({"digest": planar_layout.PLANAR_FORMAT.digest_of(group.attrs)})
     state = netcdf_file.read(path / "state.nc")
     netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
 

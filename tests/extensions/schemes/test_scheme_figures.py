@@ -39,7 +39,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
     """Return a run and the numbers that its figure shows."""
     problem, duration, _ = DRAWN[name]
     run = ss.simulate(problem, duration, rtol=1e-12)
-    return run, energy.data(run)
+    return run, energy.energy_data(run)
 
 
 NAMES = ["characteristics", "theta", "backward-euler", "newmark", "hht"]

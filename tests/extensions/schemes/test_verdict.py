@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.schemes.verdict import groups, local_orders
-from stickslip.extensions.studies.analogy import QUANTITIES, Analogy, _stands, analogy, weakening
+from stickslip.extensions.studies.analogy import QUANTITIES_COMPARED, Analogy, _stands, analogy, weakening
 from stickslip.extensions.studies.figures import analogy as figure
 from stickslip.foundation.axis import Axis
 from stickslip.problem.equivalent_block import block_for
@@ -60,7 +60,7 @@ def test_the_block_stands_for_the_slab_in_the_slow_corner_only(found: Analogy) -
 
 
 def test_the_same_numbers_in_other_pulses_are_not_the_same() -> None:
-    table = pd.DataFrame({f"{one}_ratio": [1.05, 1.05, 1.05, 1.15] for one in QUANTITIES})
+    table = pd.DataFrame({f"{one}_ratio": [1.05, 1.05, 1.05, 1.15] for one in QUANTITIES_COMPARED})
     table["pulses_slab"], table["pulses_block"] = [1, 3, 2, 1], [1, 1, 2, 1]
     assert list(_stands(table, 0.1)) == [True, False, True, False]
 
@@ -103,9 +103,9 @@ def test_bad_axes_and_options_are_refused(problem: ss.Problem, options: dict[str
 
 
 def test_the_figure_shows_the_ratios_and_both_lines(found: Analogy) -> None:
-    dataset = figure.data(found)
+    dataset = figure.analogy_data(found)
     np.testing.assert_array_equal(dataset.slip_ratio.values, found.ratio("slip"))
-    drawn = figure.draw(dataset)
+    drawn = figure.draw_analogy(dataset)
     assert drawn.axes[2].get_xlabel() == "wavelength (m)"
     titles = [axes.get_title(loc="left") for axes in drawn.axes[:4]]
     assert titles[0] == "(a)  ratio of slips"

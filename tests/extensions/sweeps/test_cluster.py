@@ -161,7 +161,7 @@ def _alive(session: int) -> bool:
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere"])
 def test_a_scheduler_that_does_not_answer_is_refused(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.extensions.sweeps.execution.cluster.PATIENCE", 0.2)
+    monkeypatch.setattr("stickslip.extensions.sweeps.execution.cluster.TIME_TO_ANSWER", 0.2)
     with pytest.raises(ss.InputError, match=f"no dask scheduler answers at {address}"):
         ss.sweep("fig6-slab", VARY, scheduler=address)
 

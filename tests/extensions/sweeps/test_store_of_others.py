@@ -14,7 +14,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.extensions.sweeps.results.layout import FORMAT
+from stickslip.extensions.sweeps.results.layout import SWEEP_FORMAT
 from stickslip.extensions.sweeps.results.store import open_store
 from stickslip.extensions.sweeps.sweep import SweepProgress
 from tests.extensions.sweeps.stores import VARY, files, sweep
@@ -42,7 +42,7 @@ def vouch_again(store: Path) -> None:
     """Give the attributes a checksum that fits, and each array's own file what the gathered metadata say of it."""
     with suppress(ValueError, RecursionError, KeyError, TypeError):
         about = json.loads((store / "zarr.json").read_text())
-        about["attributes"]["digest"] = FORMAT.digest_of(about["attributes"])
+        about["attributes"]["digest"] = SWEEP_FORMAT.digest_of(about["attributes"])
         (store / "zarr.json").write_text(json.dumps(about))
         for name, known in about["consolidated_metadata"]["metadata"].items():
             (store / name / "zarr.json").write_text(json.dumps(known))

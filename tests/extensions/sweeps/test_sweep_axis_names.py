@@ -14,5 +14,5 @@ def test_a_map_over_a_number_of_a_formula_has_its_symbol_and_unit() -> None:
     problem = ss.Problem(body, law, pull_rate="1 mm/s", initial_excess=0.0)
     varied = {"friction.parameters.vw": np.linspace(0.5, 2.0, 9), "pull_rate": np.linspace(1e-3, 9e-3, 9)}
     found = ss.sweep(problem, varied, duration="2 s", quantities=["slip"])
-    labels = {text for axes in sweep.draw(sweep.data(found)).axes for text in (axes.get_xlabel(), axes.get_ylabel())}
+    labels = {text for axes in sweep.draw_sweep(sweep.sweep_data(found)).axes for text in (axes.get_xlabel(), axes.get_ylabel())}
     assert {"$v_{w}$ (m/s)", "pull rate $V$ of the driver (mm/s)"} <= labels

@@ -19,7 +19,7 @@ from matplotlib.mathtext import MathTextParser
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.extensions.sweeps.figures.colours import FEW, colours_of, shades
+from stickslip.extensions.sweeps.figures.colours import COLOURS_IN_KEY, colours_of, shades
 from stickslip.extensions.sweeps.figures.curves import jumps
 from stickslip.extensions.sweeps.figures.varied import ShownQuantity
 from stickslip.figures.names import parameter_name, plain_name, symbol
@@ -197,18 +197,18 @@ def least_distance(colours: list[str], vision: str) -> float:
 
 
 @pytest.mark.parametrize("vision", VISIONS)
-@pytest.mark.parametrize("count", range(2, FEW + 1))
+@pytest.mark.parametrize("count", range(2, COLOURS_IN_KEY + 1))
 def test_readers_can_tell_the_colours_of_counts_apart(count: int, vision: str) -> None:
     assert least_distance(shades(count), vision) > LEAST
 
 
-@pytest.mark.parametrize("count", range(3, FEW + 1))
+@pytest.mark.parametrize("count", range(3, COLOURS_IN_KEY + 1))
 def test_higher_counts_are_darker(count: int) -> None:
     assert (np.diff(oklab(shades(count), "usual")[:, 0]) < -0.02).all()
 
 
 def test_the_measure_of_distance_finds_colours_that_are_too_close() -> None:
-    usual = [mpl.colors.to_hex(colour) for colour in mpl.colormaps["viridis"](np.linspace(0.05, 0.95, FEW))]
+    usual = [mpl.colors.to_hex(colour) for colour in mpl.colormaps["viridis"](np.linspace(0.05, 0.95, COLOURS_IN_KEY))]
     assert min(least_distance(usual, vision) for vision in VISIONS) < 0.6 * LEAST
     assert least_distance(["#009E73", "#A2A2A2"], "protanopia") < least_distance(["#009E73", "#A2A2A2"], "usual")
 

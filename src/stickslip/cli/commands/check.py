@@ -13,12 +13,14 @@ import typer
 
 from stickslip.cli.options import Changes, ScenarioName, axes_of, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
-from stickslip.cli.output.show import print_words, titled
+from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
+from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
     from stickslip.contact import SteadySlidings
     from stickslip.problem.scenarios import Scenario
+    from stickslip.run.check import Examination
 
 PARAMETERS = "List the names, units and meanings of all numbers that --set, --vary and --free take, and stop."
 RUNS = "Make a dozen short exact runs from rest, where steady sliding becomes stable at a critical rate."
@@ -58,7 +60,6 @@ def check(
       stickslip check fig6-slab --map alpha=0.01..10:40:log \
         --map "normal_stress=10 MPa..500 MPa" --figure map.png
     """
-    from stickslip.cli.output.examination import show_examination
     from stickslip.cli.overrides import load
     from stickslip.run.check.examine import examine
 
@@ -80,7 +81,7 @@ def check(
     steady = _steady(loaded, runs=runs)
     if steady_figure is not None:
         steady.check_drawn("check: --steady-figure")
-    show_examination(loaded, replace(examine(loaded), steady=steady))
+    _show_examination(loaded, replace(examine(loaded), steady=steady))
     files = [(figure, drawing(drawn, look))] if drawn is not None else []
     steadily = None if steady_figure is None else _sliding(steady, loaded.heading)
     announce(*write_files(*files, *([(steady_figure, drawing(steadily, look))] if steadily is not None else [])))
@@ -104,7 +105,6 @@ def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
 
 def _show_special(loaded: Scenario, drawing_wanted: object) -> None:
     """Print what is found about a scenario that the solver of an extension runs. Raises InputError if a drawing is wanted."""
-    from stickslip.cli.output.examination import show_examination
     from stickslip.run import special_solver_of
 
     tables = "] and [".join(name for name, _ in loaded.tables)
@@ -116,21 +116,31 @@ def _show_special(loaded: Scenario, drawing_wanted: object) -> None:
     if solver.examine is None:
         _show_parameters(loaded)
         return
-    show_examination(loaded, solver.examine(loaded))
+    _show_examination(loaded, solver.examine(loaded))
+
+
+def _show_examination(scenario: Scenario, found: Examination) -> None:
+    """Print what was found about a scenario: its numbers, and what follows from them."""
+    screen = titled(scenario)
+    if scenario.description:
+        say(screen, clean(scenario.description))
+    print_words(screen, ("", "value", "meaning"), list(found.numbers()))
+    screen.print()
+    print_words(screen, ("", ""), list(found.findings()), {"warning": "yellow"})
 
 
 def _set(loaded: Scenario) -> Callable[..., object]:
     """Return the function that draws the set K of a scenario."""
     from stickslip.figures.contact import admissible
 
-    return partial(admissible.draw, admissible.data(loaded.problem, title=loaded.heading))
+    return partial(admissible.draw_admissible, admissible.admissible_data(loaded.problem, title=loaded.heading))
 
 
 def _sliding(found: SteadySlidings, title: str) -> Callable[..., object]:
     """Return the function that draws steady sliding."""
     from stickslip.figures.contact import steady
 
-    return partial(steady.draw, steady.data(found, title))
+    return partial(steady.draw_steady, steady.steady_data(found, title))
 
 
 def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
@@ -143,4 +153,4 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:
         found = regime_map(loaded.problem, x, y, lambda done, count: report(f"{done} of {count} points"))
-    return partial(regimes.draw, loaded.problem, found, loaded.heading)
+    return partial(regimes.draw_regimes, loaded.problem, found, loaded.heading)

@@ -17,7 +17,7 @@ from stickslip.foundation.errors import InputError, warn
 
 CATALOGUES = (".csv", ".parquet", ".nc")
 """File suffixes of catalogues, those of `solution.files.catalogue_rows`, which takes long to import."""
-LARGE = 10_000_000
+LARGE_FILE = 10_000_000
 """The size of a file is reported from this size (bytes) on."""
 DPI = 200.0
 """Dots per inch of figures if the user does not say."""
@@ -169,4 +169,4 @@ def announce(*paths: Path | None) -> None:
     for path in paths:
         if path is not None:
             size = path.stat().st_size if path.is_file() else 0
-            typer.echo(f"written: {path}" + (f" ({file_size(size)})" if size >= LARGE else ""))
+            typer.echo(f"written: {path}" + (f" ({file_size(size)})" if size >= LARGE_FILE else ""))

@@ -80,7 +80,7 @@ class Pictures:
         from stickslip.figures.runs import catalogue
 
         def draw(**place: Any) -> object:
-            return catalogue.draw(catalogue.data_of_events(table, title, load_unit), **place)
+            return catalogue.draw_catalogue(catalogue.data_of_events(table, title, load_unit), **place)
 
         return write_files((self._file_of_events(table), drawing(draw, self.look)))
 

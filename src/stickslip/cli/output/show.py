@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from stickslip.problem.scenarios import Scenario
 
-WIDE = 132
+WIDTH_OF_FILES = 132
 """Width (columns) of tables that go to a file, so that their rows keep their lines."""
 Rows = Sequence[Sequence[str]]
 GAP = 3
@@ -30,11 +30,11 @@ LEAST_PROSE = 24
 
 
 def console(*, errors: bool = False) -> Console:
-    """Return the console for results, as wide as the terminal or as COLUMNS says; else, as in a file, `WIDE` columns."""
+    """Return the console for results, as wide as the terminal or as COLUMNS says; else, as in a file, `WIDTH_OF_FILES` columns."""
     from rich.console import Console
 
     stream = sys.stderr if errors else sys.stdout
-    width = None if fits_lines(stream) else WIDE
+    width = None if fits_lines(stream) else WIDTH_OF_FILES
     return Console(file=stream, width=width, highlight=False, markup=False, emoji=False)
 
 

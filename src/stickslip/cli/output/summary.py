@@ -10,30 +10,29 @@ from typing import TYPE_CHECKING, Any
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.foundation.names import readable_unit, si_unit
-from stickslip.foundation.show import clean, how_long, number, with_unit
-from stickslip.problem import creep_tolerance
+from stickslip.foundation.show import clean, number, with_unit
+from stickslip.problem import Status
 from stickslip.problem.scenarios import doubts
+from stickslip.solution import account_of, notes_in
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from stickslip.problem import Problem, Status
+    from stickslip.problem import Problem
     from stickslip.problem.scenarios import Scenario
     from stickslip.run import Catalogue
     from stickslip.solution import Solution
 
-FIRST = 12
+ROWS_SHOWN = 12
 """Number of table rows that are shown."""
-DIGITS = 8, 5
+TABLE_DIGITS = 8, 5
 """Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
 MANY_EVENTS = 100_000
 """A catalogue with more events than this is not read again for its statistics."""
-NOTES = {"trapped": "trapped energy", "predictability": "predictability", "proven": "proven"}
-"""Notes that one line sums up, as `Catalogue.notes` calls them, in words."""
 REST = " (--all has the rest)"
-"""Says where the rest of these notes is."""
-REACH = "reach"
-"""Attribute of a catalogue with the slip at the end and the largest displacement, in words."""
+"""Says where the rest of the notes is that one line sums up."""
+SENTENCES = "slip", "status"
+"""Lines of a run that say what they are without their names."""
 LATE = 1e4
 """Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
@@ -44,57 +43,51 @@ def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = 
     from stickslip.problem import default_event_rate
     from stickslip.solution.observables import event_columns
 
-    screen, history = titled(scenario), solution.history
-    say(screen, solution.reach_note)
-    _say_how(screen, scenario, solution.status, solution.duration, (solution.creep_note, solution.lumping_note))
-    say(screen, f"selection rule {solution.selection_note}\n")
+    screen, history, notes = titled(scenario), solution.history, solution.notes
+    _say_account(screen, scenario, solution.status, solution.duration, notes)
+    screen.print()
     _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
     shocks = shock_columns(history)
     _print(screen, "shock", shocks, [_unit(SHOCK_COLUMNS[name], scenario.problem) for name in shocks])
-    if everything:
-        notes = (solution.trapped_note, solution.horizon_note, solution.proven.text)
-        _say_notes(screen, dict(zip(NOTES, notes, strict=True)))
-    else:
-        say(screen, f"{solution.short_note}{REST}\n")
-    _say_notes(screen, {"rounding": solution.rounding_note})
-
-
-def _say_notes(screen: Console, notes: Mapping[str, str]) -> None:
-    """Print a paragraph for each note that is not empty."""
-    say(screen, *(f"{NOTES.get(name, name)}: {note}\n" for name, note in notes.items() if note))
+    _say_notes(screen, notes, everything=everything)
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue, *, everything: bool = False) -> None:
     """Print on standard output the summary of a run that kept only slip events; `everything` as for a run."""
     screen = titled(scenario)
-    say(screen, found.reach.text(scenario.problem))
-    _say_how(screen, scenario, found.status, found.reached, (found.notes.get("creep", ""), found.notes.get("lumping", "")))
-    say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}")
-    say(screen, *([] if everything else [f"{found.notes['short']}{REST}"]))
-    for name in (*(NOTES if everything else ()), "rounding"):
-        if name in found.notes:
-            say(screen, f"{NOTES.get(name, name)}: {found.notes[name]}")
+    _say_account(screen, scenario, found.status, found.reached, found.notes)
+    say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}\n")
     if found.events > MANY_EVENTS:
-        say(screen, "mean recurrence and slip: `stickslip show` on the catalogue works them out")
+        say(screen, "mean recurrence and slip: `stickslip show` on the catalogue works them out\n")
     elif found.events > 2:
-        say(screen, *(line.rstrip() for line in statistics(dict(found.read().items()), _unit("slip", scenario.problem))))
+        say(screen, *statistics(dict(found.read().items()), _unit("slip", scenario.problem)))
+    _say_notes(screen, found.notes, everything=everything)
     announce(*found.files)
 
 
-def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any], problem: Problem | None) -> None:
+def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any], scenario: Scenario | None) -> None:
     """Print on standard output the slip events of a catalogue, after what its attributes say about the run, if there are any."""
-    screen = console()
+    screen, notes = console(), {name: str(text) for name, text in about.items()}
     say(screen, clean(name), style="bold")
-    if about.get(REACH):
-        say(screen, clean(str(about[REACH])))
-    if "status" in about:
-        say(screen, clean(f"{about['status']}: {about['status_message']}"))
-        reached = float(about["duration"])
-        say(screen, f"duration {how_long(reached, float(about.get('asked_duration', reached)), with_unit)}, rtol {about['rtol']:g}")
-        say(screen, clean(f"selection rule {about['selection_rule']}"))
-        say(screen, *(clean(str(about[note])) for note in ("lumping", "rounding") if about.get(note)))
+    if scenario is not None and "status" in about:
+        status = Status(notes["status"], notes["status_message"], ok=True)
+        _say_account(screen, scenario, status, float(about["duration"]), notes)
     screen.print()
-    _print_events(screen, table, problem)
+    _print_events(screen, table, None if scenario is None else scenario.problem)
+    _say_notes(screen, {"rounding": notes.get("rounding", "")}, everything=True)
+
+
+def _say_account(screen: Console, scenario: Scenario, status: Status, reached: float, notes: Mapping[str, str]) -> None:
+    """Print how a run went, a line each, and doubts about its numbers."""
+    lines = account_of(scenario, status, reached, notes)
+    say(screen, *(clean(text if name in SENTENCES else f"{name} {text}") for name, text in lines))
+    say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))
+
+
+def _say_notes(screen: Console, notes: Mapping[str, str], *, everything: bool) -> None:
+    """Print a paragraph for each note on a run; not `everything`: in short."""
+    for name, text in notes_in(notes, everything=everything):
+        say(screen, clean(f"{name}: {text}" if name else f"{text}{REST}"), "")
 
 
 def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem | None) -> None:
@@ -144,38 +137,18 @@ def statistics(events: Mapping[Any, Any], slip: str = "m") -> list[str]:
     return [f"{'; '.join(lines)}\n"] if lines else []
 
 
-def _say_how(screen: Console, scenario: Scenario, status: Status, reached: float, notes: tuple[str, str]) -> None:
-    """Print what ended a run, the time reached (s), tolerances, and requested or automatic leaps and lumping of events.
-
-    `notes` are one line each on leaps and on automatic lumping, or empty.
-    """
-    creep, lumping = notes
-    lasted = how_long(reached, scenario.duration, with_unit)
-    say(screen, f"{status.name}: {status.message}", f"duration {lasted}, rtol {scenario.rtol:g}")
-    say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))
-    if scenario.shortest_event:
-        say(screen, f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
-    if lumping:
-        say(screen, f"shortest_event automatic: {lumping}")
-    if scenario.creep_rtol:
-        say(screen, f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}")
-    elif creep:
-        tolerance = creep_tolerance(scenario.problem, None, scenario.rtol)
-        say(screen, f"creep_rtol {tolerance:g} (automatic; 0 runs every {scenario.problem.body.turn}): {creep}")
-
-
 def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], units: Sequence[str]) -> None:
     count = len(next(iter(columns.values())))
     if not count:
         say(screen, f"no {what}\n")
         return
-    first = list(islice(zip(*columns.values(), strict=True), FIRST))
+    first = list(islice(zip(*columns.values(), strict=True), ROWS_SHOWN))
     scaled = [_readable(column, unit) for column, unit in zip(zip(*first, strict=True), units, strict=True)]
     headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, (unit, _) in zip(columns, scaled, strict=True)]
     rows = list(zip(*(column for _, column in scaled), strict=True))
-    forms = [[[_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)] for row in rows] for digits in DIGITS]
+    forms = [[[_cell(value, unit, n) for value, unit in zip(row, units, strict=True)] for row in rows] for n in TABLE_DIGITS]
     shown = next((form for form in forms if fits(screen, headings, form)), forms[0])
-    more = f", the first {FIRST} of them" if count > FIRST else ""
+    more = f", the first {ROWS_SHOWN} of them" if count > ROWS_SHOWN else ""
     say(screen, f"{count} {what}{'s' if count > 1 else ''}{more}")
     print_numbers(screen, headings, shown)
     screen.print()

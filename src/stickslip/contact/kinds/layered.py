@@ -7,10 +7,9 @@ from typing import cast
 
 import numpy as np
 
-from stickslip.contact.asked import ContactOfKind, Withstood
+from stickslip.contact.asked import ContactOfKind, SteadyDrive, Withstood
 from stickslip.contact.crossing import crossing
 from stickslip.contact.disturbance import Response, of_contact
-from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.layer_count import MOST_PIECES
 from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.layer_response import driven_steadily, response_of, taken_by_layers

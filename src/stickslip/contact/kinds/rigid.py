@@ -23,9 +23,8 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
-from stickslip.contact.asked import ContactOfKind, Withstood
+from stickslip.contact.asked import ContactOfKind, SteadyDrive, Withstood
 from stickslip.contact.disturbance import Response
-from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.steady_proof import Discs, Judge, slope_symbols
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, first_of
 from stickslip.foundation.arrays import Floats

@@ -7,9 +7,8 @@ from functools import partial
 
 from numpy.polynomial import polynomial as poly
 
-from stickslip.contact.asked import ContactOfKind, Withstood
+from stickslip.contact.asked import ContactOfKind, SteadyDrive, Withstood
 from stickslip.contact.disturbance import Response, of_contact
-from stickslip.contact.drive import SteadyDrive
 from stickslip.contact.steady_proof import Discs, Judge, slope_symbols
 from stickslip.contact.wave_modes import Polynomial, WaveModes
 from stickslip.contact.wave_proof import of_slab

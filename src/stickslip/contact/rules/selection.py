@@ -22,7 +22,7 @@ from stickslip.contact.areas import area
 from stickslip.contact.branches import branches_of, rate_on, resistance
 from stickslip.contact.folds import MOST_FOLDS, certificate
 from stickslip.contact.roots import bracketed_newton
-from stickslip.contact.slopes import FASTEST
+from stickslip.contact.slopes import FASTEST_BOUNDED
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Branch, Problem, Resistance, SelectionRule, SelectionTable, registered
@@ -157,7 +157,7 @@ def selection_table(
     """
     g = resistance(problem, law_slip, normal)
     stable = branches_of(g)
-    if g.law.depends_on_rate and certificate(g).reach < FASTEST and not load_bound(problem, g) <= g.largest_load:
+    if g.law.depends_on_rate and certificate(g).reach < FASTEST_BOUNDED and not load_bound(problem, g) <= g.largest_load:
         raise InputError(
             f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times, and its branches are known up to a "
             f"load of {g.largest_load:.3g} {g.load_unit} only, which the load of this problem may exceed"

@@ -10,7 +10,7 @@ import math
 
 from stickslip.engine.contact.pieces import phase_at, xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, fill
-from stickslip.engine.series.radau_nodes import POINT, POINTS
+from stickslip.engine.series.radau_nodes import NODES_OF_STEP, POINT
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import kernel
@@ -24,6 +24,14 @@ LARGEST_TURN = 1.0
 def own_states(run: Run) -> int:
     """Return the number of states of the law's own: the others follow from time alone and are given."""
     return run.counts.states - run.counts.given
+
+
+@kernel
+def tone_series(run: Run, amplitude: float, phase: float, time: float) -> None:
+    """Write into run.spare the coefficients in xi of amplitude sin(frequency t + phase) on a piece that begins at `time` (s)."""
+    frequency = run.params.tone_frequency
+    turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
+    tone_along(amplitude, (frequency * time + phase, turn, bend), run.spare, run.trial)
 
 
 @kernel
@@ -109,7 +117,7 @@ def before_turn(run: Run, xi_to: float) -> float:
 def press_stages(run: Run, h: float) -> None:
     """Put the normal load at the points of an implicit step of h seconds into its stages."""
     first, phase = own_states(run), phase_at(run, run.state.xi)
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         p, rate = pressing_at(run, phase, h * POINT[i])
         run.stage_state[TERMS * first + i], run.stage_state[TERMS * (first + 1) + i] = p, rate
 

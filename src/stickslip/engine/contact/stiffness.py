@@ -18,9 +18,9 @@ It is no longer stiff if an implicit step spans fewer than NOT_STIFF."""
 SETTLED, NOT_SETTLED = 1.0, 0.2
 """The same two numbers for a massless contact. Its slip rate only decays, and explicit steps would follow the decay down to the
 smallest float."""
-PATIENCE = 200
+STEPS_BEFORE_STIFF = 200
 """A massless contact may count as stiff only after this many explicit steps (1) since slip last began."""
-CHECKED = 16
+STEPS_BETWEEN_CHECKS = 16
 """Number of explicit steps (1) between two checks of the stiffness."""
 
 
@@ -94,8 +94,8 @@ def is_no_longer_stiff(run: Run) -> bool:
 def judge_stiffness(run: Run) -> None:
     """Check now and then, after an explicit step, whether the contact has become stiff."""
     run.counts.steps += 1
-    limit, least = (STIFF, 0) if run.counts.has_inertia == 1 else (SETTLED, PATIENCE)
-    due = run.counts.steps % CHECKED == 0 and run.counts.steps > least
+    limit, least = (STIFF, 0) if run.counts.has_inertia == 1 else (SETTLED, STEPS_BEFORE_STIFF)
+    due = run.counts.steps % STEPS_BETWEEN_CHECKS == 0 and run.counts.steps > least
     if due and run.state.last_step * settling_rate(run) > limit:
         run.counts.stiff = 1
 

@@ -13,7 +13,7 @@ A bound is expressed as a share: the slip rate that the residual makes, in units
 The proof relies on the series for the vanishing of the first coefficients of g. As a check, g is measured at the end of the step
 and added to the bound: if a coefficient does not vanish, by rounding or by a fault, g is largest there. A value above the tolerance
 is noted. `solution.observables.proof` proves finished steps without the series. Bounds are calculated in floats: the rounding of a
-few hundred operations is far below MARGIN.
+few hundred operations is far below MARGIN_OF_BOUNDS.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0
 inertia: the bound then applies to the slope of the series, whose error is larger than that of the series."""
 ROUGH, ROUGH_SLOPE = 10.0, 300.0
 """Rounding above this share (1) is noted. Smooth laws were measured to stay below 1, and below 33 with inertia."""
-MARGIN = 1.01
+MARGIN_OF_BOUNDS = 1.01
 """Factor (1) that covers the rounding of bounds."""
 RATIOS = np.array([8.0, 6.4, 5.2, 4.4, 3.8, 3.3, 2.9, 2.5, 2.2, 1.9, 1.65, 1.45, 1.3, 1.2])
 """Radii of the discs to try, in lengths of the step (1)."""
 SHRUNK, SHRUNK_SLOPE = RATIOS ** -float(TERMS), RATIOS ** -float(TERMS - 1)
 """Factors (1) by which g is smaller on the step than on each of the discs, without and with inertia."""
-SMALLEST = 1e-300
+SMALLEST_RATE = 1e-300
 """Least slip rate times tolerance (m/s) in a share's denominator: a contact may slip at a rate of exactly zero for a while."""
 FIRST_RATIO, NEXT_RATIO, STRAIGHT_DISCS = 4.0, 8.0, 9
 """Discs for a bit next to a fold (1): radius of the first in lengths of the bit, factor from one to the next, and their number."""
@@ -53,14 +53,14 @@ HOPELESS = 1e100
 """A share above this (1) means that the law has a singularity on the disc, which is therefore too large."""
 SHORTEST, LONGEST = 0.2, 0.9
 """Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
-SAFETY = 0.98
+SAFETY_OF_LENGTH = 0.98
 """Safety factor (1): the estimated length tends to be 2 % too long."""
-NEAR = LONGEST ** (1.0 - TERMS)
+NEARLY_SMALL = LONGEST ** (1.0 - TERMS)
 """A share falls at least by this factor (1) if the step is shortened to LONGEST of its length. A share that is nearly small enough
 is reduced in this way: it costs one evaluation on a disc, and the search for a better disc costs several."""
 TERM_ROUNDING = 1e-14
 """Rounding of the terms of the contact equation (1), relative to the largest of them."""
-NEGLIGIBLE = 1e-9
+NEGLIGIBLE_FRICTION = 1e-9
 """A friction coefficient (1) may be below zero by this much through rounding."""
 LOST = 1e-6
 """If a step begins with an imbalance above this share of the terms of the contact equation (1), the run ends: no law has so much
@@ -97,7 +97,7 @@ def load_on_disc(load: Floats, powers: Floats, ratio: float, degree: int) -> flo
 @inlined
 def force_on_disc(k: SeriesInput, ball: Ball, load: float) -> float:
     """Return a bound (Pa or N) on how far the sum of load, spring, radiation and friction is from its value at a disc's centre."""
-    return MARGIN * (k.damping * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
+    return MARGIN_OF_BOUNDS * (k.damping * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
 
 
 @inlined
@@ -110,7 +110,7 @@ def size_of_rate(terms: Floats) -> float:
 def shortened(length: float, share: float, largest: float) -> float:
     """Return the length (in units) that brings a step's share down to the largest allowed one."""
     root = quick_exp2((quick_log2(largest) - quick_log2(share)) * (1.0 / (TERMS - 1)))
-    return length * min(max(SAFETY * root, SHORTEST), LONGEST)
+    return length * min(max(SAFETY_OF_LENGTH * root, SHORTEST), LONGEST)
 
 
 @inlined
@@ -197,7 +197,7 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
         missed = (length * abs(run.k.speed) / run.k.inertia * force + bound_of_slope(terms, ratio)) * SHRUNK_SLOPE[disc]
     else:
         missed = force / resistance(run) * SHRUNK[disc]
-    share = missed / max(run.params.tolerance * size_of_rate(terms), SMALLEST)
+    share = missed / max(run.params.tolerance * size_of_rate(terms), SMALLEST_RATE)
     return min(HOPELESS, share)  # also if it is not a number
 
 
@@ -237,7 +237,7 @@ def proven_length(run: Run, length: float) -> float:
     share = share_at(run, length)
     attempt = 0
     while not share <= allowed(run) and attempt < ATTEMPTS:
-        enough = allowed(run) * (NEAR if attempt == 0 else 1.0)
+        enough = allowed(run) * (NEARLY_SMALL if attempt == 0 else 1.0)
         if not share <= enough:
             share = least_share(run, length, share, enough)
         if not share <= allowed(run):
@@ -383,4 +383,4 @@ def note_rounding(run: Run, missed: float, size: float, length: float) -> None:
 def is_negative(run: Run) -> bool:
     """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
     friction = run.value.mu + run.law[run.counts.piece].offset
-    return run.params.reference + run.params.normal * friction < -NEGLIGIBLE * run.params.normal
+    return run.params.reference + run.params.normal * friction < -NEGLIGIBLE_FRICTION * run.params.normal

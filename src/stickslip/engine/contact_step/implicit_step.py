@@ -12,14 +12,14 @@ from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, record
 from stickslip.engine.contact.pressing import is_pressing, own_states
 from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff, states_at_point
-from stickslip.engine.contact_step.certificate import NEGLIGIBLE
+from stickslip.engine.contact_step.certificate import NEGLIGIBLE_FRICTION
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
-from stickslip.engine.series.radau_nodes import POINTS
+from stickslip.engine.series.radau_nodes import NODES_OF_STEP
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Task
 from stickslip.engine.state.workspace import Run, borrow
@@ -27,7 +27,7 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 from stickslip.problem import Stop
 
-STILL = 1e-3
+STILL_BRISTLES = 1e-3
 """The slip rate of a contact hanging in bristles is only rounding if it is below this share (1) of the hanging slip rate."""
 TRIFLE = 2.0**-30
 """A share of a step (1) so short that nothing happens in it."""
@@ -63,9 +63,9 @@ def hangs(run: Run) -> bool:
     if run.counts.reverses == 0:
         return False
     fastest = 0.0
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         fastest = max(fastest, abs(run.stage_rate[i]))
-    if run.counts.has_inertia == 0 and fastest <= STILL * run.state.hanging:
+    if run.counts.has_inertia == 0 and fastest <= STILL_BRISTLES * run.state.hanging:
         fill(run.jet, 0.0)
         for n in range(run.counts.states):
             fill(ahead(run.state_jet, at.TERMS * n), 0.0)
@@ -100,7 +100,7 @@ def note_negative_friction(run: Run) -> None:
     if not math.isfinite(rate):
         rate, states = run.stage_rate[0], states_at_point(run, 0)
     contact_at(run, run.state.law_slip, abs(rate), states)
-    if run.params.reference + run.params.normal * run.value.mu < -NEGLIGIBLE * run.params.normal:
+    if run.params.reference + run.params.normal * run.value.mu < -NEGLIGIBLE_FRICTION * run.params.normal:
         run.counts.breach = Stop.NEGATIVE_FRICTION
 
 

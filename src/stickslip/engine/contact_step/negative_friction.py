@@ -7,7 +7,7 @@ two ends, and friction that drives slip must not pass unnoticed.
 from __future__ import annotations
 
 from stickslip.engine.contact.stiffness import contact_at, states_in_step
-from stickslip.engine.contact_step.certificate import NEGLIGIBLE, rough
+from stickslip.engine.contact_step.certificate import NEGLIGIBLE_FRICTION, rough
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
 from stickslip.engine.state.layout import TERMS, Floats
@@ -19,7 +19,7 @@ PARTS_OF_STEP = 16
 the series must resolve it."""
 CLOSER = 8.0
 """The places around a minimum move closer by this factor (1) before the minimum is estimated once more."""
-FLOOR = -0.5 * NEGLIGIBLE
+FLOOR = -0.5 * NEGLIGIBLE_FRICTION
 """Least friction coefficient (1) inside a step: below the rounding of zero, but above the value that ends a run at a step's end."""
 CLEARLY = 1e-3
 """A friction coefficient above this (1) is clearly above zero: it is larger than the error of friction in the series."""

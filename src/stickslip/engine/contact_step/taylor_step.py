@@ -48,7 +48,7 @@ LONGEST_GUESS = 2.0
 SHORTEST_GUESS = 1e-16
 """Least unit, as a share of the way to go (1). After a last step of almost no length the unit would be so small that high orders
 vanish or overflow."""
-HALVINGS = 40
+HALVINGS_OF_STEP = 40
 """A step with friction below zero is halved at most this many times (1): 2^-40 of a step is next to nothing."""
 
 
@@ -154,7 +154,7 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
     kept = run.history[run.counts.length]
     begin_step(run)
     bound = run.state.residual
-    for halving in range(HALVINGS + 1):
+    for halving in range(HALVINGS_OF_STEP + 1):
         cut = cut_at_first_event(run, kept.rate, length)
         grown, rate_end = growth(run, kept.rate, length * cut.end, 1.0), total(kept.rate)
         if is_straight(run):
@@ -163,7 +163,7 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
         run.state.residual = bound + measure_end(run, kept.rate, length * cut.end, grown, rate_end)
         if not (is_negative(run) or hides_negative_friction(run, length * cut.end)):
             break
-        if halving == HALVINGS:
+        if halving == HALVINGS_OF_STEP:
             run.counts.breach = Stop.NEGATIVE_FRICTION
         length *= 0.5 * cut.end
         stretch(run, length, kept.rate)

@@ -36,7 +36,7 @@ from typing import Any, Self
 import numpy as np
 
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula
-from stickslip.engine.contact_step.certificate import NEGLIGIBLE
+from stickslip.engine.contact_step.certificate import NEGLIGIBLE_FRICTION
 from stickslip.engine.creep.pattern import Pattern
 from stickslip.engine.input.branch_table import strength_change
 from stickslip.engine.state.layout import Ball, Floats
@@ -127,7 +127,7 @@ class Strength:
         """
         way, unit = abs(end - x), self.problem.normal
         expected = abs(self.slope(x)) * way + abs(self.curvature(x)) * way * way
-        return unit * self.sight.change(self.law_slip + self.sign * x, way) <= IN_SIGHT * expected + unit * NEGLIGIBLE
+        return unit * self.sight.change(self.law_slip + self.sign * x, way) <= IN_SIGHT * expected + unit * NEGLIGIBLE_FRICTION
 
     def falls_below_zero(self, x: float, end: float) -> bool:
         """Return True if friction falls below zero between two slips, by more than rounding: it would drive slip there."""
@@ -137,7 +137,7 @@ class Strength:
         slips = self.problem.law_slip + self.law_slip + self.sign * np.linspace(x, end, SLIPS_LOOKED_AT)
         lowest = int(np.argmin(law.piece_coefficient(self.piece, slips, 0.0)))
         near = np.linspace(slips[max(lowest - 1, 0)], slips[min(lowest + 1, SLIPS_LOOKED_AT - 1)], SLIPS_LOOKED_AT)
-        return bool(np.min(law.piece_coefficient(self.piece, near, 0.0)) < -NEGLIGIBLE)
+        return bool(np.min(law.piece_coefficient(self.piece, near, 0.0)) < -NEGLIGIBLE_FRICTION)
 
     @cached_property
     def room(self) -> float:

@@ -16,7 +16,7 @@ from stickslip.engine.creep.planner import CreepPlan, hermite
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.problem import Problem
 
-NEAR = 4.0
+NEAR_SLIP = 4.0
 """A part of the round trip may slip where a leap lands if friction could fall to its load within so many round trips."""
 EDGE = 16.0
 """Number of roundings of an offset within which it is that of an edge."""
@@ -56,7 +56,7 @@ class CreepLanding:
         there, edges = self.averaged, np.union1d(run.store.phase_from[rows], run.store.phase_to[rows])
         if count.sparse == 1:
             reach = there.strength.slope(end.slip) * end.rate
-            slips = there.pattern.rows_above(-end.lift - NEAR * abs(reach), run.store.phase_to[rows])
+            slips = there.pattern.rows_above(-end.lift - NEAR_SLIP * abs(reach), run.store.phase_to[rows])
             kept = rows[~slips]
             there = replace(there, pattern=there.pattern.of_rows(slips, run.store.phase_to[rows]))
         pieces, begun = last_pieces(there, end), int(count.trip)

@@ -11,9 +11,9 @@ from stickslip.engine.creep.averaged import AveragedCreep, Creep
 from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
 
-BESIDE = 1e-12
+GAP_OF_PARTS = 1e-12
 """Two parts of a pattern are side by side if the gap between them is within this share of the offset."""
-ROUNDS = 4
+ROUNDS_AT_BORDER = 4
 """Number of fixed-point iterations that match the strength at a border to the slip there, and the first slip to the mean slip."""
 
 
@@ -65,7 +65,7 @@ class Walk:
         """Walk through all parts of the pattern."""
         parts, end = self.averaged.pattern.parts, 0.0
         for k in range(len(parts.speed)):
-            if float(parts.phase_from[k]) > (1.0 + BESIDE) * end and self.core_from is not None:
+            if float(parts.phase_from[k]) > (1.0 + GAP_OF_PARTS) * end and self.core_from is not None:
                 self._close_core(end)  # what lies between rests
             self._part(k)
             end = float(parts.phase_from[k] + parts.speed[k] + parts.bend[k])
@@ -77,7 +77,7 @@ class Walk:
         load = parts.load[k].copy()
         load[0] += self.averaged.gain * self.creep.trips
         begin, cuts = float(parts.phase_from[k]), [0.0, 1.0]
-        for _ in range(ROUNDS):  # the strength at a border depends on the slip up to it
+        for _ in range(ROUNDS_AT_BORDER):  # the strength at a border depends on the slip up to it
             strength = self._strength_at(begin + self._phase(k, cuts[-2] if load[0] > load.sum() else 0.0))
             levels = (strength, strength + self.averaged.impedance * self.creep.mean_rate)
             low, high = sorted((load[0], load.sum()))
@@ -147,7 +147,7 @@ class Walk:
 def last_pieces(averaged: AveragedCreep, creep: Creep) -> list[Piece]:
     """Return the pieces of the round trip whose slips at start and end have the mean `creep.slip`."""
     first = creep.slip - 0.5 * creep.rate
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS_AT_BORDER):
         walk = Walk(averaged, creep, first)
         walk.through()
         first = creep.slip - 0.5 * (walk.slip - walk.first)

@@ -23,11 +23,11 @@ from stickslip.problem import default_event_rate
 
 LOOKED_AT = 400
 """Number of pieces in which cycles are looked for."""
-SAME = 1e-6
+SAME_CYCLE = 1e-6
 """Largest difference between two cycles that count as the same, as a share of their length."""
 RECIPROCALS = 1.0 / np.arange(1, TERMS + 1)
 """The integrals of the powers from 0 to 1."""
-LEAST = 1e-12
+SHORTEST_PART = 1e-12
 """Shortest part of a piece (as a share of a period) that is written."""
 
 
@@ -81,7 +81,7 @@ class Cycle:
         for k in range(a, b):
             n, (low, high) = first + k, (float(one[k] - begin[a]) for one in (begin, end))
             parts.append(CyclePart(low, high, int(mode[k]), int(store.law_piece[n]), store.load[n].copy(), store.rate[n].copy()))
-            if begin[k + 1] - end[k] > LEAST * turn:
+            if begin[k + 1] - end[k] > SHORTEST_PART * turn:
                 parts.append(_rest(parts[-1], float(begin[k + 1] - begin[a]), float(store.load[n + 1][0])))
         rates = store.rate[first + a : first + b]
         peak = float(np.abs(rates).sum(axis=1).max())
@@ -107,7 +107,7 @@ class Cycle:
             start = cycle * self.length
             for part in self.parts:
                 low, high = max(part.begin, begin - start), min(part.end, end - start)
-                if high - low > LEAST * self.length:
+                if high - low > SHORTEST_PART * self.length:
                     moved = part.between(low, high)
                     found.append(moved._replace(begin=start + low - begin, end=start + high - begin))
         return found
@@ -162,7 +162,7 @@ class CycleLanding:
         begin = self.cycle.since + (self.trips + 1) * self.period
         grown = self._slip(begin + trips * self.period) - self._slip(begin)
         largest = trips * self.period * self.cycle.peak
-        return slip + grown, max(SAME, tolerance) * largest + ROUNDINGS * math.ulp(slip)
+        return slip + grown, max(SAME_CYCLE, tolerance) * largest + ROUNDINGS * math.ulp(slip)
 
     def _slip(self, time: float) -> float:
         """Return the slip (m) from the first onset up to a time (s) after it, with its sign."""
@@ -190,7 +190,7 @@ def leap_over_cycles(run: LeapingRun, most: int, tolerance: float) -> CycleLandi
     if law.states or law.depends_on_slip or law.memory != "all" or most < SHORTEST_LEAP:
         return None
     cycle = Cycle.of(run)
-    if cycle is None or cycle.differs > SAME * cycle.length or cycle.peak > default_event_rate(problem):
+    if cycle is None or cycle.differs > SAME_CYCLE * cycle.length or cycle.peak > default_event_rate(problem):
         return None
     turn, speed = problem.round_trip_time, abs(problem.first_pull_rate)
     most -= math.ceil(2.0 * cycle.length / turn)  # that no rest after the landing reaches the end of the run
@@ -201,7 +201,7 @@ def leap_over_cycles(run: LeapingRun, most: int, tolerance: float) -> CycleLandi
     apart = rounds + cycle.differs + float(run.setup.params.tolerance) / PER_STEP * cycle.length
     late = cycles * apart + ROUNDINGS * math.ulp(most * turn)
     error, slip = min(cycle.peak * late, speed * cycle.length), abs(float(run.state.slip_now)) + most * turn * speed
-    if abs(cycle.slip) < (1.0 - SAME) * speed * cycle.length or error > tolerance * slip:
+    if abs(cycle.slip) < (1.0 - SAME_CYCLE) * speed * cycle.length or error > tolerance * slip:
         return None
     return CycleLanding(cycle, most, error, turn, speed, body.stiffness)
 

@@ -10,6 +10,8 @@ import numpy as np
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece
 
+ROUNDING_OF_NUMBER = 4e-16
+"""Rounding of a number, as a share of it."""
 SHORTEST_LEAP = 16
 """Fewest round trips of a leap that is worth its cost."""
 

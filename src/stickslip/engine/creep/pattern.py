@@ -15,7 +15,7 @@ from stickslip.foundation.arrays import Floats1, Floats2
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
-SMALLEST = 1e-300
+SMALLEST_DIVISOR = 1e-300
 """Smallest divisor: it keeps a division by zero from occurring."""
 
 
@@ -140,12 +140,12 @@ def part_above(load: Floats2, shape: Floats2, ends: Floats2, lift: float, out: F
             steep = 0.0
             for k in range(TERMS - 1, 0, -1):
                 steep = steep * xi + k * load[n, k]
-            out[4 + 2 * crossed] = 1.0 / max(abs(steep / (speed + 2.0 * xi * bend)), SMALLEST)
+            out[4 + 2 * crossed] = 1.0 / max(abs(steep / (speed + 2.0 * xi * bend)), SMALLEST_DIVISOR)
             out[5 + 2 * crossed] = length - own if rises else length  # what slips before this border
             crossed += 1
     out[0], out[1], out[2], out[3] = area + lift * length, length, 0.0, 0.0
     for n in range(crossed):
-        place = min(max(out[5 + 2 * n] / max(length, SMALLEST), 0.0), 1.0)
+        place = min(max(out[5 + 2 * n] / max(length, SMALLEST_DIVISOR), 0.0), 1.0)
         out[2] += out[4 + 2 * n]
         out[3] += out[4 + 2 * n] * (place - 0.5) ** 2
 

@@ -10,11 +10,11 @@ import numpy as np
 from stickslip.engine.creep.averaged import AveragedCreep, Creep
 from stickslip.engine.state.layout import Floats
 
-SAFETY = 4.0
+SAFETY_OF_SECOND_ORDER = 4.0
 """Bound of the error as a multiple of the terms of second order. The terms themselves are included in the slip; where all is
 smooth, the true error is a hundredth of them.
 """
-SETTLED = 3.0
+SETTLED_RATE = 3.0
 """Largest slip rate at the start, as a multiple of the mean rate. Up to 2 the contact does not rest; where it has slipped faster,
 it rests until the mean has caught up.
 """
@@ -70,7 +70,7 @@ class Planner:
         # the start's own error is not used: for one round trip, slip rates near 0 look like borders of slip
         start = self.averaged.start()
         near = start, self.averaged.at(start.lift + self.averaged.gain)
-        if min(state.room for state in near) <= 0.0 or self.fastest > SETTLED * start.mean_rate:
+        if min(state.room for state in near) <= 0.0 or self.fastest > SETTLED_RATE * start.mean_rate:
             return None
         self.swing = max(self.averaged.swing(start.lift, state, self.before) for state in near)
         if self.swing > self._allowed(start):
@@ -97,7 +97,7 @@ class Planner:
 
     def error(self, state: Creep, swing: float) -> float:
         """Return a bound of the error of slip so far (m), given the amplitude of slip from one round trip to the next."""
-        return SAFETY * max(self.largest, state.error) + max(self.swing, swing)
+        return SAFETY_OF_SECOND_ORDER * max(self.largest, state.error) + max(self.swing, swing)
 
     def _allowed(self, state: Creep) -> float:
         return self.tolerance * (self.slipped + state.slip)

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine.history.history import NO_LEAPS
 from stickslip.engine.state.layout import Counts, Floats, Incoming
-from stickslip.problem import PATIENCE, Problem, leaps_over
+from stickslip.problem import EXACT_TRIPS, Problem, leaps_over
 
 if TYPE_CHECKING:
     from stickslip.engine.creep.leaping_run import LeapingRun
@@ -28,7 +28,7 @@ class CreepLeaps:
     problem: Problem
     tolerance: float
     patient: bool = False
-    """If true, leap only after PATIENCE round trips with slip, so that a run that never creeps for long stays exact."""
+    """If true, leap only after EXACT_TRIPS round trips with slip, so that a run that never creeps for long stays exact."""
     taken: list[tuple[float, ...]] = field(default_factory=list)
     """The rows of `History.creep`, one for each leap."""
 
@@ -42,7 +42,7 @@ class CreepLeaps:
     def begin(self, count: Counts) -> None:
         """Have the engine pause after the first round trip, or when slip has lasted."""
         if self.patient or leaps_over(self.problem) != "creep":
-            count.creep_in, count.pause_for = PATIENCE if self.patient else 1, 1
+            count.creep_in, count.pause_for = EXACT_TRIPS if self.patient else 1, 1
             return
         count.pause_at = count.pause_for = 1
 

@@ -32,40 +32,40 @@ from stickslip.engine.state.layout import Floats
 from stickslip.friction.formula import RATE, STATES, evaluate, slope_formula
 from stickslip.problem import Problem
 
-NODES = 12
+OFFSETS = 12
 """The motion is followed at this many offsets in each stretch of the round trip."""
-ROUNDS = 3
+ROUNDS_TO_MEAN = 3
 """Number of rounds to match the averaged motion to a round trip."""
 BOTH, PLAIN, HEAVY = range(3)
 """The three motions that are followed side by side: with ripple, without it, and with ripple and inertia."""
 RIPPLES, INERTIA = np.array([1.0, 0.0, 1.0]), np.array([[0.0], [0.0], [1.0]])
 """Which of them have ripple, and which inertia."""
-PLACES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+PLACES_OF_OFFSETS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(OFFSETS) + 0.5) / OFFSETS)
 """Places of the offsets in a stretch, on [0, 1]: the roots of a Chebyshev polynomial."""
-_BASIS = [np.polynomial.Chebyshev.basis(k, domain=[0.0, 1.0]) for k in range(NODES)]
-_SHARES = np.linalg.inv(np.array([one(PLACES) for one in _BASIS]).T)
+_BASIS = [np.polynomial.Chebyshev.basis(k, domain=[0.0, 1.0]) for k in range(OFFSETS)]
+_SHARES = np.linalg.inv(np.array([one(PLACES_OF_OFFSETS) for one in _BASIS]).T)
 _IN_X = [one.convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0], window=[0.0, 1.0]).coef for one in _BASIS]
-_POWERS = np.array([np.pad(one, (0, NODES - 1 - k)) for k, one in enumerate(_IN_X)]).T
-INTEGRALS = np.array([one.integ(lbnd=0.0)([*PLACES, 1.0]) for one in _BASIS]).T @ _SHARES
+_POWERS = np.array([np.pad(one, (0, OFFSETS - 1 - k)) for k, one in enumerate(_IN_X)]).T
+INTEGRALS = np.array([one.integ(lbnd=0.0)([*PLACES_OF_OFFSETS, 1.0]) for one in _BASIS]).T @ _SHARES
 """Integrals from 0 to each of these places and to 1, of the polynomial through values there."""
 
-SLOPES = np.array([one.deriv()(PLACES) for one in _BASIS]).T @ _SHARES
+SLOPES = np.array([one.deriv()(PLACES_OF_OFFSETS) for one in _BASIS]).T @ _SHARES
 """Slopes at these places, of the polynomial through values there."""
 
 
 def through(values: Floats, places: Floats) -> Floats:
-    """Return the polynomial through values at PLACES at other places on [0, 1]."""
+    """Return the polynomial through values at PLACES_OF_OFFSETS at other places on [0, 1]."""
     return np.asarray(np.polynomial.chebyshev.chebval(2.0 * places - 1.0, _SHARES @ values))
 
 
 def to_powers(values: Floats) -> Floats:
-    """Return the coefficients, in powers of the place, of the polynomial through values at PLACES (NODES, ...)."""
+    """Return the coefficients, in powers of the place, of the polynomial through values at PLACES_OF_OFFSETS (OFFSETS, ...)."""
     return np.asarray(_POWERS @ (_SHARES @ values))  # one after the other: their product would lose nine digits
 
 
 @dataclass(frozen=True)
 class Offsets:
-    """Offsets in a round trip for following the motion: NODES in each of some stretches of it."""
+    """Offsets in a round trip for following the motion: OFFSETS in each of some stretches of it."""
 
     edges: Floats  # (stretches + 1), s
     period: float  # s
@@ -81,7 +81,7 @@ class Offsets:
         while ahead:
             first, last = ahead.pop()
             start, width, within = edges[first], edges[last] - edges[first], middle[first:last]
-            places, logs, there = (within - start) / width, log_rate(start + width * PLACES), log_rate(within)
+            places, logs, there = (within - start) / width, log_rate(start + width * PLACES_OF_OFFSETS), log_rate(within)
             off = np.abs(through(logs, places) - there).max(), np.abs(through(np.exp(logs), places) / np.exp(there) - 1.0).max()
             if last - first == 1 or max(off) <= resolved:
                 kept.append(last)
@@ -92,8 +92,8 @@ class Offsets:
 
     @cached_property
     def phase(self) -> Floats:
-        """The offsets (stretches, NODES), s."""
-        return np.asarray(self.edges[:-1, None] + PLACES * np.diff(self.edges)[:, None])
+        """The offsets (stretches, OFFSETS), s."""
+        return np.asarray(self.edges[:-1, None] + PLACES_OF_OFFSETS * np.diff(self.edges)[:, None])
 
     @cached_property
     def share(self) -> Floats:
@@ -200,7 +200,7 @@ class SlowMotion:
         """Return the averaged state where a round trip begins, from the slip rates (m/s) in the one before and the states now."""
         log_rate = np.log(rate)
         y = np.tile(np.concatenate([log_rate, states, [0.0]]), (3, 1))
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS_TO_MEAN):
             trip = RoundTrip(self, self.later(y, -1), y)
             log_rates = log_rate - trip.at_begin.quicker + y[:, : self.size] - trip.log_rate()
             now = trip.at_end

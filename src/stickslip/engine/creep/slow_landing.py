@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine.creep.landing import WrittenMotion, continue_after, move, move_over, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
-from stickslip.engine.creep.slow import BOTH, NODES, PLACES, RoundTrip, to_powers
+from stickslip.engine.creep.slow import BOTH, OFFSETS, PLACES_OF_OFFSETS, RoundTrip, to_powers
 from stickslip.engine.creep.slow_leaps import RATE_SHARE, SlowLeap
 from stickslip.engine.state.layout import Floats
 
@@ -69,11 +69,11 @@ class SlowLanding:
         motion, trip = self.leap.motion, int(run.count.trip)
         turn, rows = motion.offsets.period, []
         for step in self.leap.steps:
-            moments = [step.between(step.begin + place * (step.end - step.begin))[BOTH] for place in PLACES]
+            moments = [step.between(step.begin + place * (step.end - step.begin))[BOTH] for place in PLACES_OF_OFFSETS]
             rows.append([to_powers(one) for one in motion.means(np.array(moments))])
         ends = np.array([(step.begin, step.end) for step in self.leap.steps]) * turn
         ends[-1, 1] += np.spacing((trip + self.leap.trips) * turn)  # no gap before the next round trip
-        grown = np.array([rate @ (1.0 / np.arange(1, NODES + 1)) for _, rate, _ in rows]) * (ends[:, 1] - ends[:, 0])
+        grown = np.array([rate @ (1.0 / np.arange(1, OFFSETS + 1)) for _, rate, _ in rows]) * (ends[:, 1] - ends[:, 0])
         stretch = self._slip(self.leap.landing) / grown.sum()  # that slip has no jump where the averaged motion begins or ends
         for k, (load, rate, states) in enumerate(rows):
             n = int(run.count.length) + k
@@ -87,7 +87,7 @@ class SlowLanding:
         rate, states = there.with_ripple()
         load = motion.friction(rate, states) + run.problem.body.impedance * rate
         for k, ends in enumerate(pairwise(motion.offsets.edges.tolist())):
-            n, here = first + k, slice(k * NODES, (k + 1) * NODES)
+            n, here = first + k, slice(k * OFFSETS, (k + 1) * OFFSETS)
             own = (to_powers(one) for one in (load[here], rate[here], states[:, here].T))
             write_piece(run, n, (trip, *ends), self._motion(run, *own))
             move_over(run, n)

@@ -18,15 +18,15 @@ from stickslip.problem import Problem
 
 MOST_OFFSETS = 12_000
 """Largest number of offsets that are followed: a round trip of more than a thousand pieces is not leaped over."""
-FASTEST = 0.02
+FASTEST_CHANGE = 0.02
 """Largest relative change of the slip rate in a round trip: above it the motion is not slow."""
-SAFETY = 4.0
+SAFETY_OF_ESTIMATE = 4.0
 """Bound of the error as a multiple of its estimate."""
 RATE_SHARE = 10.0
 """Largest relative error of the slip rate, as a multiple of the tolerance of slip."""
 PRECISION = 1e-10
 """Relative local error of the integration, far below that of the averaged equations."""
-HALVINGS = 8
+BISECTIONS_OF_STEP = 8
 """Number of bisections that look for the end of slow sliding within a step of the integration."""
 STEP_COST, STRETCH_COST = 400, 10
 """Cost of a step of the integration, in pieces of history that are computed meanwhile, and what each stretch adds to it."""
@@ -142,7 +142,7 @@ class SlowLeaps:
         low, high = step.begin, step.end
         if self._is_slow(step.between(high)):
             return high
-        for _ in range(HALVINGS):
+        for _ in range(BISECTIONS_OF_STEP):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self._is_slow(step.between(middle)) else (low, middle)
         return low
@@ -157,14 +157,14 @@ class SlowLeaps:
     def _is_slow(self, y: Floats) -> bool:
         """Return True if the motion is slow in a state, and its error is allowed."""
         now = self.motion.at(y)
-        if not (np.isfinite(now.change).all() and now.rises and now.pace <= FASTEST):
+        if not (np.isfinite(now.change).all() and now.rises and now.pace <= FASTEST_CHANGE):
             return False
         if self.problem.body.has_inertia and self.motion.push(y) > PUSHED * self.tolerance:
             return False
         quickest, off = max(self.quickest, now.pace), y - y[BOTH]
         off[:, -1] += now.slip_begins - now.slip_begins[BOTH]
         off[:, : self.motion.size] += now.quicker - now.quicker[BOTH]
-        error = SAFETY * (quickest * np.abs(off[PLAIN]) + np.abs(off[HEAVY]))
+        error = SAFETY_OF_ESTIMATE * (quickest * np.abs(off[PLAIN]) + np.abs(off[HEAVY]))
         if error[-1] > self.tolerance * (self.slipped + y[BOTH, -1]):
             return False
         if error[: self.motion.size].max() > RATE_SHARE * self.tolerance:

@@ -32,7 +32,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.contact import Sliding, steady_slidings
-from stickslip.engine.creep.landing import SHORTEST_LEAP, LookedFor
+from stickslip.engine.creep.landing import ROUNDING_OF_NUMBER, SHORTEST_LEAP, LookedFor
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.steady_landing import Deviation, Leap, SteadyLanding
 from stickslip.engine.state.layout import Floats
@@ -47,8 +47,6 @@ BELOW_REST = 1e-6
 """Largest share of the slip rate by which a deviation may reach below rest: the contact then rests for a moment of that size."""
 ROOM = 1.001
 """Slopes of friction are bounded over a range of slip rates that reaches this much farther than the deviation."""
-ROUNDING = 4e-16
-"""Rounding of a number, as a share of it."""
 
 
 class Tried(NamedTuple):
@@ -93,7 +91,7 @@ class Tried(NamedTuple):
         It may be slower than steady sliding by `slower` (m/s): the contact rests where its rate would be below zero. A factor is 0
         if it leaves less of the deviation than rounding does.
         """
-        kept = abs(factor) * self.deviation.largest_rate > ROUNDING * self.rate
+        kept = abs(factor) * self.deviation.largest_rate > ROUNDING_OF_NUMBER * self.rate
         time, sign = self.trips * self.turn, math.copysign(1.0, self.sliding.rate)
         error += time * max(slower - self.rate, 0.0)
         return Leap(self.trips, factor if kept else 0.0, time * self.rate + sign * beyond, error)

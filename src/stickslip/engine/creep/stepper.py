@@ -32,9 +32,9 @@ LONGEST_SPENT = 4096
 """Largest number of round trips that are waited for because a search for a leap took as long as they do."""
 FAST = 1000.0
 """A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
-CHECKED = 1
+TRIPS_CHECKED = 1
 """Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
-STEPS = 10_000
+STEPS_OF_CALL = 10_000
 """Number of steps in one call of the engine."""
 
 
@@ -65,7 +65,7 @@ class LeapStepper:
         if not self._creeps(run):
             count.pause_at, count.pause_for = count.trip + 1, 1
             return
-        planner = self._planner(run, run.last[0] - CHECKED - 2 - int(count.trip))
+        planner = self._planner(run, run.last[0] - TRIPS_CHECKED - 2 - int(count.trip))
         plan = planner.plan()
         if planner.at_end and count.to_the_end == 0:
             run.cut_at_end()
@@ -85,7 +85,7 @@ class LeapStepper:
         The engine does not pause meanwhile, so that it may pass over echoes under which nothing slips.
         """
         count = run.count
-        found, at_end, cost = self._look(run, int(run.last[0] - CHECKED - 2 - count.trip))
+        found, at_end, cost = self._look(run, int(run.last[0] - TRIPS_CHECKED - 2 - count.trip))
         if at_end and count.to_the_end == 0:
             run.cut_at_end()
         lands = found is not None and self._lands(run, found)
@@ -117,8 +117,8 @@ class LeapStepper:
         self.taken[count.creep_leaps :] = [(begun, found.trips, *found.errors)]
         count.creep_leaps += 1
         landed, slip = int(count.trip), float(run.state.slip_now)
-        count.pause_at = landed + CHECKED
-        if self._goes_on(run, landed + CHECKED, may_rest=found.may_rest):
+        count.pause_at = landed + TRIPS_CHECKED
+        if self._goes_on(run, landed + TRIPS_CHECKED, may_rest=found.may_rest):
             expected, allowed = found.expected(run, slip, int(count.trip) - landed, self.tolerance)
             if abs(float(run.state.slip_now) - expected) <= allowed:
                 return True
@@ -127,7 +127,7 @@ class LeapStepper:
 
     def _goes_on(self, run: LeapingRun, row: int, *, may_rest: bool) -> bool:
         """Compute exact round trips up to a row; return False if a failure comes first, or a rest that is leaped over."""
-        while (code := run.step(STEPS)) in (Stop.NONE, Stop.FULL):
+        while (code := run.step(STEPS_OF_CALL)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
                 run.reserve(2 * len(run.store.pieces))
         return code == Stop.PAUSED and (run.count.trip == row or may_rest)

@@ -32,11 +32,11 @@ import numpy as np
 
 from stickslip.engine.creep.averaged import Strength
 
-SAFETY = 4.0
+SAFETY_OF_TERMS = 4.0
 """Bound of the error as a multiple of the terms that are left out."""
 SWINGS = 0.75
 """Square of the damping, as a share of the critical one's, below which a block swings."""
-NODES, WEIGHTS = (np.asarray(one) for one in np.polynomial.legendre.leggauss(8))
+SWING_NODES, SWING_WEIGHTS = (np.asarray(one) for one in np.polynomial.legendre.leggauss(8))
 """Places and weights of Gauss' rule on [-1, 1]."""
 
 
@@ -124,7 +124,7 @@ class SwingingBlock:
     def start(self, rate: float) -> Swing:
         """Return the swing at the moment when the leap begins, with this slip rate (m/s) and no slip yet."""
         place, amplitude = self.at(0.0), 0.0
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS_TO_START):
             if not place.frequency > 0.0:
                 break
             off = self.time(place, amplitude) * place.rate
@@ -138,10 +138,10 @@ class SwingingBlock:
     def turns(self, begin: float, end: float) -> float:
         """Return the growth of theta (rad) from one slip of the slow motion to another (m)."""
         half = 0.5 * (end - begin)
-        k = self.spring + self.strength.slopes(begin + half * (1.0 + NODES))
+        k = self.spring + self.strength.slopes(begin + half * (1.0 + SWING_NODES))
         damped = (0.5 * self.damping / self.mass) ** 2
         w = np.sqrt(np.maximum(k / self.mass - damped, 0.0))
-        return half * float(WEIGHTS @ (w * k)) / (self.spring * self.speed)
+        return half * float(SWING_WEIGHTS @ (w * k)) / (self.spring * self.speed)
 
     @cached_property
     def scale(self) -> float:
@@ -149,5 +149,5 @@ class SwingingBlock:
         return self.speed * math.sqrt(self.mass / self.spring)
 
 
-ROUNDS = 6
+ROUNDS_TO_START = 6
 """Number of rounds that match the slow motion to the load at the start: each gains as many digits as a cycle is short."""

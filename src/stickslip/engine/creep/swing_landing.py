@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.engine.creep.landing import WrittenMotion, continue_after, move_over, seen, write_piece
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.planner import hermite
-from stickslip.engine.creep.slow import PLACES, to_powers
+from stickslip.engine.creep.slow import PLACES_OF_OFFSETS, to_powers
 from stickslip.engine.creep.slow_landing import ROUNDINGS
 from stickslip.engine.creep.swing_leaps import LastPeriods, SwingLeap, nodes_of, stretches
 from stickslip.engine.state.layout import TERMS, Floats
@@ -79,8 +79,8 @@ class SwingLanding:
         """Write a part of the period (as shares of it) on which the leap lands, and move the contact to its end."""
         begin, end = part
         rate, period = np.zeros(TERMS), self.leap.period
-        _, rates = self._last.at(begin + (end - begin) * PLACES)
-        rate[: len(PLACES)] = to_powers(rates)
+        _, rates = self._last.at(begin + (end - begin) * PLACES_OF_OFFSETS)
+        rate[: len(PLACES_OF_OFFSETS)] = to_powers(rates)
         self._write(run, n, (trip, begin * period, end * period), (self.trips + begin) * period, rate)
 
     def _write(self, run: LeapingRun, n: int, when: tuple[int, float, float], since: float, rate: Floats) -> None:

@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.engine.creep.averaged import Strength
-from stickslip.engine.creep.landing import SHORTEST_LEAP
+from stickslip.engine.creep.landing import ROUNDING_OF_NUMBER, SHORTEST_LEAP
 from stickslip.engine.creep.leaping_run import LeapingRun
 from stickslip.engine.creep.planner import INTERPOLATION, hermite
-from stickslip.engine.creep.swing import SAFETY, CreepPlace, Swing, SwingingBlock
+from stickslip.engine.creep.swing import SAFETY_OF_TERMS, CreepPlace, Swing, SwingingBlock
 from stickslip.engine.state.layout import Floats
 from stickslip.problem import Problem, default_event_rate
 
@@ -24,15 +24,13 @@ FIRST_STRIDE = 64.0
 """First stride, in slips of the driver in a radian of the free oscillation."""
 AGREE = 1e-9
 """Largest relative difference between the angle over a stride and that over its two halves."""
-CLOSE = 1e-13
+CLOSE_LANDING = 1e-13
 """Share of a stride within which the place of the landing is found."""
-ROUNDING = 4e-16
-"""Rounding of a number, as a share of it."""
 LAG = (10.0 * math.pi) ** 1.5 / (6.0 * math.pi)
 """By this times (w'/w^2)^(3/2) the angle of a swing that touches rest lags, as a share of itself: the rest that it includes."""
 MOST_ROUNDS = 30
 """Largest number of rounds of Newton's method to that place."""
-HALVINGS = 30
+BISECTIONS_OF_STRIDE = 30
 """Number of bisections that look for the largest k in a stride."""
 MOST_STRIDES = 4000
 """Largest number of strides in a leap."""
@@ -69,18 +67,18 @@ class SwingLeap:
             place = self.block.at(slip)
             last, off = abs(off), (time - self.block.time(place, size)) * place.rate
             slip = min(max(slip + off, low), high)
-            if abs(off) <= CLOSE * (high - low) or abs(off) >= last:
+            if abs(off) <= CLOSE_LANDING * (high - low) or abs(off) >= last:
                 break
         return reached(self.block, before, slip)
 
     def error(self, mark: CreepMark) -> float:
         """Return the error of slip (m): at most the whole swing, and no more than the angle may be wrong by."""
         place, slip = mark.swing.place, abs(self.slip) + mark.swing.place.slip
-        angle = mark.missed + abs(place.drift) + ROUNDING * (mark.swing.angle + place.frequency * mark.time)
+        angle = mark.missed + abs(place.drift) + ROUNDING_OF_NUMBER * (mark.swing.angle + place.frequency * mark.time)
         return (
-            mark.swing.amplitude * min(2.0, SAFETY * angle)
-            + SAFETY * place.most * self.block.quickness(place) ** 2
-            + ROUNDING * slip
+            mark.swing.amplitude * min(2.0, SAFETY_OF_TERMS * angle)
+            + SAFETY_OF_TERMS * place.most * self.block.quickness(place) ** 2
+            + ROUNDING_OF_NUMBER * slip
         )
 
 
@@ -108,7 +106,7 @@ def _least_action(block: SwingingBlock, begin: CreepPlace, end: CreepPlace) -> f
     if not begin.bend > 0.0 > end.bend:
         return math.inf
     low, high = begin.slip, end.slip
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS_OF_STRIDE):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if block.strength.curvature(middle) > 0.0 else (low, middle)
     top = block.at(0.5 * (low + high))

@@ -16,13 +16,13 @@ from stickslip.foundation.kernels.memory.addresses import room_for
 
 REVERSED = 14
 """Order of the reversed series (1): rounding grows with it, to 1e-13 here."""
-ROWS = REVERSED + 1
+TERMS_OF_FOLD = REVERSED + 1
 """Number of its terms (1)."""
-TABLE = ROWS * ROWS
+TABLE = TERMS_OF_FOLD * TERMS_OF_FOLD
 """Numbers (1) in a table of such series."""
 ENOUGH = 1e-12
 """Largest sum of the last two terms (1), relative to the time to the fold, for the fold to count as found."""
-ALIKE = 0.03
+ALIKE_ESTIMATES = 0.03
 """If two estimates of the time to the fold differ by more than this (relative, 1), no fold is sought."""
 
 
@@ -38,7 +38,7 @@ def time_to_root(jet: Floats) -> float:
         return NONE
     time = (n - 1.5) / n * jet[n - 1] / jet[n]
     before = (n - 2.5) / (n - 1) * jet[n - 2] / jet[n - 1]
-    return time if abs(before - time) <= ALIKE * time and time < math.inf else NONE
+    return time if abs(before - time) <= ALIKE_ESTIMATES * time and time < math.inf else NONE
 
 
 @kernel
@@ -51,16 +51,16 @@ def reversed_series(jet: Floats, time: float, out: Floats) -> None:
     for n in range(TABLE):
         powers[n] = 0.0
     out[0], out[1] = 0.0, 2.0
-    powers[ROWS + 1] = 2.0
-    for n in range(2, ROWS):
+    powers[TERMS_OF_FOLD + 1] = 2.0
+    for n in range(2, TERMS_OF_FOLD):
         out[n] = 0.0
         scale = 1.0
         for j in range(2, n + 1):
             for m in range(1, n - j + 2):
-                powers[ROWS * j + n] += powers[ROWS + m] * powers[ROWS * (j - 1) + n - m]
+                powers[TERMS_OF_FOLD * j + n] += powers[TERMS_OF_FOLD + m] * powers[TERMS_OF_FOLD * (j - 1) + n - m]
             scale *= time
-            out[n] -= jet[j] / jet[1] * scale * powers[ROWS * j + n]
-        powers[ROWS + n] = out[n]
+            out[n] -= jet[j] / jet[1] * scale * powers[TERMS_OF_FOLD * j + n]
+        powers[TERMS_OF_FOLD + n] = out[n]
 
 
 @kernel
@@ -72,7 +72,7 @@ def fold_ahead(jet: Floats) -> tuple[float, float]:
     time = time_to_root(jet)
     if time == NONE:
         return NONE, 0.0
-    series = room_for(ROWS)
+    series = room_for(TERMS_OF_FOLD)
     reversed_series(jet, time, series)
     if not abs(series[REVERSED]) + abs(series[REVERSED - 1]) <= ENOUGH:
         return NONE, 0.0

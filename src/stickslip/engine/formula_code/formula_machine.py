@@ -18,10 +18,10 @@ import llvmlite.binding as llvm
 import llvmlite.ir as ir
 
 from stickslip.foundation.kernels.code import Kept, loaded
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 from stickslip.foundation.kernels.processor import PROCESSOR
 
-VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
+VECTOR = ir.VectorType(ir.DoubleType(), SIMD_WIDTH)
 FUSED = ("contract",)
 """Flags of instructions: a product and a sum may be fused into one operation, as in kernels (`kernels.OPTIONS`)."""
 NUMBER, PLACE, WHOLE, NOTHING = ir.DoubleType(), ir.IntType(32), ir.IntType(64), ir.VoidType()
@@ -143,7 +143,7 @@ class _Body:
         raise NotImplementedError(ast.unparse(node))
 
     def _constant(self, number: float) -> Any:
-        return ir.Constant(self.kind, [number] * WIDTH if self.kind == VECTOR else number)
+        return ir.Constant(self.kind, [number] * SIMD_WIDTH if self.kind == VECTOR else number)
 
     def _operation(self, op: ast.operator, a: Any, b: Any) -> Any:
         if isinstance(op, ast.Pow):
@@ -193,7 +193,7 @@ class _Body:
 
     def _by_llvm(self, name: str, given: list[Any]) -> Any:
         """Write the call of a function that LLVM has for floats and for vectors."""
-        ending = f"v{WIDTH}f64" if self.kind == VECTOR else "f64"
+        ending = f"v{SIMD_WIDTH}f64" if self.kind == VECTOR else "f64"
         return self._to(_declared(self.function.module, f"llvm.{name}.{ending}", self.kind, len(given)), given)
 
     def _by_library(self, name: str, given: list[Any]) -> Any:
@@ -222,7 +222,7 @@ class _Body:
         if self.kind == NUMBER:
             return self._to(function, given)
         result: Any = ir.Constant(VECTOR, ir.Undefined)
-        for n in range(WIDTH):
+        for n in range(SIMD_WIDTH):
             place = ir.Constant(PLACE, n)
             one = self._to(function, [self.builder.extract_element(x, place) for x in given])
             result = self.builder.insert_element(result, one, place)
@@ -230,8 +230,8 @@ class _Body:
 
     def _power_of_two(self, n: Any) -> Any:
         """Write 2^n for a whole number n that is given as a float (see `simd.power_of_two`)."""
-        whole = ir.VectorType(WHOLE, WIDTH) if self.kind == VECTOR else WHOLE
-        bias, places = (ir.Constant(whole, [x] * WIDTH if self.kind == VECTOR else x) for x in (1023, 52))
+        whole = ir.VectorType(WHOLE, SIMD_WIDTH) if self.kind == VECTOR else WHOLE
+        bias, places = (ir.Constant(whole, [x] * SIMD_WIDTH if self.kind == VECTOR else x) for x in (1023, 52))
         biased = self.builder.add(self.builder.fptosi(n, whole), bias)
         return self.builder.bitcast(self.builder.shl(biased, places), self.kind)
 

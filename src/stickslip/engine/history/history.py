@@ -45,7 +45,7 @@ class Epoch(NamedTuple):
 OFFSET_ROUNDING = 1e-13
 """Rounding of the offsets of consecutive pieces, relative to the length of a round trip."""
 
-BLOCK = 1024
+PIECES_IN_CACHE = 1024
 """Number of pieces that are integrated together: it keeps the memory bounded, and the data in the cache."""
 
 START = Epoch(0, 0.0)
@@ -356,7 +356,7 @@ class History:
         """Return the slip from each of several recorded positions to a later one, m, with the precision of `slipped_since`."""
         past = np.cumsum(end.piece - begin.piece)
         crossed = np.arange(past[-1] if len(past) else 0) + np.repeat(end.piece - past, end.piece - begin.piece)
-        blocks = np.array_split(crossed, len(crossed) // BLOCK + 1)
+        blocks = np.array_split(crossed, len(crossed) // PIECES_IN_CACHE + 1)
         whole = np.concatenate([self.grown(Positions.inside(block, 1.0)) for block in blocks])
         sums = np.empty(len(past))
         add_up(whole, past, sums)

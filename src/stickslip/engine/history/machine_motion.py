@@ -27,7 +27,7 @@ FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
 EARLY = 1e-9
 """Times up to this share of themselves before the start of a motion are at the start, by rounding."""
-NODES, WEIGHTS = (values / 2.0 for values in np.polynomial.legendre.leggauss(TERMS + 1))
+MOTION_NODES, MOTION_WEIGHTS = (values / 2.0 for values in np.polynomial.legendre.leggauss(TERMS + 1))
 """Places and weights of the Gauss-Legendre rule, exact for products of two polynomials of a part; places count from its middle."""
 
 
@@ -123,10 +123,10 @@ class MachineMotion:
         (first, last), (low, high) = self._placed(np.array([begin, end]))
         n = np.arange(first, last + 1)
         from_xi, to_xi = np.where(n == first, low, 0.0), np.where(n == last, high, 1.0)
-        xi = (0.5 * (from_xi + to_xi))[:, None] + (to_xi - from_xi)[:, None] * NODES
-        each = np.repeat(n, len(NODES))
+        xi = (0.5 * (from_xi + to_xi))[:, None] + (to_xi - from_xi)[:, None] * MOTION_NODES
+        each = np.repeat(n, len(MOTION_NODES))
         pace = self.speed[n, None] + 2.0 * self.bend[n, None] * xi
-        values = density(each, xi.ravel()).reshape(xi.shape) * pace * WEIGHTS
+        values = density(each, xi.ravel()).reshape(xi.shape) * pace * MOTION_WEIGHTS
         return float((values.sum(axis=1) * (to_xi - from_xi)).sum())
 
 

@@ -17,11 +17,11 @@ from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
 from stickslip.foundation.arrays import Integers1
 from stickslip.foundation.kernels.kernels import entry, kernel
 
-NOTHING = -1
+NO_RECORDED_PIECE = -1
 """Marks a phase without a recorded piece."""
-LEVELS = 64
+HALVINGS_OF_INDEX = 64
 """Largest number of halvings of an index or of a range of indices: they have 64 bits."""
-FEW = 64
+RECENT_PIECES = 64
 """Number of recent pieces that are searched first for the waves in the body."""
 
 
@@ -30,7 +30,7 @@ def _collect(first: Integers1, past: Integers1, leaves: int, place: Integers1, m
     """Enter each piece into the nodes that make up its interval, from place[node] on; with empty `members`, only count them."""
     for n in range(len(first)):
         low, high = first[n] + leaves, past[n] + leaves
-        for _ in range(LEVELS):
+        for _ in range(HALVINGS_OF_INDEX):
             if low >= high:
                 break
             if low & 1:
@@ -53,7 +53,7 @@ def _put(node: int, n: int, place: Integers, members: Integers) -> None:
 @kernel
 def _last(members: Integers, begin: int, end: int, upto: int) -> int:
     """Return the index of the last of members[begin:end] (ascending) that is at most `upto`; begin - 1 if there is none."""
-    for _ in range(LEVELS):
+    for _ in range(HALVINGS_OF_INDEX):
         if begin >= end:
             break
         middle = (begin + end) // 2
@@ -68,7 +68,7 @@ def _last(members: Integers, begin: int, end: int, upto: int) -> int:
 def _latest(begins: Integers1, members: Integers1, leaf: Integers1, upto: Integers1, found: Integers1) -> None:
     """Find, for each leaf (by the number of its node), the last piece up to upto[q] in any node on the way to the root."""
     for q in range(len(leaf)):
-        node, found[q] = leaf[q], NOTHING
+        node, found[q] = leaf[q], NO_RECORDED_PIECE
         while node >= 1:
             place = _last(members, begins[node], begins[node + 1], upto[q])
             if place >= begins[node]:
@@ -79,7 +79,7 @@ def _latest(begins: Integers1, members: Integers1, leaf: Integers1, upto: Intege
 @entry
 def _standing(begins: Integers1, members: Integers1, upto: int, best: Integers1) -> None:
     """Find, for every node from the root down, the last piece up to `upto` that covers it."""
-    best[0] = NOTHING
+    best[0] = NO_RECORDED_PIECE
     for node in range(1, len(best)):
         place = _last(members, begins[node], begins[node + 1], upto)
         best[node] = max(best[node // 2], members[place]) if place >= begins[node] else best[node // 2]
@@ -131,7 +131,7 @@ class Phases:
         leaf = best[self.leaves : self.leaves + len(self.edges) - 1]
         first = np.flatnonzero(np.append(True, leaf[1:] != leaf[:-1]))
         low, high, piece = self.edges[first], self.edges[np.append(first[1:], len(leaf))], leaf[first]
-        known = piece != NOTHING
+        known = piece != NO_RECORDED_PIECE
         return piece[known], low[known], high[known]
 
 
@@ -140,7 +140,7 @@ def standing_behind(store: Store, round_trip_time: float) -> tuple[NDArray[np.in
 
     The search goes back only until every phase is known.
     """
-    looked = FEW
+    looked = RECENT_PIECES
     while True:
         first = max(len(store.pieces) - looked, 0)
         recent = trimmed(store, len(store.pieces), first)

@@ -11,7 +11,7 @@ from stickslip.foundation.names import name_of
 from stickslip.foundation.show import brief, in_turns
 from stickslip.problem import Problem
 
-DIGITS = 8
+DIGITS_OF_SLIP = 8
 """Number of significant digits of a slip in a summary, as in its tables."""
 SAME_REACH = 1e-9
 """Relative difference of two displacements that is rounding."""
@@ -31,7 +31,7 @@ class Reach:
             return self
         return Reach(self.end, other.largest, other.time)
 
-    def text(self, problem: Problem, digits: int = DIGITS) -> str:
+    def text(self, problem: Problem, digits: int = DIGITS_OF_SLIP) -> str:
         """Return the slip at the end and the largest displacement, in one line."""
         unit, name = problem.unit_of("slip"), name_of("slip", problem.load_unit)
         largest = largest_of(unit)
@@ -50,7 +50,7 @@ def largest_of(unit: str) -> str:
     return f"largest {'rotation' if unit == 'rad' else 'displacement'}"
 
 
-def shown_slip(value: float, unit: str, digits: int = DIGITS) -> str:
+def shown_slip(value: float, unit: str, digits: int = DIGITS_OF_SLIP) -> str:
     """Return a slip for readers; an angle also in turns if it has one or more."""
     return brief(value, unit, digits) + (in_turns(value) if unit == "rad" else "")
 

@@ -22,7 +22,7 @@ LAST_THIRD = 2.0 / 3.0
 """After this share of a run (1), transients from its start count as over."""
 HARDLY = 0.01
 """A contact that never rests counts as sticking below this share of the pull rate (1)."""
-NEGLIGIBLE = 1e-9
+NEGLIGIBLE_REMAINDER = 1e-9
 """Share of a run (1) that may be the rounding of its parts."""
 NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
@@ -117,7 +117,7 @@ def time_slipping_in(table: Integers2, round_trip_time: float, begin: float, end
 def rest_of(slipping: float, length: float) -> float:
     """Return the share (1) of rest in a length of time (s), given the time of slip; a share that may be rounding counts as 0."""
     share = 1.0 - slipping / length
-    return share if share > NEGLIGIBLE else 0.0
+    return share if share > NEGLIGIBLE_REMAINDER else 0.0
 
 
 def time_creeping(creep: Floats, round_trip_time: float, begin: float, end: float) -> float:

@@ -34,7 +34,7 @@ LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""
-SAME = (
+FIXED_COUNTS = (
     *("is_block", "has_inertia", "is_algebraic", "states", "given", "reverses", "sticks", "knots_in_rate", "varies"),
     *("driven", "one_way", "cells", "first_side", "joined", "folds_follow_slip"),
 )
@@ -186,7 +186,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
 
 def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
     """Yield a check of each number that the engine uses as a code, a flag or a number of round trips."""
-    yield "engine_count: what follows from the problem", (_places(count, *SAME) != _places(fresh, *SAME)).any()
+    yield "engine_count: what follows from the problem", (_places(count, *FIXED_COUNTS) != _places(fresh, *FIXED_COUNTS)).any()
     yield "engine_count: a flag", _outside(_places(count, *FLAGS), 0, 1)
     yield "engine_count: a direction", _outside(_places(count, *SIGNS), -1, 1)
     yield "engine_count: a number of round trips or steps", _outside(_places(count, *NOT_NEGATIVE), 0, at.NEVER)

@@ -10,7 +10,7 @@ from stickslip.engine.state.workspace import NO_WAVES
 from stickslip.foundation.code_key import key_of_folders
 from stickslip.foundation.kernels.code import SOURCES
 
-DECIDE = ("contact", "engine", "friction", "problem", "run", "solution")
+RUN_CODE = ("contact", "engine", "friction", "problem", "run", "solution")
 """Folders of the package whose code decides the result of a run."""
 
 
@@ -45,7 +45,7 @@ def engine_key(*beside: str) -> str:
     """
     if beside:  # few files, and the key of all others came with the package
         return key_of_folders(beside, engine_key())
-    return key_of_folders(DECIDE, SOURCES)
+    return key_of_folders(RUN_CODE, SOURCES)
 
 
 def rounding_note(steps: int, share: float) -> str:

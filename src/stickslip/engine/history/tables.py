@@ -81,13 +81,13 @@ def creep_note(history: History) -> str:
     return f"{note}; {_lasts(history.problem)}" if ends and not cycles and _slides_steadily(history) else note
 
 
-ROUNDING = 1e-15
+END_ROUNDING = 1e-15
 """Rounding of slip and times at the end of a run, relative to them."""
 
 
 def _error_of(history: History, slip: float, time: float) -> str:
     """Return a few words on the error of leaps: of slip, in its unit, and of time (s), neither of which is known below rounding."""
-    least = ROUNDING * abs(float(history.slipped(Positions.inside(len(history) - 1, 1.0))[0])), ROUNDING * history.duration
+    least = END_ROUNDING * abs(float(history.slipped(Positions.inside(len(history) - 1, 1.0))[0])), END_ROUNDING * history.duration
     if slip <= least[0] and time <= least[1]:
         return "error no larger than rounding"
     return f"error at most {max(slip, least[0]):.1e} {history.problem.unit_of('slip')} of slip, {max(time, least[1]):.3g} s of time"

@@ -13,7 +13,7 @@ from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.pointers import record_at
 from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_inside
 
-SAME = 1e-12
+NEAR_THRESHOLD = 1e-12
 """If a slip rate is closer to the threshold, or a bound closer to zero, than this (relative), rounding may decide its sign."""
 SLACK = 1e-6
 """A rise on the way to rest, or a fall on the way from it, by less than this share of the threshold is rounding and no turn."""
@@ -144,7 +144,7 @@ def points_in_piece(search: Search, n: int, first: bool, threshold: float, so_fa
         above = True
     monotone, last = is_monotone(p, slope), total(p)
     p[0] -= threshold
-    stays = monotone and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
+    stays = monotone and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > NEAR_THRESHOLD * last
     crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places, search.spare.spare)
     for i in range(crossed):
         above = not above
@@ -203,7 +203,7 @@ def keeps_its_sign(c: Floats) -> bool:
     They come from Bernstein coefficients, or from Horner's rule in interval arithmetic, after leading zeros are divided out. A root
     at 1 may lie inside by rounding, and counts.
     """
-    if c[0] > 0.0 and bound_below(c) > SAME * c[0]:
+    if c[0] > 0.0 and bound_below(c) > NEAR_THRESHOLD * c[0]:
         return True
     if c[0] > 0.0 and total(c) < 0.0:
         return False

@@ -8,11 +8,11 @@ from stickslip.engine.input.ladder import (
     sides_of,  # Yield the sides of the contact as they are at the start.
 )
 from stickslip.engine.input.prepare import (
-    SAFETY,  # Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md).
+    SHARE_OF_TOLERANCE,  # Share of rtol allowed in a step: leaves the error of a whole run below rtol (see docs/numerics.md).
 )
 
 __all__ = [
-    "SAFETY",
+    "SHARE_OF_TOLERANCE",
     "is_algebraic",
     "ladder_of",
     "sides_of",

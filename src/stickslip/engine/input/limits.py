@@ -19,13 +19,13 @@ import math
 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
-from stickslip.problem import MOST_PIECES, PATIENCE, Problem, check_round_trips, leaps_but_for_pull, lumps_by_itself
+from stickslip.problem import EXACT_TRIPS, MOST_PIECES, Problem, check_round_trips, leaps_but_for_pull, lumps_by_itself
 
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
-    """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
+    """Have the engine pause when a run that leaps automatically has had EXACT_TRIPS round trips with slip."""
     if creep_rtol is None and leaps_but_for_pull(problem):
-        count.creep_in = PATIENCE
+        count.creep_in = EXACT_TRIPS
 
 
 def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None:

@@ -38,8 +38,8 @@ def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tupl
 def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
     """Set the numbers that depend on the tolerance, in `Setup.params` or in one with a column for each member."""
     set_length(params, shortest)
-    params.tolerance, params.relative_jump = rtol * SAFETY, at_least(1e-10, 10.0 * rtol)
-    params.first_disc = first_disc(rtol * SAFETY)
+    params.tolerance, params.relative_jump = rtol * SHARE_OF_TOLERANCE, at_least(1e-10, 10.0 * rtol)
+    params.first_disc = first_disc(rtol * SHARE_OF_TOLERANCE)
 
 
 def first_disc(tolerance: Any) -> Any:
@@ -140,7 +140,7 @@ SMALLEST, SLOWEST = 1e-300, 1e-12
 """Slip rates that are resolved to the last digit: any (m/s) if slip begins from rest; down to this share of the law's own rate
 scale if friction has no rest.
 """
-SAFETY = 0.1
+SHARE_OF_TOLERANCE = 0.1
 """Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
 
 

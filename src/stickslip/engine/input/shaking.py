@@ -18,7 +18,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Ground, Inflow, Problem, Tone, inflow_of, tone_of
 
-STILL = 1e-15
+STILL_GROUND = 1e-15
 """Ground whose velocity is below this share of its largest one (1) is at rest: the rest is rounding of sums."""
 
 
@@ -156,7 +156,7 @@ def _moved(ground: Ground, start: Floats, middle: Floats) -> tuple[Floats, Float
     n = np.maximum(np.searchsorted(ground.start, middle, side="right") - 1, 0)
     since, begun = start - ground.start[n], middle >= 0.0
     v = ground.velocity[n] + since * (ground.acceleration[n] + 0.5 * since * ground.jerk[n])
-    v[np.abs(v) <= STILL * np.abs(ground.velocity).max()] = 0.0
+    v[np.abs(v) <= STILL_GROUND * np.abs(ground.velocity).max()] = 0.0
     a = ground.acceleration[n] + since * ground.jerk[n]
     velocity = np.array([v, a, 0.5 * ground.jerk[n]]) * begun
     acceleration = np.array([a, ground.jerk[n], np.zeros(len(n))]) * begun

@@ -1,8 +1,8 @@
 # What others take from engine.lanes. Each name is imported when it is first used; all else is the room's own.
 
 from stickslip.engine.lanes.reduction import (
-    COLUMNS,  # Names of these numbers, in the order of their columns in a table of results.
     OF_EVENTS,  # Columns that need slip events.
+    REDUCED_COLUMNS,  # Names of these numbers, in the order of their columns in a table of results.
     Reduced,  # Hold the numbers that are kept of each run, in SI units; NaN where a run has none.
     # Write the numbers that describe a run of which only the last pieces are known, but keep what all pieces determine.
     fold_end,
@@ -36,10 +36,10 @@ from stickslip.engine.lanes.workspace import (
 )
 
 __all__ = [
-    "COLUMNS",
     "LARGEST_CAPACITY",
     "OF_EVENTS",
     "QUANTITIES",
+    "REDUCED_COLUMNS",
     "Alike",
     "Group",
     "LaneStage",

@@ -16,7 +16,7 @@ from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import inlined
 from stickslip.foundation.kernels.memory.pointers import all_lanes, one_lane
 from stickslip.foundation.kernels.memory.records import MemoryRecord, floats_inside, inside
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 
 
 class LaneBlock(MemoryRecord):
@@ -54,7 +54,7 @@ class LaneBlock(MemoryRecord):
     rate_end: float  # m/s: slip rate at its end
     at_end: Floats = floats_inside(2)  # m, m/s: slip of the law and slip rate there
     to: float  # 1: place xi at which it ends
-    nowhere: Floats = floats_inside(HistoryPiece.total // WIDTH + 1)  # room for the history of a lane that takes no step
+    nowhere: Floats = floats_inside(HistoryPiece.total // SIMD_WIDTH + 1)  # room for the history of a lane that takes no step
     targets: float  # addresses of each lane's next free piece of the history
     constants: Floats = floats_inside(0)  # constants of the law, as many as it has
 

@@ -13,15 +13,15 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from stickslip.engine.contact.pieces import note_slip
-from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
+from stickslip.engine.contact.stiffness import STEPS_BETWEEN_CHECKS, judge_stiffness
 from stickslip.engine.contact_step.certificate import (
     ALLOWED,
     ALLOWED_SLOPE,
-    NEAR,
-    NEGLIGIBLE,
+    NEARLY_SMALL,
+    NEGLIGIBLE_FRICTION,
     ROUGH,
     ROUGH_SLOPE,
-    SMALLEST,
+    SMALLEST_RATE,
     begin_step,
     force_of_slope,
     force_on_disc,
@@ -40,7 +40,7 @@ from stickslip.engine.contact_step.keep_step import unload_bent, unload_straight
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
 from stickslip.engine.contact_step.taylor_step import duration_of, note_shock, unit_from
-from stickslip.engine.history.turning_points import SAME, Known
+from stickslip.engine.history.turning_points import NEAR_THRESHOLD, Known
 from stickslip.engine.lanes.lane_block import (
     LaneBlock,
     block_in_all_lanes,
@@ -68,9 +68,9 @@ from stickslip.engine.state.workspace import ROOM, RUN_SIZE, Run, borrow
 from stickslip.foundation.kernels.kernels import inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead, call_jet, call_radii, call_values, integers
 from stickslip.foundation.kernels.memory.pointers import numbers_of, rows_of
-from stickslip.foundation.kernels.memory.simd import WIDTH, chosen, first_of, store_across
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH, chosen, first_of, store_across
 
-PARTS = 3
+FUNCTIONS_OF_FORMULA = 3
 """Number of functions of a formula that work on lanes."""
 ROW = HistoryPiece.total
 """Number of places of a piece of the history."""
@@ -78,7 +78,7 @@ FIRST_FLOAT = HistoryPiece.places["phase_from"].first
 """First place of a piece of the history that is a float, as all that follow."""
 HISTORY, TARGETS, NOWHERE = Run.places["history"].first, LaneBlock.places["targets"].first, LaneBlock.places["nowhere"].first
 """Places of these fields."""
-ALL_LANES = 2**WIDTH - 1
+ALL_LANES = 2**SIMD_WIDTH - 1
 """A bit for each lane."""
 
 
@@ -119,12 +119,12 @@ class LaneStep(NamedTuple):
 def step_side_by_side(side: Side) -> None:
     """Take one step in each lane that waits for one; lanes under the same formula of the law step together."""
     waits = side.waits
-    for lane in range(WIDTH):
+    for lane in range(SIMD_WIDTH):
         if waits[lane] == Waits.FRESH or waits[lane] == Waits.SLIPPING:
             waits[lane] = -waits[lane]
-    for lane in range(WIDTH):
+    for lane in range(SIMD_WIDTH):
         if waits[lane] < 0:
-            step_under(ahead(side.jets, PARTS * run_in(side.table, lane).counts.piece), side)
+            step_under(ahead(side.jets, FUNCTIONS_OF_FORMULA * run_in(side.table, lane).counts.piece), side)
 
 
 @inlined
@@ -141,10 +141,10 @@ def step_under(formula: Integers, side: Side) -> None:
     """
     table, waits, jets, block, known, inspects = side
     lanes, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
-    targets, moves, is_block = integers(block + 8 * WIDTH * TARGETS), False, False
-    for lane in range(WIDTH):
-        run, targets[lane] = run_in(table, lane), block + 8 * WIDTH * NOWHERE
-        if waits[lane] < 0 and jets[PARTS * run.counts.piece] == formula[0]:
+    targets, moves, is_block = integers(block + 8 * SIMD_WIDTH * TARGETS), False, False
+    for lane in range(SIMD_WIDTH):
+        run, targets[lane] = run_in(table, lane), block + 8 * SIMD_WIDTH * NOWHERE
+        if waits[lane] < 0 and jets[FUNCTIONS_OF_FORMULA * run.counts.piece] == formula[0]:
             if waits[lane] == -Waits.FRESH:
                 put_in(run, lane_0[lane])
                 fresh |= 1 << lane
@@ -198,7 +198,7 @@ def choose_length(formula: Integers, step: LaneStep) -> None:
     prove(lanes, formula[1], moves, degree)
     largest = ALLOWED_SLOPE if moves else ALLOWED
     odd = taking & ~(lanes.share <= largest)
-    near = odd & (lanes.share <= largest * NEAR)
+    near = odd & (lanes.share <= largest * NEARLY_SMALL)
     if near != 0:  # as the search for a single run begins
         lanes.length = chosen(near, shortened(lanes.length, lanes.share, largest), lanes.length)
         prove(lanes, formula[1], moves, degree)
@@ -248,7 +248,7 @@ def prove(lanes: LaneBlock, radii: int, moves: bool, degree: int) -> None:
     else:
         missed = force / lanes.k.damping * lanes.shrunk
         resistance = lanes.k.damping
-    lanes.share = missed / max(size, SMALLEST)
+    lanes.share = missed / max(size, SMALLEST_RATE)
     lanes.state.residual = resistance * lanes.share * lanes.tolerance * size_of_rate(lanes.rate)
     lanes.state.unbalanced = 0.0
 
@@ -316,7 +316,7 @@ def check_end(lanes: LaneBlock, values: int, moves: bool, degree: int) -> int:
     lanes.state.residual = lanes.state.residual + abs(missing) + abs(lanes.state.unbalanced)
     sound = (missed <= rough * lanes.tolerance * size_at_end(rate, lanes.rate_end)) & (abs(lanes.rate_end) < math.inf)
     sound &= (rate[0] > 0.0) & (bound_below(rate) > 0.0)
-    return sound & ~(lanes.reference + k.normal * (value.mu + k.offset) < -NEGLIGIBLE * k.normal)
+    return sound & ~(lanes.reference + k.normal * (value.mu + k.offset) < -NEGLIGIBLE_FRICTION * k.normal)
 
 
 @inlined
@@ -349,7 +349,7 @@ def phase_in(state: State, xi: float) -> float:
 def store(lanes: LaneBlock, targets: Integers) -> None:
     """Write what the step leaves in the history there, but for whole numbers, where something else is left for `append`."""
     places = rows_of(lanes.row)
-    for first in range(ROW - WIDTH, FIRST_FLOAT - WIDTH, -WIDTH):
+    for first in range(ROW - SIMD_WIDTH, FIRST_FLOAT - SIMD_WIDTH, -SIMD_WIDTH):
         store_across(places, targets, max(first, 0))
 
 
@@ -390,7 +390,7 @@ def inspect(lanes: LaneBlock) -> tuple[int, int]:
     for n in range(TERMS - 1):
         slope[n] = (n + 1) * rate[n + 1] * way
     slope[TERMS - 1] = 0.0
-    proven = (slope[0] > 0.0) & (bound_below(slope) > SAME * slope[0])
+    proven = (slope[0] > 0.0) & (bound_below(slope) > NEAR_THRESHOLD * slope[0])
     return proven & rises, proven & ~rises
 
 
@@ -412,7 +412,7 @@ def append(run: Run, own: LaneBlock, first: bool) -> int:
         counts.jump = counts.cause = counts.stalled = counts.leaving_rest = 0
         counts.moved = 1
     counts.length = n + 1
-    if counts.steps % CHECKED == CHECKED - 1:
+    if counts.steps % STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS - 1:
         take_out(run, own)
         judge_stiffness(run)
     else:

@@ -50,11 +50,11 @@ class Reduced(MemoryRecord):
 
 reduced_at: Any = record_at(Reduced)
 """Function for compiled code that returns the record at a pointer or in an array."""
-COLUMNS = tuple(Reduced.places)
+REDUCED_COLUMNS = tuple(Reduced.places)
 """Names of these numbers, in the order of their columns in a table of results."""
-FIRST_OF_EVENTS, LAST_OF_EVENTS = COLUMNS.index("peak_rate"), COLUMNS.index("recurrence_cv")
+FIRST_OF_EVENTS, LAST_OF_EVENTS = REDUCED_COLUMNS.index("peak_rate"), REDUCED_COLUMNS.index("recurrence_cv")
 """The columns from the first to the second of these describe slip events, and so do the numbers of events and pulses."""
-OF_EVENTS = frozenset({"events", "pulses", *COLUMNS[FIRST_OF_EVENTS : LAST_OF_EVENTS + 1]})
+OF_EVENTS = frozenset({"events", "pulses", *REDUCED_COLUMNS[FIRST_OF_EVENTS : LAST_OF_EVENTS + 1]})
 """Columns that need slip events."""
 
 

@@ -1,6 +1,6 @@
 """Run many members in compiled code: the engine on each of them, and the reduction of its history to a few numbers.
 
-Each thread has one workspace with a lane for each of WIDTH members, and starts further members as lanes become free. Members take
+Each thread has one workspace with a lane for each of SIMD_WIDTH members, and starts further members as lanes become free. They take
 their explicit steps of slip side by side, unless their law demands steps taken alone (`steps_alone` of the batch): such members run
 to their end one after the other, all in the first lane. No Python code runs in between, so threads run in parallel. References to
 arrays are counted only when a run has ended.
@@ -15,7 +15,7 @@ from stickslip.engine.history.slip_events import EventTurns, events_in, group_tu
 from stickslip.engine.history.turning_points import FULL, Known, Search, Spare, Turn, find_turns, known_in, spare_in, turns_in
 from stickslip.engine.lanes.lanes import Side, Waits, step_side_by_side
 from stickslip.engine.lanes.reduction import (
-    COLUMNS,
+    REDUCED_COLUMNS,
     FoundEventsInMemory,
     Reduced,
     fold_events,
@@ -32,13 +32,13 @@ from stickslip.foundation.arrays import Floats2, Floats3, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import CallAt, ahead, call_prepare, floats, integers
 from stickslip.foundation.kernels.memory.pointers import numbers_of, whole_numbers_of
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 from stickslip.problem import BAD_PARAMETERS, Stop
 
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
 
-SIZES = Params.total, State.total, Counts.total
+LENGTHS_OF_RECORDS = Params.total, State.total, Counts.total
 """Lengths of these records."""
 run_until_at = CallAt("miidi", "i")
 """Call `loop.run_until`: table and its length, last row, last theta (s), budget."""
@@ -126,7 +126,7 @@ class Members(NamedTuple):
 def run_group(group: Group, base: Integers2, stride: Integers1, work: Workspace) -> int:
     """Run members, each in a lane of the workspace, and write their stop codes and numbers into the group.
 
-    base and stride are those of `workspace.table_of`. Returns WIDTH when all members are done or `stop` is set. Otherwise it
+    base and stride are those of `workspace.table_of`. Returns SIMD_WIDTH when all members are done or `stop` is set. Otherwise it
     returns the lane that has no room, or needs a part of the engine (code NEED_PART), or whose member has crept for so long (code
     PAUSED) that it should be run alone. Called again, it continues from there.
     """
@@ -153,7 +153,7 @@ def run_group(group: Group, base: Integers2, stride: Integers1, work: Workspace)
                     break
             waiting += lane.waits[0] != Waits.NONE
         if waiting == 0 or group.stop[0] != 0:
-            return WIDTH
+            return SIMD_WIDTH
         step_side_by_side(side)
 
 
@@ -222,11 +222,11 @@ def start_member(run: Run, members: Members, n: int) -> None:
     No caller continues the run after its end, so its end may cut pieces and leaps (`to_the_end`) from the start.
     """
     params, state, counts = numbers_of(run.params), numbers_of(run.state), whole_numbers_of(run.counts)
-    for k in range(SIZES[0]):
+    for k in range(LENGTHS_OF_RECORDS[0]):
         params[k] = members.params[n * members.stride + k]
-    for k in range(SIZES[1]):
+    for k in range(LENGTHS_OF_RECORDS[1]):
         state[k] = members.state[k]
-    for k in range(SIZES[2]):
+    for k in range(LENGTHS_OF_RECORDS[2]):
         counts[k] = members.counts[k]
     run.counts.to_the_end, run.counts.waits = 1, members.waits
 
@@ -307,4 +307,4 @@ def fold_events_of(lane: Lane, members: Members) -> bool:
 @inlined
 def reduced_of(lane: Lane, members: Members) -> Reduced:
     """Return the numbers of the member in a lane."""
-    return reduced_at(ahead(members.out, lane.member[0] * len(COLUMNS)))
+    return reduced_at(ahead(members.out, lane.member[0] * len(REDUCED_COLUMNS)))

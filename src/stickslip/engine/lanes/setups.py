@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.contact import FASTEST as FASTEST_SEARCHED
-from stickslip.contact import Pieces, find_turns, folds_of, levels
+from stickslip.contact import FASTEST_BOUNDED, Pieces, find_turns, folds_of, levels
 from stickslip.engine.compiled_formula import compile_formula, keep_with
 from stickslip.engine.input.asked import INPUTS
 from stickslip.engine.input.branch_table import is_algebraic, table_of_branches
@@ -33,11 +32,11 @@ from stickslip.friction.formula import bends_one_way
 from stickslip.problem import Problem, default_event_rate
 from stickslip.problem.scenarios import Scenario
 
-PARTS = 4
+PARTS_OF_FOLD = 4
 """Parts into which the interval of a fold is cut: few, because many folds are found together."""
 MOST_TURNS = 64
 """Largest number of turns of g, or of undecided intervals, that are distinguished."""
-FASTEST = 1e9
+FAST_FOLD = 1e9
 """Slip rates beyond this multiple of the contact's own scale S (variation of mu)/Z do not matter, as in `contact.equation`."""
 
 
@@ -178,7 +177,7 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     if not one_way:
         numbers = {name: spread(value, count) for name, value in zip(law.parameters(), values, strict=True)}
         members, slip = np.arange(count), spread(problem.law_slip, count)
-        ends_of_search = np.zeros(count), np.full(count, FASTEST_SEARCHED)
+        ends_of_search = np.zeros(count), np.full(count, FASTEST_BOUNDED)
         of = Pieces((tree,), 0 * members, members, numbers, slip, damping, normal, slowest, fastest, *ends_of_search)
         branches, edges = ends_of_branches(of)
     found = FoundBranches(BranchRow.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
@@ -194,7 +193,7 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
 def ends_of_branches(of: Pieces) -> tuple[Integers, Floats]:
     """Return the number of branches of each member, NEVER_RISES or TOO_MANY, and the slip rates (m/s) of their ends."""
     found = find_turns(of, most=MOST_TURNS)
-    rates, member = folds_of(of, found, PARTS)
+    rates, member = folds_of(of, found, PARTS_OF_FOLD)
     count = np.bincount(member, minlength=len(of.slip))
     rises = count % 2 == 0
     branches = (count + rises + 1) // 2
@@ -218,7 +217,7 @@ def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:
         sizes = [np.abs(getattr(law, name)) if unit == "m/s" else 1.0 / np.abs(getattr(law, name)) for name, unit in rates.items()]
         found = np.stack([own, *(spread(size, count) for size in sizes)])
         counts = (
-            (found > 0.0) & np.isfinite(found) & (found <= np.where(np.arange(len(found)) == 0, np.inf, FASTEST)[:, None] * own)
+            (found > 0.0) & np.isfinite(found) & (found <= np.where(np.arange(len(found)) == 0, np.inf, FAST_FOLD)[:, None] * own)
         )
     none = ~counts.any(axis=0)
     lowest, highest = (np.where(counts, found, fill) for fill in (np.inf, -np.inf))

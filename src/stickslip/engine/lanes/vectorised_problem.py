@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.contact import OF_LEVELS
 from stickslip.engine.input.branch_table import is_algebraic
-from stickslip.engine.lanes.reduction import COLUMNS
+from stickslip.engine.lanes.reduction import REDUCED_COLUMNS
 from stickslip.engine.state.layout import Floats
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.constants import RIGID
@@ -29,7 +29,7 @@ from stickslip.problem import (
     LARGEST_RTOL,
     LARGEST_SHARE,
     MOST_ROUND_TRIPS,
-    RTOL,
+    RUN_RTOL,
     Problem,
     check_round_trips,
     check_shortest_event,
@@ -43,7 +43,7 @@ Values = Mapping[str, Floats]
 Booleans = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
-QUANTITIES = COLUMNS
+QUANTITIES = REDUCED_COLUMNS
 """Names of the quantities that a batch can compute from a run."""
 ONE_AT_A_TIME = {
     "layered": "[body] a {}",
@@ -53,7 +53,7 @@ ONE_AT_A_TIME = {
 """What a batch does not follow, by kind of body or of driver: what its lanes know of waves is one echo at a constant share."""
 OF_MACHINES = ("body.driver_inertia", "body.driver_integral_gain")
 """The parameters that make a driver a machine."""
-RUN = {"duration": DURATION, "rtol": RTOL}
+RUN = {"duration": DURATION, "rtol": RUN_RTOL}
 """The entries of [run] in a scenario that may be varied."""
 
 

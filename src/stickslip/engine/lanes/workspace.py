@@ -19,13 +19,13 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
 from stickslip.foundation.arrays import Floats1, Floats2, Floats3, Floats4, Integers1, Integers2, Integers3
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Initial and largest room of a lane in pieces of history; a member that needs more is run by itself."""
 TURNS_PER_PIECE = 8
 """Initial room for points of the slip rate (`engine.history.turning_points`), for each piece of history."""
-LINE = 16
+NUMBERS_OF_TWO_LINES = 16
 """Numbers (of 8 bytes) in two cache lines, which processors fetch together. Addresses of lanes must be multiples of one line."""
 
 
@@ -82,11 +82,11 @@ class Workspace(NamedTuple):
     spare: Floats2  # a `engine.history.turning_points.Spare`
     numbers: Floats1  # room for the block of `kernels.lanes`
     block: Integers1  # the address of this block
-    stage: Integers1  # (WIDTH,): codes of `tables.Stage`
-    waits: Integers1  # (WIDTH,): what the lane waits for, see `kernels.lanes`
-    member: Integers1  # (WIDTH,): index of the member in the lane
-    code: Integers1  # (WIDTH,): what the engine returned last for this member
-    table: Integers2  # (WIDTH, RUN_SIZE): the memory of its run, see `engine.state.workspace.Run`
+    stage: Integers1  # (SIMD_WIDTH,): codes of `tables.Stage`
+    waits: Integers1  # (SIMD_WIDTH,): what the lane waits for, see `kernels.lanes`
+    member: Integers1  # (SIMD_WIDTH,): index of the member in the lane
+    code: Integers1  # (SIMD_WIDTH,): what the engine returned last for this member
+    table: Integers2  # (SIMD_WIDTH, RUN_SIZE): the memory of its run, see `engine.state.workspace.Run`
     upcoming: Integers1  # (1,): index of the next member to start
 
     @property
@@ -104,9 +104,9 @@ class Workspace(NamedTuple):
         """Return a workspace with room for four times as many pieces, up to LARGEST_CAPACITY, which keeps the histories so far."""
         capacity = min(4 * self.capacity, LARGEST_CAPACITY)
         store, echoes, known = (
-            in_lanes(at.new_store(WIDTH * capacity)),
-            EchoNode.table(WIDTH, capacity),
-            Known.table(WIDTH, capacity),
+            in_lanes(at.new_store(SIMD_WIDTH * capacity)),
+            EchoNode.table(SIMD_WIDTH, capacity),
+            Known.table(SIMD_WIDTH, capacity),
         )
         for old, new in zip((*self.store, self.echoes, self.known), (*store, echoes, known), strict=True):
             new[:, : old.shape[1]] = old
@@ -119,7 +119,7 @@ class Workspace(NamedTuple):
 
 def in_lanes(store: Store) -> LaneStore:
     """Divide the rows of a history's tables equally among the lanes, which become a first axis."""
-    tables: list[Any] = [table.reshape(WIDTH, len(table) // WIDTH, *table.shape[1:]) for table in store]
+    tables: list[Any] = [table.reshape(SIMD_WIDTH, len(table) // SIMD_WIDTH, *table.shape[1:]) for table in store]
     return LaneStore(*tables)
 
 
@@ -129,24 +129,24 @@ def apart(*shape: int, dtype: type = float) -> Any:
     Otherwise the processor would have to fetch a line again whenever another thread writes to an array beside it.
     """
     count = math.prod(shape)
-    room: Any = np.zeros(count + 2 * LINE, dtype)
-    first = -(room.ctypes.data // room.itemsize) % LINE
+    room: Any = np.zeros(count + 2 * NUMBERS_OF_TWO_LINES, dtype)
+    first = -(room.ctypes.data // room.itemsize) % NUMBERS_OF_TWO_LINES
     return room[first : first + count].reshape(shape)
 
 
 def new_block(constants: int) -> tuple[Floats, Integers]:
     """Return `Workspace.numbers` and `Workspace.block` for a law with the given number of constants."""
-    numbers = apart(WIDTH * (LaneBlock.total + constants))
+    numbers = apart(SIMD_WIDTH * (LaneBlock.total + constants))
     return numbers, np.array([numbers.ctypes.data])
 
 
 def new_workspace() -> Workspace:
     """Return the workspace of one thread."""
-    stage, waits, member, code = apart(4, WIDTH, dtype=np.int64)
+    stage, waits, member, code = apart(4, SIMD_WIDTH, dtype=np.int64)
     return Workspace(
-        in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
-        EchoNode.table(WIDTH, FIRST_CAPACITY),
-        Known.table(WIDTH, FIRST_CAPACITY),
+        in_lanes(at.new_store(SIMD_WIDTH * FIRST_CAPACITY)),
+        EchoNode.table(SIMD_WIDTH, FIRST_CAPACITY),
+        Known.table(SIMD_WIDTH, FIRST_CAPACITY),
         Turn.table(TURNS_PER_PIECE * FIRST_CAPACITY),
         EventTurns.table(TURNS_PER_PIECE * FIRST_CAPACITY),
         Spare.table(1),
@@ -155,7 +155,7 @@ def new_workspace() -> Workspace:
         waits,
         member,
         code,
-        apart(WIDTH, RUN_SIZE, dtype=np.int64),
+        apart(SIMD_WIDTH, RUN_SIZE, dtype=np.int64),
         apart(1, dtype=np.int64),
     )
 
@@ -163,12 +163,12 @@ def new_workspace() -> Workspace:
 def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
     """Return the addresses of the tables that the first member uses in each lane, and their strides from member to member (bytes).
 
-    The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
+    The addresses have the shape (SIMD_WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 if all members share the table.
     """
     params = Params(setups.params[0])
     own = Setup(params, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING, NO_LADDER)
-    addresses = np.empty((WIDTH, ADDRESSES), np.int64)
-    for n in range(WIDTH):
+    addresses = np.empty((SIMD_WIDTH, ADDRESSES), np.int64)
+    for n in range(SIMD_WIDTH):
         lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])
         lend_parts_of_batch(work.table[n], params, Counts(setups.counts))
         addresses[n] = work.table[n, :ADDRESSES]

@@ -1,8 +1,8 @@
 """Bound the residual of the governing equations anywhere in an implicit step, or in a part of it.
 
 Let g be the residual of an equation for the polynomials of the step, and y the place in the part minus its middle, in lengths of
-the part. g is measured at Chebyshev's PLACES of the part. Let p be the polynomial through these values, and w the product of the
-y - y_i. If g is analytic on the disc |y| <= R and |g| <= M there, then, by Hermite's formula for the remainder,
+the part. g is measured at Chebyshev's RESIDUAL_PLACES of the part. Let p be the polynomial through these values, and w the product
+of the y - y_i. If g is analytic on the disc |y| <= R and |g| <= M there, then, by Hermite's formula for the remainder,
 
     |g - p| <= M R / (R - 1/2) largest |w| on the part / least |w| on the circle |y| = R,
 
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from stickslip.engine.contact.contact_equation import constants_of, static_step
 from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.radau.stages import WIDTH, larger, yielding, yielding_of_state
+from stickslip.engine.radau.stages import WIDTH_OF_ROW, larger, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import ONES, RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import STAGES
 from stickslip.engine.state.layout import STATES, TERMS, Floats, StepProof
@@ -32,9 +32,9 @@ from stickslip.foundation.kernels.kernels import kernel
 from stickslip.foundation.kernels.memory.addresses import ahead, call_radii
 from stickslip.foundation.kernels.memory.pointers import numbers_of, record_at
 
-PLACES = 18
+RESIDUAL_PLACES = 18
 """Number of places (1) of a part where the residual is measured."""
-PLACE = 0.5 * np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
+PLACE = 0.5 * np.cos(np.pi * (np.arange(RESIDUAL_PLACES) + 0.5) / RESIDUAL_PLACES)
 """These places (1), relative to the middle of the part and in lengths of it."""
 DISCS = np.array([2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
 """Radii (1) of the discs to try around the middle of a part, in lengths of the part."""
@@ -42,14 +42,14 @@ FIRST_DISC = 2
 """The first disc to try (1), as an index of DISCS. If it has a bound, larger ones are tried, else smaller ones."""
 FINE = 4001
 """Number of places (1) of a part or a circle among which extremes are sought."""
-MARGIN = 1.02
+MARGIN_OF_RESIDUAL = 1.02
 """Factor (1) that covers rounding, and extremes between those places."""
 ENOUGH = 1e-4
 """A hidden residual below this share (1) of what is allowed is small enough: no better disc is sought."""
 CRUDE = 1e-4
 """A residual above this share (1) of the normal load is too large however slow slip is: under rate and state, friction at a slip
 rate of 1e-40 m/s is that at any other, and an error that is nothing in the slip rate is all of friction."""
-LONG = 1e-11
+LONG_STEP = 1e-11
 """This holds for steps that last at least this share (1) of a round trip: in a shorter one the acceleration is rounding."""
 FAINT = 1e-290
 """And for slip rates (m/s) above this: below, floats lose their digits."""
@@ -63,23 +63,23 @@ constant, and a residual changes its sign at each stage, so that its effect on s
 
 
 def _hidden_shares() -> NDArray[np.float64]:
-    """Return what a bound M on each of DISCS is multiplied by, to bound the residual between PLACES."""
+    """Return what a bound M on each of DISCS is multiplied by, to bound the residual between RESIDUAL_PLACES."""
     on_part, circle = np.linspace(-0.5, 0.5, FINE), np.exp(2j * np.pi * np.linspace(0.0, 1.0, FINE))
     largest = np.abs(on_part[:, None] - PLACE).prod(axis=1).max()
     least = np.array([np.abs(radius * circle[:, None] - PLACE).prod(axis=1).min() for radius in DISCS])
-    return np.asarray(MARGIN * DISCS / (DISCS - 0.5) * largest / least)
+    return np.asarray(MARGIN_OF_RESIDUAL * DISCS / (DISCS - 0.5) * largest / least)
 
 
 def _lebesgue() -> float:
-    """Return the largest value on the part of a polynomial whose values at PLACES are at most 1."""
-    apart, on_part = PLACE[:, None] - PLACE + np.eye(PLACES), np.linspace(-0.5, 0.5, FINE)
+    """Return the largest value on the part of a polynomial whose values at RESIDUAL_PLACES are at most 1."""
+    apart, on_part = PLACE[:, None] - PLACE + np.eye(RESIDUAL_PLACES), np.linspace(-0.5, 0.5, FINE)
     weight = on_part[:, None] - PLACE + 1e-300
     basis = weight.prod(axis=1, keepdims=True) / weight / apart.prod(axis=1)
-    return float(MARGIN * np.abs(basis).sum(axis=1).max())
+    return float(MARGIN_OF_RESIDUAL * np.abs(basis).sum(axis=1).max())
 
 
 HIDDEN, LEBESGUE = _hidden_shares(), _lebesgue()
-"""Shares (1) for each of DISCS, and Lebesgue's constant (1) of PLACES; see above."""
+"""Shares (1) for each of DISCS, and Lebesgue's constant (1) of RESIDUAL_PLACES; see above."""
 WALK, SIZE, SLOPE = RECIPROCAL[1:], ONES, np.arange(float(TERMS))
 """Weights of coefficients in the integral, the value and the slope of a polynomial; see `moved_on_disc`."""
 step_proof_at: Any = record_at(StepProof)
@@ -101,13 +101,13 @@ def moved_on_disc(c: Floats, weights: Floats, first: int, last: int, radius: flo
 @kernel
 def state_from_middle(run: Run, n: int) -> Floats:
     """Return room for the polynomial of state n around the middle of a part, behind the records `between` in run.matrix."""
-    return ahead(run.matrix, WIDTH * STAGES + TERMS * n)
+    return ahead(run.matrix, WIDTH_OF_ROW * STAGES + TERMS * n)
 
 
 @kernel
 def step_proof(run: Run) -> StepProof:
     """Return the record of what is proven of the step: it lies behind these polynomials."""
-    return step_proof_at(ahead(run.matrix, WIDTH * STAGES + TERMS * STATES))
+    return step_proof_at(ahead(run.matrix, WIDTH_OF_ROW * STAGES + TERMS * STATES))
 
 
 @kernel
@@ -133,7 +133,7 @@ def share_of_part(run: Run, start: float, width: float) -> float:
     bound = LEBESGUE * proof.measured + proof.hidden
     proof.bound = larger(proof.bound, bound)
     share = PROVEN * max(bound * proof.rate_yields - LEBESGUE * proof.rate_rounding, 0.0) / proof.rate_allowed
-    long = proof.duration > LONG * run.params.round_trip_time
+    long = proof.duration > LONG_STEP * run.params.round_trip_time
     if run.counts.mode != 0 and long and abs(run.trial[0]) > FAINT:
         share = larger(share, bound / (CRUDE * run.params.normal))
     for n in range(own_states(run)):
@@ -144,7 +144,7 @@ def share_of_part(run: Run, start: float, width: float) -> float:
 
 @kernel
 def measured_anywhere(run: Run) -> float:
-    """Return the largest residual (Pa or N) at PLACES of the whole step."""
+    """Return the largest residual (Pa or N) at RESIDUAL_PLACES of the whole step."""
     put_part(run, 0.0, 1.0)
     contact_in_middle(run)
     measure(run)
@@ -195,7 +195,7 @@ def missing_at(run: Run, rate: float, slope: float, walked: float, load: float) 
 
 @kernel
 def hide(run: Run) -> float:
-    """Bound what may be hidden between PLACES, by the best of DISCS; return it as a share of what is allowed.
+    """Bound what may be hidden between RESIDUAL_PLACES, by the best of DISCS; return it as a share of what is allowed.
 
     run.value and run.ball belong to the middle of the part.
     """
@@ -261,13 +261,13 @@ def put_disc(run: Run, radius: float) -> None:
 
 @kernel
 def measure(run: Run) -> None:
-    """Measure the residuals at PLACES of the part: of the contact equation, or the strength at rest, and of the states."""
+    """Measure the residuals at RESIDUAL_PLACES of a part: of the contact equation, or the strength at rest, and of the states."""
     proof, own = step_proof(run), own_states(run)
     lasts, slips = proof.duration * proof.width, run.counts.mode != 0
     proof.measured = 0.0
     for n in range(own):
         proof.state_measured[n] = 0.0
-    for i in range(PLACES):
+    for i in range(RESIDUAL_PLACES):
         y = PLACE[i]
         rate, slope = value_and_slope(run.trial, STAGES, y)
         walked = proof.walked + lasts * integral(run.trial, y, 1) if slips else 0.0

@@ -21,8 +21,8 @@ from stickslip.engine.series.radau_nodes import (
     INTEGRAL,
     INTEGRAL_TO_MIDDLE,
     MIDDLE,
+    NODES_OF_STEP,
     POINT,
-    POINTS,
     STAGES,
     VALUE_IN_MIDDLE,
 )
@@ -38,7 +38,7 @@ ITERATIONS = 40
 """After this many Newton iterations (1) the step counts as unsolved."""
 NEWTON_ROUNDING = 1e-15
 """Rounding of the load in Newton's method, relative to its terms (1)."""
-WIDTH = (1 + STATES) * STAGES + 1
+WIDTH_OF_ROW = (1 + STATES) * STAGES + 1
 """Length of a row of Newton's equations (1), with the right-hand side."""
 between_at: Any = record_at(Between)
 """Function for compiled code that returns the `Between` at a pointer."""
@@ -84,16 +84,16 @@ def assemble(run: Run, h: float, force: float) -> None:
     moving, states = run.counts.mode != 0, own_states(run)
     mass, chi = params.inertia / h, run.k.chi * h
     size = STAGES * (1 + states)
-    for i in range(1, POINTS):
-        row, walked, change = ahead(m, WIDTH * (i - 1)), 0.0, 0.0
-        for j in range(POINTS):
+    for i in range(1, NODES_OF_STEP):
+        row, walked, change = ahead(m, WIDTH_OF_ROW * (i - 1)), 0.0, 0.0
+        for j in range(NODES_OF_STEP):
             walked += INTEGRAL[i, j] * v[j]
             change += DERIVATIVE[i, j] * v[j]
         contact_at(run, run.state.law_slip + chi * walked, v[i], states_at_point(run, i))
         value = run.value
         resisted = params.damping * v[i] + params.normal * value.mu + params.stiffness * h * walked
         by_walk = params.stiffness * h + params.normal * value.by_slip * chi
-        for j in range(1, POINTS):
+        for j in range(1, NODES_OF_STEP):
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
         row[i - 1] += params.damping + params.normal * value.by_rate if moving else 1.0
         row[size] = evaluate(run.load_along_slip, POINT[i]) - force - resisted - mass * change if moving else 0.0
@@ -109,15 +109,15 @@ def assemble(run: Run, h: float, force: float) -> None:
 def assemble_state(run: Run, h: float, i: int, n: int) -> None:
     """Write Newton's equation of state n at point i into run.matrix; run.value belongs to that point."""
     value, moving, chi = run.value, run.counts.mode != 0, run.k.chi * h
-    w, row, evolved = ahead(run.stage_state, TERMS * n), ahead(run.matrix, WIDTH * (STAGES * (1 + n) + i - 1)), 0.0
-    for j in range(POINTS):
+    w, row, evolved = ahead(run.stage_state, TERMS * n), ahead(run.matrix, WIDTH_OF_ROW * (STAGES * (1 + n) + i - 1)), 0.0
+    for j in range(NODES_OF_STEP):
         evolved += DERIVATIVE[i, j] * w[j]
-    for j in range(1, POINTS):
+    for j in range(1, NODES_OF_STEP):
         row[j - 1] = -h * value.change_by_slip[n] * chi * INTEGRAL[i, j] if moving else 0.0
     row[i - 1] -= h * value.change_by_rate[n]
     for other in range(own_states(run)):
         own = ahead(row, STAGES * (1 + other))
-        for j in range(1, POINTS):
+        for j in range(1, NODES_OF_STEP):
             own[j - 1] = DERIVATIVE[i, j] if other == n else 0.0
         own[i - 1] -= h * value.change_by_state[STATES * n + other]
     row[STAGES * (1 + own_states(run))] = h * value.change[n] - evolved
@@ -127,7 +127,7 @@ def assemble_state(run: Run, h: float, i: int, n: int) -> None:
 def eliminate(m: Floats, size: int) -> bool:
     """Solve `size` linear equations in the rows of m; the solution replaces the last column. Return False if they are singular."""
     for i in range(size):
-        row, largest = ahead(m, WIDTH * i), 0.0
+        row, largest = ahead(m, WIDTH_OF_ROW * i), 0.0
         for j in range(size):
             largest = max(largest, abs(row[j]))
         if not 0.0 < largest < math.inf:
@@ -137,21 +137,21 @@ def eliminate(m: Floats, size: int) -> bool:
     for k in range(size):
         pivot = k
         for i in range(k + 1, size):
-            if abs(m[WIDTH * i + k]) > abs(m[WIDTH * pivot + k]):
+            if abs(m[WIDTH_OF_ROW * i + k]) > abs(m[WIDTH_OF_ROW * pivot + k]):
                 pivot = i
-        if m[WIDTH * pivot + k] == 0.0:
+        if m[WIDTH_OF_ROW * pivot + k] == 0.0:
             return False
         for j in range(k, size + 1):
-            m[WIDTH * k + j], m[WIDTH * pivot + j] = m[WIDTH * pivot + j], m[WIDTH * k + j]
+            m[WIDTH_OF_ROW * k + j], m[WIDTH_OF_ROW * pivot + j] = m[WIDTH_OF_ROW * pivot + j], m[WIDTH_OF_ROW * k + j]
         for i in range(k + 1, size):
-            factor = m[WIDTH * i + k] / m[WIDTH * k + k]
+            factor = m[WIDTH_OF_ROW * i + k] / m[WIDTH_OF_ROW * k + k]
             if factor != 0.0:
                 for j in range(k + 1, size + 1):
-                    m[WIDTH * i + j] -= factor * m[WIDTH * k + j]
+                    m[WIDTH_OF_ROW * i + j] -= factor * m[WIDTH_OF_ROW * k + j]
     for i in range(size - 1, -1, -1):
         for j in range(i + 1, size):
-            m[WIDTH * i + size] -= m[WIDTH * i + j] * m[WIDTH * j + size]
-        m[WIDTH * i + size] /= m[WIDTH * i + i]
+            m[WIDTH_OF_ROW * i + size] -= m[WIDTH_OF_ROW * i + j] * m[WIDTH_OF_ROW * j + size]
+        m[WIDTH_OF_ROW * i + size] /= m[WIDTH_OF_ROW * i + i]
     return True
 
 
@@ -182,16 +182,16 @@ def correct(run: Run, size: int, rounding: float) -> float:
     """
     v, m = run.stage_rate, run.matrix
     fastest, moved, evolved = run.state.hanging + 1e-300, 0.0, 0.0
-    for i in range(1, POINTS):
-        step = m[WIDTH * (i - 1) + size]
+    for i in range(1, NODES_OF_STEP):
+        step = m[WIDTH_OF_ROW * (i - 1) + size]
         v[i] += step
         moved, fastest = max(moved, abs(step)), max(fastest, abs(v[i]))
         if not math.isfinite(v[i]):
             return math.inf
     for n in range(own_states(run)):
         w, farthest, changed = ahead(run.stage_state, TERMS * n), run.params.state_scale[n] + 1e-300, 0.0
-        for i in range(1, POINTS):
-            step = m[WIDTH * (STAGES * (1 + n) + i - 1) + size]
+        for i in range(1, NODES_OF_STEP):
+            step = m[WIDTH_OF_ROW * (STAGES * (1 + n) + i - 1) + size]
             w[i] += step
             changed, farthest = max(changed, abs(step)), max(farthest, abs(w[i]))
             if not math.isfinite(w[i]):
@@ -211,13 +211,13 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
     Newton's method begins with the values at the start or, if share > 0, with the polynomials of a longer step; this step is the
     given share of the longer one. On success `look_between` has been called.
     """
-    for i in range(1, POINTS):
+    for i in range(1, NODES_OF_STEP):
         run.stage_rate[i] = run.stage_rate[0]
         if share > 0.0 and run.counts.mode != 0:  # At rest run.jet holds the strength.
             run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
     for n in range(own_states(run)):
         w = ahead(run.stage_state, TERMS * n)
-        for i in range(1, POINTS):
+        for i in range(1, NODES_OF_STEP):
             w[i] = evaluate(ahead(run.state_jet, TERMS * n), share * POINT[i]) if share > 0.0 else w[0]
     if run.counts.given > 0:
         press_stages(run, h)
@@ -241,7 +241,7 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
 @kernel
 def between(run: Run, i: int) -> Between:
     """Return the record of the i-th place of `look_between`: it lies in run.matrix, which is free between Newton's iterations."""
-    return between_at(ahead(run.matrix, WIDTH * i))
+    return between_at(ahead(run.matrix, WIDTH_OF_ROW * i))
 
 
 @kernel
@@ -250,7 +250,7 @@ def look_between(run: Run) -> None:
     v = run.stage_rate
     for i in range(STAGES):
         rate, acceleration, walked = 0.0, 0.0, 0.0
-        for j in range(POINTS):
+        for j in range(NODES_OF_STEP):
             rate += VALUE_IN_MIDDLE[i, j] * v[j]
             acceleration += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
             walked += INTEGRAL_TO_MIDDLE[i, j] * v[j]
@@ -258,7 +258,7 @@ def look_between(run: Run) -> None:
         row.rate, row.acceleration, row.walked = rate, acceleration, walked
         for n in range(run.counts.states):
             w, state, evolved = ahead(run.stage_state, TERMS * n), 0.0, 0.0
-            for j in range(POINTS):
+            for j in range(NODES_OF_STEP):
                 state += VALUE_IN_MIDDLE[i, j] * w[j]
                 evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
             row.state[n], row.evolved[n] = state, evolved

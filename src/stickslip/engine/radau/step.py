@@ -22,7 +22,7 @@ from stickslip.engine.radau.stages import (
     solve_stages,
 )
 from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict, total, turn_over
-from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
+from stickslip.engine.series.radau_nodes import MIDDLE, NODES_OF_STEP, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state.layout import STATES, TERMS
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import kernel
@@ -58,7 +58,7 @@ LARGEST_ROUNDING, PATIENCE = 1e3, 8
 an error above LARGEST_ROUNDING tolerances (1) is never kept."""
 SHORTEST_PROVEN = 0.1
 """A step without a bound is shortened to the part that has one, but at a time to no less than this share (1) of its length."""
-UNSEEN = 1e-3
+UNSEEN_SETTLING = 1e-3
 """The settling time of mass is far shorter than a step if it is below this share (1) of it."""
 
 
@@ -160,7 +160,7 @@ def strength_ahead(run: Run) -> float:
     """
     params = run.params
     largest, missed = NUMBER_ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         contact_at(run, run.state.law_slip, 0.0, states_at_point(run, i))
         run.stage_rate[i] = params.normal * (run.value.mu + static_step(run, run.some_state))
         largest = max(largest, abs(run.stage_rate[i]))
@@ -185,7 +185,7 @@ def error_of(run: Run, force: float, lost: float) -> float:
     """
     params, value, h = run.params, run.value, run.k.speed
     fastest = max(params.rate_floor, run.state.hanging)
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         fastest = max(fastest, abs(run.stage_rate[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
     resistance = params.damping + params.normal * value.by_rate + params.inertia / h
@@ -262,7 +262,7 @@ def note_unproven(run: Run) -> None:
 def farthest_state(run: Run, n: int) -> float:
     """Return the largest magnitude of state n at the points of the step, or its `state_scale` if that is larger."""
     farthest = run.params.state_scale[n] + 1e-300
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         farthest = max(farthest, abs(run.stage_state[TERMS * n + i]))
     return farthest
 
@@ -277,11 +277,11 @@ def settle_start(run: Run) -> bool:
     if run.counts.mode == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
         return True
     fastest = 0.0
-    for i in range(1, POINTS):
+    for i in range(1, NODES_OF_STEP):
         fastest = max(fastest, abs(run.stage_rate[i]))
     if fastest <= run.state.hanging:
         return True
-    for k in range(1, POINTS):
+    for k in range(1, NODES_OF_STEP):
         if run.jet[k] >= 0.0:
             return True
         if run.jet[k] < -NUMBER_ROUNDING * TO_POWERS_SUM[k] * fastest:
@@ -444,9 +444,9 @@ def settles_unseen(run: Run, error: float) -> bool:
     """
     params, fastest = run.params, 0.0
     resistance = params.damping + params.normal * run.value.by_rate
-    if run.counts.mode == 0 or resistance <= 0.0 or params.inertia > UNSEEN * run.k.speed * resistance:
+    if run.counts.mode == 0 or resistance <= 0.0 or params.inertia > UNSEEN_SETTLING * run.k.speed * resistance:
         return False
-    for i in range(POINTS):
+    for i in range(NODES_OF_STEP):
         fastest = max(fastest, abs(run.stage_rate[i]))
     return error * params.tolerance * fastest <= params.inertia / run.k.speed * abs(run.jet[1]) / resistance
 

@@ -23,7 +23,7 @@ LARGEST_EXPONENT = 1000.0
 """`exp_above` is infinite above 2 to this power (1)."""
 TINIEST = 1e-300
 """Number that replaces zero where a disc reaches a singularity, or where a value underflows."""
-MARGIN = 1.005
+MARGIN_OF_PARABOLA = 1.005
 """Factor (1) by which the parabola for 2^x on [0, 1] is raised to lie above it; it is accurate to 0.3 %."""
 
 
@@ -34,7 +34,7 @@ def exp_above(x: float) -> float:
     y = min(y, LARGEST_EXPONENT)
     whole = np.floor(y)
     part = y - whole
-    return MARGIN * power_of_two(whole) * (1.0 + part * (0.6565 + 0.3435 * part)) + over
+    return MARGIN_OF_PARABOLA * power_of_two(whole) * (1.0 + part * (0.6565 + 0.3435 * part)) + over
 
 
 def exp_radius(argument: float, value: float, radius: float) -> float:

@@ -40,7 +40,7 @@ LOW_BERNSTEIN = _bernstein(LOW)
 """Bernstein coefficients of the powers of x among polynomials of TERMS and of LOW terms (1)."""
 SMALLEST_INTERVAL = 1e-15
 """Intervals narrower than this (1) are not bisected further: floats near 1 are not much denser."""
-NEGLIGIBLE = 1e-300
+NEGLIGIBLE_POLYNOMIAL = 1e-300
 """A polynomial of at most this magnitude (any unit) on an interval counts as zero there: near the smallest normal number its
 coefficients lose their digits or vanish one after the other, and a bisection would never end."""
 UNCLEAR = -1
@@ -385,7 +385,7 @@ def sign_changes(c: Floats, spare: Floats) -> int:
     p has at most as many roots in (0, 1), and exactly one if the number is 1 (Descartes' rule of signs). `spare` is room.
     """
     write_bernstein(c, 0, spare)
-    rounding, changes, last = max(SIGN_ROUNDING * (abs(c[0]) + magnitude(c)), NEGLIGIBLE), 0, c[0]
+    rounding, changes, last = max(SIGN_ROUNDING * (abs(c[0]) + magnitude(c)), NEGLIGIBLE_POLYNOMIAL), 0, c[0]
     for j in range(1, TERMS):
         if not abs(spare[j]) > rounding:
             return UNCLEAR
@@ -442,7 +442,7 @@ def _bisect(c: Floats, sign: float, part: Floats, out: Floats, most: int) -> int
         tail = magnitude(part)
         if not abs(part[0]) + tail < math.inf:
             return found
-        if abs(part[0]) + tail < NEGLIGIBLE:
+        if abs(part[0]) + tail < NEGLIGIBLE_POLYNOMIAL:
             start, width = _next_interval(start, width)
             continue
         definite = abs(part[0]) > tail

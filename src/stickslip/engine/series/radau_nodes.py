@@ -16,7 +16,7 @@ from stickslip.foundation.kernels.kernels import kernel
 
 STAGES = 9
 """Number of Radau points in a step (1), which gives order 17 at the ends of steps and 10 between them."""
-POINTS = STAGES + 1
+NODES_OF_STEP = STAGES + 1
 """Number of points with the start of the step (1)."""
 LEADING = 2.0 ** (1 - 2 * STAGES)
 """The last Chebyshev term on [0, 1] over the coefficient of x^STAGES (1)."""
@@ -36,13 +36,13 @@ def _radau() -> NDArray[np.float64]:
 
 def _barycentric() -> NDArray[np.float64]:
     """Return the barycentric weights of interpolation at the points."""
-    gaps = POINT[:, None] - POINT + np.eye(POINTS)
+    gaps = POINT[:, None] - POINT + np.eye(NODES_OF_STEP)
     return np.asarray(1.0 / gaps.prod(axis=1))
 
 
 def _derivatives() -> NDArray[np.float64]:
     """Return a matrix whose row i gives the derivative at point i of the polynomial through values at the points."""
-    gaps = POINT[:, None] - POINT + np.eye(POINTS)
+    gaps = POINT[:, None] - POINT + np.eye(NODES_OF_STEP)
     matrix = _WEIGHT / _WEIGHT[:, None] / gaps
     np.fill_diagonal(matrix, 0.0)
     np.fill_diagonal(matrix, -matrix.sum(axis=1))
@@ -57,8 +57,8 @@ def _values(places: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _integrals(ends: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a matrix whose row i gives the integral of that polynomial from 0 to end i, by Gauss's rule."""
-    nodes, weights = legendre.leggauss(POINTS)
-    matrix = np.zeros((len(ends), POINTS))
+    nodes, weights = legendre.leggauss(NODES_OF_STEP)
+    matrix = np.zeros((len(ends), NODES_OF_STEP))
     for i, end in enumerate(ends):
         if end > 0.0:
             matrix[i] = 0.5 * end * weights @ _values(0.5 * end * (1.0 + nodes))
@@ -85,20 +85,20 @@ TO_POWERS_SUM = abs(TO_POWERS).sum(axis=1)
 
 @kernel
 def interpolate(values: Floats, out: Floats, rest: Floats) -> None:
-    """Write into `out` the coefficients of the polynomial through values at the points; `rest` is room for POINTS numbers.
+    """Write into `out` the coefficients of the polynomial through values at the points; `rest` is room for NODES_OF_STEP numbers.
 
     A second pass corrects the rounding of the first, which large factors of opposite sign have amplified.
     """
     for k in range(TERMS):
         out[k] = 0.0
     for _ in range(2):
-        for i in range(POINTS):
-            value = out[POINTS - 1]
-            for k in range(POINTS - 2, -1, -1):
+        for i in range(NODES_OF_STEP):
+            value = out[NODES_OF_STEP - 1]
+            for k in range(NODES_OF_STEP - 2, -1, -1):
                 value = value * POINT[i] + out[k]
             rest[i] = values[i] - value
-        for k in range(POINTS):
-            for i in range(POINTS):
+        for k in range(NODES_OF_STEP):
+            for i in range(NODES_OF_STEP):
                 out[k] += TO_POWERS[k, i] * rest[i]
 
 

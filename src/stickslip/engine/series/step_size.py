@@ -10,7 +10,7 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.foundation.kernels.kernels import inlined, kernel
 from stickslip.foundation.kernels.memory.simd import bits_as_number, power_of_two
 
-UNITS = 2.0**52
+STEPS_OF_FLOATS = 2.0**52
 """Steps of a float's bits (1) from one power of two to the next."""
 BIAS = 1023.0
 """Offset of the exponent in the bits of a float (1)."""
@@ -24,7 +24,7 @@ def quick_log2(x: float) -> float:
 
     That is accurate enough: the length of a step takes this logarithm divided by the order of its last terms.
     """
-    return bits_as_number(abs(x)) * (1.0 / UNITS) - BIAS
+    return bits_as_number(abs(x)) * (1.0 / STEPS_OF_FLOATS) - BIAS
 
 
 @inlined

@@ -17,16 +17,16 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.contact.pieces import phase_at
+from stickslip.engine.contact.pressing import tone_series
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import settled_rate
-from stickslip.engine.waves.tone import tone_series
 from stickslip.engine.waves.varying_forcing import cut
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 
-HALVINGS = 60
+HALVINGS_OF_LOAD = 60
 """Largest number of times (1) that a piece of load is halved."""
 
 
@@ -37,7 +37,7 @@ def drive(run: Run) -> float:
     pace, met, doubled = pace_of(run), wave_at_driver(run), 2.0 * impedance_at_driver(run)
     share = 1.0 / max(math.ceil(pace * (abs(run.state.speed) + 2.0 * abs(run.state.bend))), 1.0)
     shorten(run, share)
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS_OF_LOAD):
         force_machine(run)
         if move_machine(run, pace):
             break

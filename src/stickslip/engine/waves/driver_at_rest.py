@@ -13,7 +13,7 @@ from stickslip.engine.state.layout import NEVER
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import kernel
 
-STILL = 1e-13
+STILL_MACHINE = 1e-13
 """A machine has settled when the load that its swings send is less than this share of the load and the reference strength (1)."""
 
 
@@ -48,7 +48,7 @@ def trips_of_machine(run: Run, limit: float, room: float, top: float, bottom: fl
     """
     params, segment = run.params, run.counts.segment
     varies = run.loading[segment].pull_slope != 0.0 or run.loading[segment].tone != 0.0
-    swings = 2.0 * params.impedance * run.state.driver_swing > STILL * (abs(params.reference) + max(abs(top), abs(bottom)))
+    swings = 2.0 * params.impedance * run.state.driver_swing > STILL_MACHINE * (abs(params.reference) + max(abs(top), abs(bottom)))
     if varies or swings or run.counts.trips_at_rest < 2:
         return 0
     if run.counts.cells > 0 and not has_faded(run):

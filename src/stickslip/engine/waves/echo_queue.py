@@ -24,7 +24,7 @@ from stickslip.foundation.arrays import Integers1
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import bits_of
 
-NOTHING = -1
+NO_PIECE = -1
 """Index of no piece and of an empty tree."""
 LONGEST_SEARCH = 4096
 """At most this many round trips (1) are tried one by one: near 2^62, floats are 512 to 1024 apart."""
@@ -54,7 +54,7 @@ def settle(nodes: EchoNode, ramp: float, n: int) -> None:
     """Set the pieces that break first in the subtree of node n, from those of its children."""
     up, down = n, n
     for child in (nodes[n].left, nodes[n].right):
-        if child != NOTHING:
+        if child != NO_PIECE:
             if sooner(nodes, ramp, nodes[child].first_up, up, 1):
                 up = nodes[child].first_up
             if sooner(nodes, ramp, nodes[child].first_down, down, -1):
@@ -65,9 +65,9 @@ def settle(nodes: EchoNode, ramp: float, n: int) -> None:
 @kernel
 def join(nodes: EchoNode, ramp: float, a: int, b: int) -> int:
     """Join two trees and return the root; all phases of tree a must lie before those of tree b."""
-    if a == NOTHING:
+    if a == NO_PIECE:
         return b
-    if b == NOTHING:
+    if b == NO_PIECE:
         return a
     if nodes[a].rank > nodes[b].rank:
         nodes[a].right = join(nodes, ramp, nodes[a].right, b)
@@ -81,8 +81,8 @@ def join(nodes: EchoNode, ramp: float, a: int, b: int) -> int:
 @kernel
 def split(nodes: EchoNode, ramp: float, n: int, phase: float) -> tuple[int, int]:
     """Split tree n and return the roots of two: the pieces that begin before a phase (s), and the others."""
-    if n == NOTHING:
-        return NOTHING, NOTHING
+    if n == NO_PIECE:
+        return NO_PIECE, NO_PIECE
     if nodes[n].phase < phase:
         before, behind = split(nodes, ramp, nodes[n].right, phase)
         nodes[n].right = before
@@ -97,7 +97,7 @@ def split(nodes: EchoNode, ramp: float, n: int, phase: float) -> tuple[int, int]
 @kernel
 def without_first(nodes: EchoNode, ramp: float, n: int) -> int:
     """Remove the first piece from tree n and return the root."""
-    if nodes[n].left == NOTHING:
+    if nodes[n].left == NO_PIECE:
         return nodes[n].right
     nodes[n].left = without_first(nodes, ramp, nodes[n].left)
     settle(nodes, ramp, n)
@@ -106,9 +106,9 @@ def without_first(nodes: EchoNode, ramp: float, n: int) -> int:
 
 @kernel
 def first_of(run: Run, n: int) -> int:
-    """Return the first piece in tree n, in order of phase, or NOTHING."""
+    """Return the first piece in tree n, in order of phase, or NO_PIECE."""
     for _ in range(run.counts.length):
-        if n == NOTHING or run.echoes[n].left == NOTHING:
+        if n == NO_PIECE or run.echoes[n].left == NO_PIECE:
             break
         n = run.echoes[n].left
     return n
@@ -153,18 +153,18 @@ def any_breaks(run: Run, n: int, limit: float, trip: int) -> bool:
 
 @kernel
 def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
-    """Return the first piece of tree n, in order of phase, that may break in round trip `trip`, or NOTHING."""
-    if n == NOTHING or not any_breaks(run, n, limit, trip):
-        return NOTHING
+    """Return the first piece of tree n, in order of phase, that may break in round trip `trip`, or NO_PIECE."""
+    if n == NO_PIECE or not any_breaks(run, n, limit, trip):
+        return NO_PIECE
     for _ in range(run.counts.length):
         left = run.echoes[n].left
-        if left != NOTHING and any_breaks(run, left, limit, trip):
+        if left != NO_PIECE and any_breaks(run, left, limit, trip):
             n = left
         elif breaks(run, n, 1, limit, trip) or breaks(run, n, -1, limit, trip):
             return n
         else:
             n = run.echoes[n].right
-    return NOTHING
+    return NO_PIECE
 
 
 @kernel
@@ -221,7 +221,7 @@ def add(run: Run, n: int) -> None:
     leave_out_ends(run, piece)
     lowest, node.high = extremes(run.trial)
     node.phase, node.low = piece.phase_from, -lowest
-    node.left = node.right = NOTHING
+    node.left = node.right = NO_PIECE
     node.first_up = node.first_down = n
     node.trip = piece.trip
     node.rank = rank(node.phase, node.trip)
@@ -256,13 +256,13 @@ def goes_on(run: Run) -> bool:
 
 @kernel
 def next_echo(run: Run) -> int:
-    """Take out and return the piece of the history whose echo must be met next in this round trip, or NOTHING."""
+    """Take out and return the piece of the history whose echo must be met next in this round trip, or NO_PIECE."""
     if goes_on(run):
         source = first_of(run, run.counts.ahead)
     else:
         add_new(run)
         source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.trip)
-    if source != NOTHING:
+    if source != NO_PIECE:
         pass_to(run, source)
         plan_group(run, source)
         for n in range(source + 1, source + run.counts.merged):
@@ -273,21 +273,21 @@ def next_echo(run: Run) -> int:
 
 @kernel
 def start_of_slide(run: Run) -> int:
-    """Return the first piece of the round trip that ends, if the contact has slipped throughout it, else NOTHING."""
+    """Return the first piece of the round trip that ends, if the contact has slipped throughout it, else NO_PIECE."""
     n, rest = run.counts.length - 1, MOMENT_OF_REST * run.params.round_trip_time
     if run.history[n].phase_to != run.params.round_trip_time:  # the last echoes were not met, for the contact rests under them
-        return NOTHING
+        return NO_PIECE
     while n >= 0 and run.history[n].trip == run.counts.trip:
         piece = run.history[n]
         rest -= piece.phase_to - piece.phase_from if piece.mode == 0 else 0.0
         if rest < 0.0:
-            return NOTHING
+            return NO_PIECE
         if piece.phase_from == 0.0:
             return n
         if n > 0 and run.history[n - 1].phase_to != piece.phase_from:
-            return NOTHING
+            return NO_PIECE
         n -= 1
-    return NOTHING
+    return NO_PIECE
 
 
 @kernel
@@ -297,7 +297,7 @@ def end_trip(run: Run) -> None:
     if run.counts.creep_in > 0:
         first = start_of_slide(run)
         beside_rest = is_slip_law(run) and run.counts.moved == 1
-        run.counts.creep_in -= patience_spent(run) if beside_rest else 1 if first != NOTHING else 0
+        run.counts.creep_in -= patience_spent(run) if beside_rest else 1 if first != NO_PIECE else 0
         if run.counts.creep_in == 0:
             if not beside_rest:
                 leave_queue(run, first)
@@ -310,7 +310,7 @@ def end_trip(run: Run) -> None:
     settled = run.params.ramp == 0.0 and run.counts.moved == 0
     run.counts.is_locked = 1 if trip == NEVER or settled else 0
     run.counts.trip = trip
-    run.counts.ahead, run.counts.behind = whole, NOTHING
+    run.counts.ahead, run.counts.behind = whole, NO_PIECE
     run.state.new_since = run.state.taken_to = 0.0
     run.counts.moved = 0
     run.counts.trip_from = run.counts.length
@@ -331,7 +331,7 @@ def patience_spent(run: Run) -> int:
 @kernel
 def leave_queue(run: Run, first: int) -> None:
     """Meet all echoes again after a round trip of slip, whose first piece is given, and pause for a look at leaps."""
-    run.counts.sparse, run.counts.behind, run.counts.ahead = 0, NOTHING, NOTHING
+    run.counts.sparse, run.counts.behind, run.counts.ahead = 0, NO_PIECE, NO_PIECE
     run.counts.trip += 1
     run.counts.pause_at = run.counts.trip
     run.counts.previous_from, run.counts.previous_to, run.counts.trip_from = first, run.counts.length, run.counts.length
@@ -359,7 +359,7 @@ def worth_building(run: Run) -> bool:
 def build_queue(run: Run) -> None:
     """Meet only echoes that break from here on, and build the tree from the pieces of the round trip just past."""
     run.counts.sparse, run.counts.new_from = 1, run.counts.trip_from
-    run.counts.behind = run.counts.ahead = NOTHING
+    run.counts.behind = run.counts.ahead = NO_PIECE
     end_trip(run)
 
 
@@ -370,10 +370,10 @@ def rebuild_queue(table: Integers1, pieces: Integers1, past: int) -> None:
     The present round trip has passed the first `past` of them. `table` comes from `workspace.lend`.
     """
     run = borrow(table)
-    run.counts.behind = NOTHING
+    run.counts.behind = NO_PIECE
     for k in range(past, len(pieces)):
         add(run, pieces[k])
-    run.counts.ahead, run.counts.behind = run.counts.behind, NOTHING
+    run.counts.ahead, run.counts.behind = run.counts.behind, NO_PIECE
     for k in range(past):
         add(run, pieces[k])
 
@@ -381,7 +381,7 @@ def rebuild_queue(table: Integers1, pieces: Integers1, past: int) -> None:
 @kernel
 def in_order(nodes: EchoNode, n: int, out: Integers, count: int) -> int:
     """Write the pieces of tree n, in order of phase, behind the first `count` entries, and return how many entries there are."""
-    if n == NOTHING:
+    if n == NO_PIECE:
         return count
     count = in_order(nodes, nodes[n].left, out, count)
     out[count] = n

@@ -9,7 +9,7 @@ from stickslip.engine.contact.pieces import note_degree
 from stickslip.engine.series.polynomial import fill, mean_of
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Task
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.echo_queue import NOTHING
+from stickslip.engine.waves.echo_queue import NO_PIECE
 from stickslip.engine.waves.merged_creep import continue_echo, lay_out_group
 from stickslip.foundation.kernels.kernels import kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
@@ -27,7 +27,7 @@ def find_first(run: Run) -> bool:
     source = run.counts.source
     if source >= run.loads - 1:
         return False
-    run.counts.echo_of = NOTHING
+    run.counts.echo_of = NO_PIECE
     run.state.phase_from, run.state.phase_to = run.first_load[source].phase, run.first_load[source + 1].phase
     run.state.speed, run.state.bend = run.state.phase_to - run.state.phase_from, 0.0
     return True
@@ -38,7 +38,7 @@ def find_echo(run: Run) -> bool:
     """Find the piece of the history whose echo comes next to the contact of a slab; return False if the round trip is complete."""
     if run.counts.sparse == 1:
         source = int(call_part(run.echo_queue, run, Task.NEXT_ECHO, 0.0))
-        if source == NOTHING:
+        if source == NO_PIECE:
             return False
         if run.counts.merged > 0:
             lay_out_group(run)

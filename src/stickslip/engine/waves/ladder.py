@@ -42,7 +42,7 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 
-STILL = 4e-15
+STILL_WAVES = 4e-15
 """Waves have settled when they differ from those one round trip ago, but for the ramp, by less than this share (1) of the loads."""
 JUMP = 1e-12
 """The load jumps between two pieces if it changes by more than this share (1) of itself and of the reference strength."""
@@ -271,7 +271,7 @@ def is_settled(run: Run) -> bool:
             change = abs(now[0] - before[0] - run.ladder_cells[cell].ramp_share * ramp)
             for k in range(1, TERMS):
                 change += abs(now[k] - before[k])
-            if change > STILL * largest:
+            if change > STILL_WAVES * largest:
                 return False
     return True
 

@@ -22,7 +22,7 @@ CROWD = 64
 """Strips are merged after a round trip with more pieces (1) than this."""
 MOST_TOGETHER = 256
 """Largest number of pieces (1) in a group."""
-BESIDE = 1.0 / 64.0
+WIDTH_OF_STRIPS = 1.0 / 64.0
 """Largest width of all strips in a group, as a share of the wide piece (1): so far its series is continued."""
 
 
@@ -57,7 +57,7 @@ def plan_group(run: Run, source: int) -> None:
     for n in range(source + 1, past):
         if run.history[n].speed > run.history[wide].speed:
             wide = n
-    allowed, room = run.params.tolerance * abs(run.state.slip_now), BESIDE * run.history[wide].speed
+    allowed, room = run.params.tolerance * abs(run.state.slip_now), WIDTH_OF_STRIPS * run.history[wide].speed
     shift = strips = 0.0
     for n in range(source, wide):
         shift, strips = shift + shifted(run, n, run.history[wide].rate[0]), strips + run.history[n].speed

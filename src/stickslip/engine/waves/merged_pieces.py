@@ -41,7 +41,7 @@ CROWD = 1024
 """Pieces of a round trip (1) from which on they are merged as often as they can be."""
 PAUSE = 128
 """Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
-HALVINGS = 8
+HALVINGS_OF_GROUP = 8
 """Number of times (1) that a group of pieces is halved until one series describes it."""
 SHORTER = 0.125
 """Steps that come to a fold are at least this much (1) shorter at its end than at first."""
@@ -127,7 +127,7 @@ def merge_ahead(run: Run, source: int) -> None:
     if leads_to_fold and keep_merged(run, WaveGroup(source, many, TO_FOLD)):
         return
     many = min(many, counts.merge_guess)
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS_OF_GROUP):
         if many == 1 and run.history[source].bend == 0.0:
             break
         if keep_merged(run, WaveGroup(source, many, IN_TIME)) or many == 1:

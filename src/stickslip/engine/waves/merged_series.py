@@ -27,11 +27,11 @@ MOST_TOGETHER = 128
 """Largest number of pieces (1) that are merged to one series."""
 ENDS = MOST_TOGETHER + 1
 """Largest number of their ends (1)."""
-POINTS = 24
+PIECE_POINTS = 24
 """Number of Chebyshev's points (1) on a new piece."""
 CHECKS = 7
 """Number of points (1) of each old piece, its ends among them, at which the new series is compared with the old one."""
-ROUNDING = 4e-15
+WAVE_ROUNDING = 4e-15
 """Rounding of a wave (1), as a share of the reference strength and of its own size."""
 KEPT_ABOVE = 0.1
 """Terms of a new series are kept above this share (1) of the change allowed. Below are the errors of the steps that made the waves;
@@ -43,8 +43,8 @@ in proportion to its time, but at least by the other share (1): by rounding thes
 
 def _spectrum() -> Floats:
     """Return the matrix from the values at Chebyshev's points on [0, 1], ascending, to the coefficients of Chebyshev's series."""
-    angle = np.pi - (np.arange(POINTS) + 0.5) * np.pi / POINTS
-    weights = np.where(np.arange(POINTS) == 0, 1.0, 2.0) / POINTS
+    angle = np.pi - (np.arange(PIECE_POINTS) + 0.5) * np.pi / PIECE_POINTS
+    weights = np.where(np.arange(PIECE_POINTS) == 0, 1.0, 2.0) / PIECE_POINTS
     return np.array([weight * np.cos(j * angle) for j, weight in enumerate(weights)])
 
 
@@ -57,8 +57,8 @@ def _powers() -> Floats:
     return np.array(rows, float)
 
 
-CHECKED = 0.5 - 0.5 * np.cos(np.arange(CHECKS) * np.pi / (CHECKS - 1))
-PLACES = 0.5 - 0.5 * np.cos((np.arange(POINTS) + 0.5) * np.pi / POINTS)
+CHECK_PLACES = 0.5 - 0.5 * np.cos(np.arange(CHECKS) * np.pi / (CHECKS - 1))
+PIECE_PLACES = 0.5 - 0.5 * np.cos((np.arange(PIECE_POINTS) + 0.5) * np.pi / PIECE_POINTS)
 SPECTRUM, POWERS = _spectrum(), _powers()
 
 
@@ -85,7 +85,7 @@ def weight_of(run: Run, n: int) -> float:
 @kernel
 def rounding_at(run: Run, n: int, cell: int) -> float:
     """Return the rounding (Pa) of the wave in a cell where piece n of the history begins."""
-    return ROUNDING * (abs(run.params.reference) + abs(wave_in(run, row_of(run, n), cell)[0]))
+    return WAVE_ROUNDING * (abs(run.params.reference) + abs(wave_in(run, row_of(run, n), cell)[0]))
 
 
 @kernel
@@ -116,7 +116,7 @@ def average(run: Run, group: WaveGroup) -> None:
 @kernel
 def merge(run: Run, group: WaveGroup) -> float:
     """Write the waves of a group as one series each into the air; return the largest error (Pa), inf if one is not described so."""
-    ends, of_point, places = room_for(ENDS), room_for(POINTS), room_for(POINTS)
+    ends, of_point, places = room_for(ENDS), room_for(PIECE_POINTS), room_for(PIECE_POINTS)
     place_points(run, group, ends, of_point, places)
     error = 0.0
     for cell in range(run.counts.cells):
@@ -141,8 +141,8 @@ def place_points(run: Run, group: WaveGroup, ends: Floats, of_point: Floats, pla
     for i in range(many - 1, -1, -1):
         ends[i] = ends[i + 1] + width_of(run, source + i)
     i = 0
-    for k in range(POINTS):
-        left = ends[0] * (1.0 - PLACES[k]) * (1.0 - PLACES[k] if group.form == TO_FOLD else 1.0)
+    for k in range(PIECE_POINTS):
+        left = ends[0] * (1.0 - PIECE_PLACES[k]) * (1.0 - PIECE_PLACES[k] if group.form == TO_FOLD else 1.0)
         for _ in range(many):
             if i + 1 == many or left >= ends[i + 1]:
                 break
@@ -170,13 +170,13 @@ def place_of(run: Run, group: WaveGroup, i: int, xi: float, ends: Floats) -> flo
 @kernel
 def describe(run: Run, group: WaveGroup, cell: int, of_point: Floats, places: Floats) -> bool:
     """Write the new series of the wave in a cell into the air; return False if it has too many terms."""
-    values, terms, wave = room_for(POINTS), room_for(POINTS), wave_in(run, AIR, cell)
+    values, terms, wave = room_for(PIECE_POINTS), room_for(PIECE_POINTS), wave_in(run, AIR, cell)
     begin = wave_in(run, row_of(run, group.source), cell)[0]
-    for k in range(POINTS):
+    for k in range(PIECE_POINTS):
         values[k] = evaluate(wave_in(run, row_of(run, group.source + int(of_point[k])), cell), places[k]) - begin
     noise = KEPT_ABOVE * run.state.merge_within + 0.25 * rounding_at(run, group.source, cell)
     highest = 0
-    for j in range(POINTS):
+    for j in range(PIECE_POINTS):
         terms[j] = term_of(values, j)
         if abs(terms[j]) > noise:
             highest = j
@@ -197,7 +197,7 @@ def distance(run: Run, group: WaveGroup, cell: int, ends: Floats) -> float:
     for i in range(group.many):
         old, apart = wave_in(run, row_of(run, group.source + i), cell), 0.0
         for k in range(CHECKS):
-            apart = max(apart, abs(evaluate(wave, place_of(run, group, i, CHECKED[k], ends)) - evaluate(old, CHECKED[k])))
+            apart = max(apart, abs(evaluate(wave, place_of(run, group, i, CHECK_PLACES[k], ends)) - evaluate(old, CHECK_PLACES[k])))
         largest = max(largest, weight_of(run, group.source + i) * apart)
     return largest
 
@@ -206,6 +206,6 @@ def distance(run: Run, group: WaveGroup, cell: int, ends: Floats) -> float:
 def term_of(values: Floats, j: int) -> float:
     """Return term j of Chebyshev's series of a function with the given values at his points."""
     term = 0.0
-    for k in range(POINTS):
+    for k in range(PIECE_POINTS):
         term += SPECTRUM[j, k] * values[k]
     return term

@@ -10,7 +10,7 @@ from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.series.polynomial import total
 from stickslip.engine.state.layout import NEVER, EnginePart, Task
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.echo_queue import NOTHING, is_slip_law, patience_spent, start_of_slide, worth_building
+from stickslip.engine.waves.echo_queue import NO_PIECE, is_slip_law, patience_spent, start_of_slide, worth_building
 from stickslip.foundation.kernels.kernels import kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
 from stickslip.problem import Stop
@@ -102,7 +102,7 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     else:
         run.counts.trips_at_rest = 0
     run.counts.is_locked = 1 if locked else 0
-    counts = run.counts.creep_in > 0 and run.counts.moved == 1 and (creeps(run) or start_of_slide(run) != NOTHING)
+    counts = run.counts.creep_in > 0 and run.counts.moved == 1 and (creeps(run) or start_of_slide(run) != NO_PIECE)
     if run.counts.is_block == 1:
         run.state.load_now = total(run.history[run.counts.length - 1].load)
     run.counts.trip += 1 + leap

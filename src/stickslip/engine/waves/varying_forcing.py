@@ -12,12 +12,11 @@ import math
 
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import span_of_load, xi_at
-from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at
+from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at, tone_series
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
-from stickslip.engine.waves.tone import tone_series
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
 from stickslip.foundation.phasors import dirichlet

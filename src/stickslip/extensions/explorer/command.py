@@ -18,15 +18,12 @@ if TYPE_CHECKING:
 
 SERVER = "Server"
 """Heading of the options of the server in the help."""
-FIRST = "fig6-slab"
-"""The scenario that is shown first if none is named."""
 ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reached from this computer only."
 ALLOW_ORIGIN = "Another host (NAME or NAME:PORT) under which the page may be reached, as behind a proxy; may be repeated."
 PORT = "Port to listen on; 0 for any free port. Not given: the first free port from 5018 on."
 RECORD = "Draw a laboratory record behind the runs (CSV, as for `stickslip infer`), and say how far they are from it."
 BEHIND = "Record"
 """Heading of the options of a record in the help."""
-STATIC = "Write the guided tour into this new folder, as files that need neither Python nor a network, and end."
 _HOST = re.compile(r"[\w.-]+(:\d{1,5})?|\[[\da-f:]+\](:\d{1,5})?", re.IGNORECASE)
 NO_BROWSER = "Do not open a browser: only print the address."
 
@@ -49,7 +46,6 @@ def explore(
         int, typer.Option(help="Largest number of pages open at once.", min=1, metavar="<int>", rich_help_panel=SERVER)
     ] = 8,
     no_browser: Annotated[bool, typer.Option("--no-browser", help=NO_BROWSER, rich_help_panel=SERVER)] = False,
-    static: Annotated[Path | None, option(STATIC, metavar="<folder>")] = None,
 ) -> None:
     r"""Open a page in the browser on which a scenario answers while you move its numbers.
 
@@ -62,21 +58,17 @@ def explore(
       stickslip explore fig6-slab
       stickslip explore best.toml --record test17.csv
       stickslip explore mine.toml --no-browser --port 5018
-      stickslip explore --static tour
 
     Needs the extra `explorer`: pip install "stickslip[explorer]".
 
     Exit code: 0 ended by Ctrl-C, 2 unusable input.
     """
     from stickslip.cli.overrides import load
-    from stickslip.extensions.explorer.model.setting import Setting, explorable
+    from stickslip.extensions.explorer.model.setting import FIRST_SCENARIO, Setting, explorable
     from stickslip.extensions.explorer.notebook import check_extra
 
     check_extra("explore")
-    if static is not None:
-        _write(static, scenario, changes, record)
-        return
-    loaded = explorable(load(scenario or FIRST, "explore", changes, any_kind=True))
+    loaded = explorable(load(scenario or FIRST_SCENARIO, "explore", changes, any_kind=True))
     if not loaded.is_of_core and (loaded.to_solve.is_plane or record is not None):
         raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
     from stickslip.extensions.explorer.server.serve import Endpoint
@@ -102,19 +94,3 @@ def _behind(record: Path, ends: dict[str, str | None], column: list[str] | None,
     time = Quantity("s", "time of the record")
     found = {name: time.check("explore", name, typed_number(text)) for name, text in ends.items() if text is not None}
     return record_beside(record, sensor, problem, "explore", **found, columns=typed_columns(column, "explore: --column"))
-
-
-def _write(folder: Path, scenario: str | None, changes: list[str] | None, record: Path | None) -> None:
-    """Write the tour into a folder and say how large it is. Raises InputError."""
-    from stickslip.extensions.explorer.static.export import write_tour
-    from stickslip.foundation.errors import InputError
-    from stickslip.run import progress_line
-
-    if scenario is not None or changes or record is not None:
-        raise InputError(
-            "explore: --static writes the guided tour, which has scenarios of its own: leave out SCENARIO, --set and --record"
-        )
-    check_is_there("sweeps", "explore: --static")
-    with progress_line("explore:") as report:
-        written = write_tour(folder, report)
-    typer.echo(written)

@@ -69,10 +69,10 @@ MOST_PARTS, MOST_SEARCHED = 24, 8
 """Largest number of parts between rests to fit, and of those in the first search."""
 LEAST_FITTED = 2000
 """A part with at most this many samples is fitted as it is, however many parts there are."""
-TIME = Quantity("s", "time of the record")
+TIME_OF_RECORD = Quantity("s", "time of the record")
 WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the pull rate", at_least=0.0)
 LIMIT = Quantity("s", "processor time after which the search ends", above=0.0)
-LONGEST = 600.0
+TIME_OF_SEARCH = 600.0
 """Default processor time (s) of a search."""
 
 
@@ -108,7 +108,7 @@ def _check_word(wishes: Wishes, name: str, allowed: Collection[str]) -> None:
 
 def _progress(wishes: Wishes, tell: Tell) -> SearchProgress:
     """Return the progress of the search, which ends when its time is over. Raises InputError for a time that is none."""
-    return SearchProgress(tell, LONGEST if wishes.max_time is None else LIMIT.check("infer", "max_time", wishes.max_time))
+    return SearchProgress(tell, TIME_OF_SEARCH if wishes.max_time is None else LIMIT.check("infer", "max_time", wishes.max_time))
 
 
 def _file(wishes: Wishes) -> Path | None:
@@ -243,7 +243,7 @@ def _records(wishes: Wishes) -> list[Record]:
     sources = source if isinstance(source, list | tuple) else [source]
     if not sources:
         raise InputError("infer: record must be at least one record, got none")
-    begin, end = (None if value is None else TIME.check("infer", name, value) for name, value in times.items())
+    begin, end = (None if value is None else TIME_OF_RECORD.check("infer", name, value) for name, value in times.items())
     return [Record.read(one, begin, end) for one in sources]
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import pandas as pd
@@ -15,9 +15,10 @@ import pandas as pd
 from stickslip.extensions.inference.certainty.sampling import MOST_SAMPLES, sample
 from stickslip.extensions.inference.fit.free import DELAY, DRIFT, TREND
 from stickslip.extensions.inference.fit.looks import cure_of
-from stickslip.extensions.inference.fit.memory import EVEN, LONGEST, WHITE
+from stickslip.extensions.inference.fit.memory import EVEN, LONGEST_MEMORY, WHITE
 from stickslip.extensions.inference.fit.part import first_sizes
 from stickslip.extensions.inference.fit.progress import SearchProgress
+from stickslip.extensions.inference.fit.starting import FALLS_IN_EVENTS
 from stickslip.extensions.inference.fit.what_is_left import words
 from stickslip.extensions.inference.fitted_record import FittedRecord
 from stickslip.extensions.inference.record.features import arrests_in
@@ -36,12 +37,13 @@ from stickslip.problem.scenarios import Scenario
 from stickslip.run import TextProgress, telling
 from stickslip.solution.files import origin
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 MISSED, MISSED_SHARE = 3.0, 0.2
 """A run misses a record if residuals exceed this multiple of the noise of neighbouring samples and this share of the scatter."""
-FALLING = 0.2
-"""Shear falls in slip events if it falls during less than this share of the time."""
 INTERRUPTED = "interrupted: these are the best numbers so far"
-MANY = 1.5
+MANY_DEVIATIONS = 1.5
 """Residuals above this many given standard deviations are reported as larger than the stated noise."""
 
 
@@ -154,12 +156,18 @@ class Inference(FittedRecord):
 
         return write(self, Path(folder), *others)
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.inference.figures import inference as drawn
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
+        from stickslip.extensions.inference.figures.inference import inference_data
 
-        return drawn
+        return inference_data(self)
 
-    def _lines(self) -> Iterator[str]:
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.inference.figures.inference import draw_inference
+
+        return draw_inference
+
+    def _sentences(self) -> Iterator[str]:
         yield self.headline
         width = max(len(name) for name, _, _ in self.rows)
         for name, value, unit in self.rows:
@@ -252,7 +260,7 @@ def noise_of(study: FittedRecord) -> Iterator[str]:
         if memory.time > 0.0 and not _drifts(study, name):
             yield f"residuals of {name} remember themselves for {brief(memory.time, 's', 3)}; the intervals allow for it"
     for name, size in study.model.sizes.items():
-        if size > MANY and any(name in part.record.deviations for part in study.parts):
+        if size > MANY_DEVIATIONS and any(name in part.record.deviations for part in study.parts):
             yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
 
 
@@ -319,7 +327,7 @@ def _rounding(study: FittedRecord, name: str) -> float:
 def _drifts(study: FittedRecord, name: str) -> bool:
     """Return True if the residuals of a quantity have the longest correlation time that the estimate allows."""
     longest = max(part.record.clock[-1] for part in study.model.parts if name in part.observed)
-    return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST * float(longest)
+    return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST_MEMORY * float(longest)
 
 
 def _sticks_and_slips(shear: Floats) -> bool:
@@ -327,7 +335,7 @@ def _sticks_and_slips(shear: Floats) -> bool:
     known = shear[np.isfinite(shear)]
     bottoms = [0, *arrests_in(known).tolist()]
     falling = sum(last - first - int(np.argmax(known[first : last + 1])) for first, last in pairwise(bottoms))
-    return len(bottoms) > 2 and falling < FALLING * bottoms[-1]
+    return len(bottoms) > 2 and falling < FALLS_IN_EVENTS * bottoms[-1]
 
 
 def _never_slips(study: FittedRecord, name: str) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 import stickslip as ss
 from stickslip.extensions.inference.figures import inference as figures
 from stickslip.extensions.inference.inference import Inference, in_shown_unit, minima_of, noise_of, ranking, record_of, warnings_of
-from stickslip.figures.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
+from stickslip.figures.page import DIGITS_ON_PAGE, picture, rendered, save_figure, save_text, superscript, with_unit
 from stickslip.foundation.names import name_of
 from stickslip.foundation.show import about_time, brief, number, sentence
 from stickslip.problem import in_given_units
@@ -56,7 +56,7 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
         records=_records(study),
         scenario=scenario,
         asked=[(name, str(value)) for name, value in study.asked.items()],
-        digits=DIGITS,
+        digits=DIGITS_ON_PAGE,
     )
     return save_text(folder / PAGE, html)
 
@@ -152,7 +152,7 @@ def _measured(value: float, uncertainty: float) -> str:
     size = max(abs(value), uncertainty)
     power = 0 if not size or 1e-3 <= size < 1e6 else math.floor(math.log10(size))
     value, uncertainty = value / 10.0**power, uncertainty / 10.0**power
-    decimals = max(1 - math.floor(math.log10(uncertainty)), 0) if uncertainty > 0.0 else DIGITS
+    decimals = max(1 - math.floor(math.log10(uncertainty)), 0) if uncertainty > 0.0 else DIGITS_ON_PAGE
     text = f"{value:.{decimals}f} ± {uncertainty:.{decimals}f}".replace("-", "−")
     return text if power == 0 else f"({text}) × 10{superscript(power)}"
 

@@ -231,7 +231,7 @@ def table() -> list[dict[str, str]]:
     return found
 
 
-def data(runs: Runs) -> xr.Dataset:
+def planes_data(runs: Runs) -> xr.Dataset:
     """Return what the figure shows: pulses against L/h, and slip rates in the middle for L = 2 h."""
     import xarray as xr
 
@@ -258,7 +258,7 @@ def data(runs: Runs) -> xr.Dataset:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw_planes(dataset: xr.Dataset) -> Figure:
     """Draw pulses against the length of the fault, and slip rates in the middle against time in 1D, 2D and 3D."""
     figure = sheet((7.2, 4.2))
     axes: Any = figure.subplot_mosaic("ABB;ACC;ADD", width_ratios=(1.0, 0.6, 0.6))

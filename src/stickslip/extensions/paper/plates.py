@@ -44,18 +44,18 @@ def _sets(_: Runs) -> xr.Dataset:
     alpha = 0.5 * (uniqueness_of(irregular).critical_value or 0.0)
     cases = {"regular": irregular.parameters["alpha"].put(alpha), "irregular": irregular}
     titles = {name: rf"{name.capitalize()}, $\alpha$ = {case.parameters['alpha'].value:g} s/m" for name, case in cases.items()}
-    return resistance.data(cases, 6.0, titles)
+    return resistance.resistance_data(cases, 6.0, titles)
 
 
 def _side_by_side(block: str, slab: str, title: str) -> Callable[[Runs], xr.Dataset]:
     """Return the function that runs a block and a slab; `title` follows their names."""
 
-    def data(runs: Runs) -> xr.Dataset:
+    def compared(runs: Runs) -> xr.Dataset:
         solutions = {"block": runs(problem(block), SHOWN), "slab": runs(problem(slab), SHOWN)}
         titles = {"block": f"Block, {title}", "slab": f"Slab, {title}"}
-        return comparison.data(solutions, SHOWN, titles)
+        return comparison.comparison_data(solutions, SHOWN, titles)
 
-    return data
+    return compared
 
 
 PLATES = (
@@ -64,8 +64,8 @@ PLATES = (
         "The two systems",
         "A rigid block pulled through a spring, and an elastic slab of infinite extent pulled at its far side, both on a "
         "frictional contact. Not to scale.",
-        lambda _: systems.data(problem("fig6-block-printed"), problem("fig6-slab")),
-        systems.draw,
+        lambda _: systems.systems_data(problem("fig6-block-printed"), problem("fig6-slab")),
+        systems.draw_systems,
     ),
     Plate(
         2,
@@ -80,7 +80,7 @@ PLATES = (
         "Every pair of slip rate and load that solves the contact equation. Regular: one slip rate for each load. "
         "Irregular: three between the folds A and C. Dotted: the jumps of the rule of perfect delay.",
         _sets,
-        resistance.draw,
+        resistance.draw_resistance,
     ),
     Plate(
         4,
@@ -96,7 +96,7 @@ PLATES = (
         "Reconstructed: ω = 50 /m and 1 mm added to D0; the block's stiffness as printed. The block slips once; the slab "
         "slips in pulses until the reflected wave arrests it at 2h/c.",
         _side_by_side("fig5-block-reconstructed-omega", "fig5-slab-reconstructed", "slip law"),
-        comparison.draw,
+        comparison.draw_comparison,
     ),
     Plate(
         6,
@@ -104,7 +104,7 @@ PLATES = (
         "The slab as printed; the block with K = G × 10³ m (as printed, K = G × 10⁴ m, it has no macroscopic event). The "
         "block's slip rate is continuous, the slab's jumps at 0+ and at 2h/c.",
         _side_by_side("fig6-block-reconstructed", "fig6-slab", r"$\alpha$ = 1 s/m"),
-        comparison.draw,
+        comparison.draw_comparison,
     ),
     Plate(
         7,
@@ -112,7 +112,7 @@ PLATES = (
         "The slab as printed: two tiny shocks with smooth acceleration between them. The block with K = G × 10³ m and the "
         "same friction only follows the driver in tiny steps, four orders slower.",
         _side_by_side("fig7-block-critical", "fig7-slab-critical", r"$\alpha_c$ + 10$^{-6}$ s/m"),
-        comparison.draw,
+        comparison.draw_comparison,
     ),
     Plate(
         8,
@@ -120,8 +120,8 @@ PLATES = (
         "Left: pulses in the middle of faults of length L until the echo returns at 2h/c (filled) and until 4h/c (open). "
         "Right: slip rate in the middle for L = 2 h; the dotted line is the time at which waves from the ends arrive. "
         "The curve in 3D and the points on the left are stored, that in 2D is computed now if JAX is there.",
-        planar.data,
-        planar.draw,
+        planar.planes_data,
+        planar.draw_planes,
     ),
 )
 """All figures, those of the paper first and in its order."""

@@ -13,7 +13,7 @@ from stickslip.extensions.paper.claims import ClaimVerdict, Outcome
 from stickslip.extensions.paper.planar import ANSWER, BASIS, table
 from stickslip.extensions.paper.plates import PLATES
 from stickslip.extensions.paper.tables import cases_table, constants
-from stickslip.figures.page import DIGITS, number, picture, rendered, with_unit
+from stickslip.figures.page import DIGITS_ON_PAGE, number, picture, rendered, with_unit
 
 MARKS = {Outcome.PRINTED: "✓", Outcome.READING: "◐", Outcome.QUALIFIED: "≈", Outcome.NOT: "✗"}
 """A sign for each outcome, so that colour alone need not tell them apart."""
@@ -28,7 +28,7 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[ClaimVerd
         version=ss.__version__,
         reference=REFERENCE,
         rtol=number(runs.rtol),
-        digits=DIGITS,
+        digits=DIGITS_ON_PAGE,
         verdicts=verdicts,
         outcomes=[(outcome, MARKS[outcome], counts[outcome]) for outcome in Outcome],
         marks=MARKS,

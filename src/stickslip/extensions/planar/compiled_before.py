@@ -27,7 +27,7 @@ from stickslip.foundation.sealed_files import cache_root, remove
 
 QUIET_SINCE = Version("0.10.2")
 """JAX before this writes errors to the terminal when it loads what it compiled for AVX-512 (its issue 38445)."""
-LARGEST = 20_000_000
+LARGEST_CACHE_OF_JAX = 20_000_000
 """Largest size of the cache (bytes); a kind of run takes some 80 kB. JAX removes what has not been used for longest."""
 CODE, USED = "-cache", "-atime"
 """How JAX names what it compiled, and the file beside it with the time of its last use, which it writes second."""
@@ -35,7 +35,7 @@ UNDER_WAY = 60.0
 """Age (s) after which a file whose second is missing is no longer being written."""
 FOLDER = "jax_compilation_cache_dir"
 SETTINGS = {
-    "jax_compilation_cache_max_size": LARGEST,
+    "jax_compilation_cache_max_size": LARGEST_CACHE_OF_JAX,
     "jax_persistent_cache_min_compile_time_secs": 0.0,
     "jax_persistent_cache_enable_xla_caches": "none",  # they have no largest size
 }

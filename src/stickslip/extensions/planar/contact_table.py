@@ -15,7 +15,7 @@ from stickslip.foundation.quantities import LARGEST_SERIES, Choice, Quantity
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import without_owner
 
-PLACES = {axis: Quantity("m", f"interval of {axis}, 0 in the middle of the contact") for axis in ("y", "z")}
+INTERVALS_OF_AXES = {axis: Quantity("m", f"interval of {axis}, 0 in the middle of the contact") for axis in ("y", "z")}
 SHAPE = Choice("shape of a patch on a plane", ("box", "ellipse"))
 TAPER = Quantity("m", "distance beyond the patch in which its values pass to those beneath, linearly", at_least=0)
 PATCH: dict[str, Any] = {"y": None, "z": None, "shape": "box", "taper": 0.0, "outside": False}
@@ -69,7 +69,7 @@ class _ContactReader:
         y, values = (value[key] for key in OF_POINTS)
         if not (isinstance(y, list) and isinstance(values, list) and 2 <= len(y) == len(values) <= LARGEST_SERIES):
             raise self.fault(f"{place} must have a list y and a list of as many values, 2 to {LARGEST_SERIES}")
-        y = tuple(PLACES["y"].check(self.file, f"{place}.y[{i}]", one) for i, one in enumerate(y))
+        y = tuple(INTERVALS_OF_AXES["y"].check(self.file, f"{place}.y[{i}]", one) for i, one in enumerate(y))
         if any(one > following for one, following in pairwise(y)) or any(y[i] == y[i + 2] for i in range(len(y) - 2)):
             raise self.fault(f"{place}.y must ascend, where a step is the same place twice")
         return PointsAlong(y, tuple(self.value(name, one, f"{place}.values[{i}]") for i, one in enumerate(values)))
@@ -91,7 +91,7 @@ class _ContactReader:
             raise self.fault(f"{table} must be a table, got {shown(raw)}")
         found = self.names(raw, table, PATCH)
         own = PATCH | {name: value for name, value, _ in found if name in PATCH}
-        own |= {axis: self.interval(own[axis], axis, f"{table} {axis}") for axis in PLACES if own[axis] is not None}
+        own |= {axis: self.interval(own[axis], axis, f"{table} {axis}") for axis in INTERVALS_OF_AXES if own[axis] is not None}
         own["shape"] = SHAPE.check(self.file, f"{table} shape", own["shape"])
         own["taper"] = TAPER.check(self.file, f"{table} taper", own["taper"])
         values = tuple((name, self.value(name, value, place, 1)) for name, value, place in found if name not in PATCH)
@@ -111,7 +111,7 @@ class _ContactReader:
         """Return an interval (m)."""
         if not isinstance(value, list) or len(value) != 2:
             raise self.fault(f'{place} must be an interval such as ["-4 km", "4 km"], got {shown(value)}')
-        low, high = (PLACES[axis].check(self.file, f"{place}[{i}]", one) for i, one in enumerate(value))
+        low, high = (INTERVALS_OF_AXES[axis].check(self.file, f"{place}[{i}]", one) for i, one in enumerate(value))
         if low >= high:
             raise self.fault(f"{place} must go from the smaller to the larger end, got {shown(value)}")
         return low, high

@@ -20,9 +20,9 @@ from scipy.special import j1, roots_legendre
 
 from stickslip.foundation.arrays import Floats
 
-MOST = 1024
+POINTS_OF_J1 = 1024
 """Largest number of Gauss points of one step of the integral, where J1 oscillates many times within the step."""
-BLOCK = 100_000
+EVALUATIONS_TOGETHER = 100_000
 """Evaluations of J1 at a time."""
 
 
@@ -44,11 +44,11 @@ def echo_weights(frequencies: Floats, steps_per_round_trip: int, two_way_time: f
     late, early = np.zeros((steps, frequencies.size)), np.zeros((steps, frequencies.size))
     phases = frequencies * np.diff(edges)[:, None]
     many = 2.0 ** np.ceil(np.log2(0.6 * phases + 6.5))
-    wanted = np.select([phases < 0.4, phases < 1.9], [4, 6], np.minimum(many, MOST)).astype(int)  # errors below 1e-11
+    wanted = np.select([phases < 0.4, phases < 1.9], [4, 6], np.minimum(many, POINTS_OF_J1)).astype(int)  # errors below 1e-11
     for points in np.unique(wanted).tolist():
         nodes, gauss = roots_legendre(points)
         rows, columns = np.nonzero((wanted == points) & (frequencies > 0.0))
-        for part in np.array_split(np.arange(rows.size), max(1, -(-rows.size * points // BLOCK))):
+        for part in np.array_split(np.arange(rows.size), max(1, -(-rows.size * points // EVALUATIONS_TOGETHER))):
             row, w = rows[part], frequencies[columns[part]][:, None]
             half = 0.5 * np.diff(edges)[row][:, None]
             s = edges[row][:, None] + half * (1.0 + nodes)

@@ -32,7 +32,7 @@ RESTS = "0.93"
 
 
 @styled
-def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
+def draw_planar(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
     """Draw the slip rate over y and time (for a plane at the middle of z), and below it slip and slip rate in the middle."""
     figure = sheet((7.2, 6.4), **place)
     axes: Any = figure.subplots(3, 1, sharex=True, height_ratios=(2.6, 1.0, 1.0))

@@ -64,9 +64,9 @@ class PlanarReader(Reader):
     def is_in(self, path: Path) -> bool:
         if not path.is_dir():
             return path.suffix.lower() == ".zarr" and not path.exists()  # so that a run that is not there is missed by its name
-        from stickslip.extensions.planar.store_layout import FORMAT
+        from stickslip.extensions.planar.store_layout import PLANAR_FORMAT
 
-        return FORMAT.is_in(path)
+        return PLANAR_FORMAT.is_in(path)
 
     @override
     def open(self, path: Path) -> PlanarSolution:

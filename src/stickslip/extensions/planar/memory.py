@@ -21,7 +21,7 @@ from stickslip.foundation.arrays import Floats
 
 Complex = NDArray[np.complex128]
 
-POINTS = 5
+POINTS_OF_GAUSS = 5
 """Gauss points of each panel of the integral: J is right to 2e-9 of its largest value, 1/2."""
 
 
@@ -32,7 +32,7 @@ class Exponentials(NamedTuple):
     weights: Complex
 
 
-def exponentials(longest: float, points: int = POINTS) -> Exponentials:
+def exponentials(longest: float, points: int = POINTS_OF_GAUSS) -> Exponentials:
     """Return J1(x)/x as a sum of exponentials for 0 <= x <= longest (no unit).
 
     The panels of the integral are halved towards a = 0, where the slowest exponentials are; the last one has the weight sqrt(a) of

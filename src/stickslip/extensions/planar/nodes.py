@@ -20,7 +20,7 @@ from stickslip.friction.contract import one_argument
 from stickslip.friction.formula import evaluate
 from stickslip.problem import LOAD, Problem, put_many
 
-MANY = 256
+NODES_ALL_CHECKED = 256
 """Up to this many different nodes are all checked as problems of their own; of more, the extremes and some others are."""
 MAY_VARY = ("friction.", "body.normal_stress", "initial.")
 """Beginnings of the names of what may vary along the contact."""
@@ -31,7 +31,7 @@ class NodeValues:
     """The numbers of each node. Arrays have the shape of the contact, after the axes that are mentioned."""
 
     problems: tuple[Problem, ...]
-    """The different problems of the nodes; of more than MANY, those with the extremes of each number, and some others."""
+    """Different problems of the nodes; of more than NODES_ALL_CHECKED, those with extremes of a number, and some others."""
     normal: Floats
     """Normal stress, Pa."""
     load: Floats
@@ -124,7 +124,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         values = (rows[place].tolist() for place in places)
         return [put_many(problem, dict(zip(different, row, strict=True))) for row in values]
 
-    if len(rows) <= MANY:
+    if len(rows) <= NODES_ALL_CHECKED:
         problems = at(range(len(rows)))
         found = _of_problems(problems)
     else:
@@ -170,12 +170,12 @@ def _of_laws(laws: list[FrictionLaw]) -> dict[str, Any]:
 
 
 def _extremes(rows: Floats) -> list[int]:
-    """Return the places of at most MANY rows: extremes of each column, of differences, products and ratios of two, and others."""
+    """Return at most NODES_ALL_CHECKED rows: extremes of each column, of differences, products and ratios of two, and others."""
     columns = list(rows.T)
     with np.errstate(all="ignore"):
         both = [found for one, other in combinations(columns, 2) for found in (one * other, one / other, one - other)]
     ends = {int(end(one)) for one in (*columns, *map(np.nan_to_num, both)) for end in (np.argmin, np.argmax)}
-    return sorted({*ends, *np.linspace(0, len(rows) - 1, max(2, MANY - len(ends)), dtype=int).tolist()})
+    return sorted({*ends, *np.linspace(0, len(rows) - 1, max(2, NODES_ALL_CHECKED - len(ends)), dtype=int).tolist()})
 
 
 def _of_many(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:

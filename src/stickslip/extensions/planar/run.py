@@ -32,12 +32,12 @@ FRAMES = 100
 """Frames in a two-way travel time, by default."""
 RESIDUAL = 1e-6
 """Largest residual of the contact equation, as a share of the load, in a run that counts as a solution; rounding gives 1e-15."""
-ROUNDING = 1e-12
+ROUNDING_OF_FRICTION = 1e-12
 """Rounding may carry friction below zero by this share of the normal stress."""
 UNHEARD_OF = 1e3
 """A run is unstable if its slip rate exceeds this multiple of the rate that the largest load could drive against radiation alone;
 fronts reach some ten times that rate."""
-NODES = 200
+NODES_OF_BUDGET = 200
 """The step of this many nodes counts as one in the budget of a call: the first call then takes less than a second."""
 COMPILER = 6e7
 """Memory that compiling a run takes, bytes."""
@@ -228,7 +228,7 @@ class PlanarRun:
         return self.solver.trip * self.solver.steps + self.solver.step
 
     def advance(self, budget: int) -> int:
-        """Advance to the next frame, or as far as a budget of steps of NODES nodes each allows: see `Solver.advance`.
+        """Advance to the next frame, or as far as a budget of steps of NODES_OF_BUDGET nodes each allows: see `Solver.advance`.
 
         The end of a round trip is a frame, too; there the history is full of the waves that the round trip has sent.
         """
@@ -236,7 +236,7 @@ class PlanarRun:
         if not solver.steps_left:
             return Stop.FINISHED
         missing = every - solver.step % every if solver.step < solver.steps else every
-        taken = solver.advance(missing if solver.is_shared else min(missing, max(1, budget * NODES // self.nodes)))
+        taken = solver.advance(missing if solver.is_shared else min(missing, max(1, budget * NODES_OF_BUDGET // self.nodes)))
         is_over, is_full = not solver.steps_left, solver.step == solver.steps
         self.can_be_saved = taken == missing or is_full or is_over
         if self.can_be_saved:
@@ -262,7 +262,7 @@ class PlanarRun:
         largest = np.abs(slab.values.load).max() + np.abs(self.solver.loading).max()
         if np.abs(motion.rate).max() > UNHEARD_OF * largest / slab.body.impedance:
             return UNSTABLE
-        driven = motion.traction * np.sign(motion.rate) < -ROUNDING * slab.values.normal
+        driven = motion.traction * np.sign(motion.rate) < -ROUNDING_OF_FRICTION * slab.values.normal
         return Stop.NEGATIVE_FRICTION if driven.any() else None
 
     def grow(self) -> bool:

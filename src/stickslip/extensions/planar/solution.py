@@ -51,7 +51,7 @@ class PlanarPlots(NamesAttributes):
         """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
         from stickslip.extensions.planar import figure as planar
 
-        return known_to_pyplot(planar.draw(self._run, **place), place)
+        return known_to_pyplot(planar.draw_planar(self._run, **place), place)
 
     @in_given_units
     def animation(

@@ -22,7 +22,7 @@ from typing_extensions import override
 from stickslip.extensions.planar.slab import PlanarSlab
 from stickslip.extensions.planar.solution import FIELDS, Frames, PlanarSolution
 from stickslip.extensions.planar.store_layout import (
-    FORMAT,
+    PLANAR_FORMAT,
     SENT,
     attributes,
     check_python,
@@ -48,10 +48,10 @@ if TYPE_CHECKING:
     from stickslip.extensions.planar.solver import PlanarSolver
     from stickslip.extensions.planar.step import PlanarMotion
 
-STATE = "state.nc"
+STATE_FILE = "state.nc"
 """File of the checkpoint."""
 BUSY = "another run is writing into it"
-DECIDE = ("extensions/planar", "foundation/constants.py", "friction", "problem")
+PLANAR_CODE = ("extensions/planar", "foundation/constants.py", "friction", "problem")
 """Folders and files of the package whose code decides the result of a planar run."""
 
 
@@ -101,7 +101,7 @@ class PlanarStore(Frames):
         """Open the folder of a run to continue it, locked against other processes. Raises InputError for anything else."""
         zarr_folder.check_writable(path)
         with held(path, f"{path}: {BUSY}"):
-            with FORMAT.reading(path):
+            with PLANAR_FORMAT.reading(path):
                 if _is_unbegun(path):
                     raise InputError(f"{path}: has no checkpoint yet: begin the run again with this name")
                 store = cls._opened(path)
@@ -109,9 +109,9 @@ class PlanarStore(Frames):
 
     @classmethod
     def _opened(cls, path: Path) -> Self:
-        group, about = opened(path, use_consolidated=False), netcdf_file.read(path / STATE, "the state of a planar run").attrs
-        if about.get("digest") != group.attrs["digest"] or whole_number(about, FORMAT.kind, path) != FORMAT.version:
-            raise InputError(f"its {STATE} belongs to another run")
+        group, about = opened(path, use_consolidated=False), netcdf_file.read(path / STATE_FILE, "the state of a planar run").attrs
+        if about.get("digest") != group.attrs["digest"] or whole_number(about, PLANAR_FORMAT.kind, path) != PLANAR_FORMAT.version:
+            raise InputError(f"its {STATE_FILE} belongs to another run")
         if about["engine"] != _engine():
             raise InputError(
                 f"{path}: cannot be resumed: another version of stickslip or of JAX made it ({about['engine']}; this is"
@@ -124,18 +124,18 @@ class PlanarStore(Frames):
         store.largest_slip, store.fastest = (number(about, name, path) for name in ("largest_slip", "fastest"))
         store.times = finite_rows(group, "time", slice(store.written)).tolist()
         if len(store.times) != store.written:
-            raise InputError(f"it has {len(store.times)} frames, its {STATE} says {store.written}")
+            raise InputError(f"it has {len(store.times)} frames, its {STATE_FILE} says {store.written}")
         return store
 
     def restore(self, run: PlanarSolver) -> None:
         """Set a solver to the state in the folder. Raises InputError if it is damaged."""
-        with FORMAT.reading(self.path):
-            found, rows = netcdf_file.read(self.path / STATE), self.steps_per_round_trip + 1
+        with PLANAR_FORMAT.reading(self.path):
+            found, rows = netcdf_file.read(self.path / STATE_FILE), self.steps_per_round_trip + 1
             trip, step = divmod(self.sent - 1, rows)
             state = {str(name): one.to_numpy() for name, one in found.items()}
             wanted = {name: (one.shape, one.dtype) for name, one in run.state().items()}
             if {name: (one.shape, one.dtype) for name, one in state.items()} != wanted or trip >= run.trips:
-                raise InputError(f"its {STATE} has arrays of other shapes than its grid")
+                raise InputError(f"its {STATE_FILE} has arrays of other shapes than its grid")
             run.restore(
                 state, trip, step, lambda n: finite_rows(self._arrays, SENT, slice(n * rows, min((n + 1) * rows, self.sent)))
             )
@@ -168,7 +168,7 @@ class PlanarStore(Frames):
         array = self._arrays[name]
         end, size = first + len(values), array.chunks[0]
         kept = "stickslip.resume continues from the last checkpoint when there is room"
-        with FORMAT.reading(self.path), zarr_folder.writing(self.path, kept):  # a chunk that is not full is read first
+        with PLANAR_FORMAT.reading(self.path), zarr_folder.writing(self.path, kept):  # a chunk that is not full is read first
             if end > array.shape[0]:
                 array.resize((end, *array.shape[1:]))
             array[first:end] = values
@@ -206,15 +206,15 @@ class PlanarStore(Frames):
         }
         own = ("written", "sent", "largest_slip", "fastest")
         about = {name: getattr(self, name) for name in own} | {
-            FORMAT.kind: FORMAT.version,
+            PLANAR_FORMAT.kind: PLANAR_FORMAT.version,
             "engine": _engine(),
             "digest": self.digest,
         }
-        netcdf_file.write_variables(state, about, self.path / STATE)
+        netcdf_file.write_variables(state, about, self.path / STATE_FILE)
 
     def _show(self, code: int) -> None:
         """Let readers see what has been written, with the status that belongs to a code."""
-        with FORMAT.reading(self.path):
+        with PLANAR_FORMAT.reading(self.path):
             zarr_folder.consolidate(self.path)
             # the group that knows the arrays keeps what it knows of them: the file changes at once
             opened(self.path, "r+").attrs.update(
@@ -228,9 +228,9 @@ class PlanarStore(Frames):
 
 def _is_unbegun(path: Path) -> bool:
     """Return True for the folder of a run that was killed before its first checkpoint: it holds nothing that was calculated."""
-    if not FORMAT.is_in(path) or (path / STATE).exists():
+    if not PLANAR_FORMAT.is_in(path) or (path / STATE_FILE).exists():
         return False
-    with FORMAT.reading(path):
+    with PLANAR_FORMAT.reading(path):
         group: Any = opened(path, use_consolidated=False)
         return not any(group[name].shape[0] for name in ("time", *FIELDS, SENT))
 
@@ -239,4 +239,4 @@ def _is_unbegun(path: Path) -> bool:
 def _engine() -> str:
     import jax
 
-    return f"{key_of_folders(DECIDE, sys.version)}, JAX {jax.__version__}"
+    return f"{key_of_folders(PLANAR_CODE, sys.version)}, JAX {jax.__version__}"

@@ -44,7 +44,7 @@ LONGEST_TITLE = 200
 """Largest number of characters of a title that is read from a folder."""
 UNTITLED = "stickslip run: PlanarSlab"
 """Beginning of the title in the folder of a run that has none."""
-FORMAT = FolderFormat("stickslip_planar", 1, CHANGES)
+PLANAR_FORMAT = FolderFormat("stickslip_planar", 1, CHANGES)
 
 
 def lay_out(place: Any, slab: PlanarSlab, about: Any) -> None:
@@ -93,7 +93,7 @@ def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSol
         "frames": frames,
         "steps_per_round_trip": run.steps,
     }
-    return FORMAT.attributes(about) | {"duration": scenario.duration, "residual": 0.0} | in_attributes(STATUSES[UNDER_WAY])
+    return PLANAR_FORMAT.attributes(about) | {"duration": scenario.duration, "residual": 0.0} | in_attributes(STATUSES[UNDER_WAY])
 
 
 def in_attributes(status: Status) -> dict[str, Any]:
@@ -129,7 +129,7 @@ class StoredFields(Mapping[str, Floats]):
 
     @override
     def __getitem__(self, name: str) -> Floats:
-        with FORMAT.reading(self.path):
+        with PLANAR_FORMAT.reading(self.path):
             return finite_rows(self.group, name, slice(self.frames))
 
     @override
@@ -143,7 +143,7 @@ class StoredFields(Mapping[str, Floats]):
 
 def open_planar(path: Path) -> PlanarSolution:
     """Return the run in a folder; its fields are read when they are used. Raises InputError for anything but such a folder."""
-    with FORMAT.reading(path):
+    with PLANAR_FORMAT.reading(path):
         group = opened(path)
         steps = whole_number(group.attrs, "steps_per_round_trip", path, 1)
         slab, times = slab_in(group, path), finite_rows(group, "time")
@@ -163,7 +163,7 @@ def open_planar(path: Path) -> PlanarSolution:
 
 def scenario_in(path: Path) -> Scenario:
     """Return the scenario of the run in a folder. Raises InputError as `open_planar` does."""
-    with FORMAT.reading(path):
+    with PLANAR_FORMAT.reading(path):
         group = opened(path)
         about: Any = group.attrs
         found = replace(read_scenario(about["scenario"], str(path), path.stem), duration=about["duration"])
@@ -174,14 +174,14 @@ def scenario_in(path: Path) -> Scenario:
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
     """Return the group in a folder after checking its attributes. Raises InputError."""
     check_python(path)
-    return FORMAT.opened(path, mode, use_consolidated)
+    return PLANAR_FORMAT.opened(path, mode, use_consolidated)
 
 
 def check_python(path: Path) -> None:
     """Refuse a Python without assertions, by which zarr cannot read groups inside a group. Raises InputError."""
     if not __debug__:
         raise InputError(
-            f"{path}: zarr needs the assertions of Python for {FORMAT.what}: unset PYTHONOPTIMIZE, or leave out python -O"
+            f"{path}: zarr needs the assertions of Python for {PLANAR_FORMAT.what}: unset PYTHONOPTIMIZE, or leave out python -O"
         )
 
 

@@ -72,7 +72,7 @@ class ContactTable(ScenarioTable):
     @override
     def paths(self, value: Contact, problem: Problem) -> Iterator[tuple[str, Quantity | Choice]]:
         from stickslip.extensions.planar.contact import LOCKED
-        from stickslip.extensions.planar.contact_table import PLACES, TAPER
+        from stickslip.extensions.planar.contact_table import INTERVALS_OF_AXES, TAPER
         from stickslip.extensions.planar.nodes import varying
         from stickslip.problem.scenarios import YES_OR_NO
 
@@ -81,7 +81,7 @@ class ContactTable(ScenarioTable):
         units = {name: declared for name, (declared, _) in varying(problem).items()}
         for i, patch in enumerate(value.patches):
             place, values = f"patches[{i}]", [name for name, _ in patch.values if name != LOCKED]
-            for axis, declared in PLACES.items():
+            for axis, declared in INTERVALS_OF_AXES.items():
                 yield from ((f"{place}.{axis}[{j}]", declared) for j in range(len(getattr(patch, axis) or ())))
             yield from ((f"{place}.{name}", units[name]) for name in values)
             if values:

@@ -37,7 +37,7 @@ from stickslip.run.simulate import simulate
 if TYPE_CHECKING:
     import xarray as xr
 
-RTOL = 1e-12
+RTOL_OF_EXACT = 1e-12
 """Relative tolerance of the exact series."""
 INTERVALS = 4000
 """Number of equal intervals of time in a series."""
@@ -90,7 +90,7 @@ class Benchmark:
     @property
     def scenario(self) -> Scenario:
         """The scenario, with the tolerance of the exact series."""
-        return replace(self.make(), rtol=RTOL, name=self.name, title=f"benchmark {self.name}", description=self.asks)
+        return replace(self.make(), rtol=RTOL_OF_EXACT, name=self.name, title=f"benchmark {self.name}", description=self.asks)
 
 
 def _bundled(name: str) -> Callable[[], Scenario]:
@@ -212,7 +212,7 @@ def exact_series(name: str) -> xr.Dataset:
     values = {"time": time, "slip": run.slip(time) - run.problem.initial_slip, "slip_rate": rate, "traction": traction}
     units = {"time": "s", "slip": "m", "slip_rate": "m s-1", "traction": "Pa"}
     found = found.assign({column: ("sample", values[column][order], {"units": unit}) for column, unit in units.items()})
-    about = {"title": scenario.title, "asks": scenario.description, "rtol": RTOL, "version": stickslip.__version__}
+    about = {"title": scenario.title, "asks": scenario.description, "rtol": RTOL_OF_EXACT, "version": stickslip.__version__}
     return found.assign_attrs(**about, rule=run.problem.rule, scenario=scenario.to_toml())
 
 

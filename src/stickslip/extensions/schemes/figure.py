@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MOST_CURVES = 4
 """Largest number of schemes whose curves are drawn."""
-POINTS = 2000
+EXACT_TIMES = 2000
 """Number of times at which each exact curve is evaluated."""
 STYLES = ("-", "--", ":", "-.")
 """Styles of the lines of schemes, and of the exact solutions of rules other than the problem's own."""
@@ -51,7 +51,7 @@ def curves(study: Schemes) -> list[SchemeCurve]:
     exact = []
     for i, group in enumerate([own, *(group for group in groups if group != own)]):
         run = study.exact[group[0]]
-        time = np.unique(np.concatenate([np.linspace(0.0, study.until, POINTS), run.breaks[run.breaks <= study.until]]))
+        time = np.unique(np.concatenate([np.linspace(0.0, study.until, EXACT_TIMES), run.breaks[run.breaks <= study.until]]))
         values = {"slip": run.slip(time) - study.problem.initial_slip, "slip_rate": run.slip_rate(time)}
         text = "exact" if len(groups) == 1 else f"exact, {', '.join(group)}"
         exact.append(SchemeCurve(text, time, values, GREY if i else INK, STYLES[i % len(STYLES)], 1.0))
@@ -59,7 +59,7 @@ def curves(study: Schemes) -> list[SchemeCurve]:
 
 
 @styled
-def draw(study: Schemes, **place: Unpack[Place]) -> Figure:
+def draw_schemes(study: Schemes, **place: Unpack[Place]) -> Figure:
     """Draw the errors on the left; on the right the slip, and below it the slip rate."""
     figure = sheet((7.4, 5.4), **place)
     axes: Any = figure.subplot_mosaic([["errors", "slip"], ["errors", "slip_rate"]], width_ratios=(1, 1.25))

@@ -19,7 +19,7 @@ TOLERANCE = 0.05
 """Largest share of the exact values by which a series may be off, if no other is given."""
 EXPLAINS = 0.2
 """Factor by which a convention must lessen the distance from the exact series to be named."""
-QUANTITIES = {"slip": "m", "slip rate": "m/s", "traction": "Pa"}
+QUANTITIES_JUDGED = {"slip": "m", "slip rate": "m/s", "traction": "Pa"}
 """What a series has, with units."""
 SIDES = "of two elastic sides each slips by half, and the jump between them counts"
 ZERO = "another zero than the exact"
@@ -52,14 +52,14 @@ class Judgement:
         The mean distance in slip is a share of the largest slip, that in slip rate of the mean slip rate, and that in traction, in
         the whole and while the exact contact rests, of the range of traction. Slip rate and traction are compared away from shocks.
         """
-        return {name: share for what in QUANTITIES for name, share in self._shares(what, self._pairs[what][0]).items()}
+        return {name: share for what in QUANTITIES_JUDGED for name, share in self._shares(what, self._pairs[what][0]).items()}
 
     @cached_property
     def _pairs(self) -> dict[str, tuple[Floats, Floats]]:
         one = self.measured
         slip = one.exact.slip(one.time) - one.exact.problem.initial_slip
         found = (slip + one.gap, slip), (one.rate, one.exact_rate), (one.traction, one.exact_traction)
-        return dict(zip(QUANTITIES, found, strict=True))
+        return dict(zip(QUANTITIES_JUDGED, found, strict=True))
 
     def _shares(self, what: str, own: Floats) -> dict[str, float]:
         exact, away = self._pairs[what][1], self.measured.away
@@ -118,7 +118,7 @@ class Judgement:
         for said, names in explained.items():
             cure = CONVENTIONS[said][0]
             if said == ZERO:
-                zeros = (brief(float(np.median(np.subtract(*self._pairs[what]))), QUANTITIES[what], 4) for what in names)
+                zeros = (brief(float(np.median(np.subtract(*self._pairs[what]))), QUANTITIES_JUDGED[what], 4) for what in names)
                 cure = f"subtract {' and '.join(zeros)}"
             yield f"{self.name} has {said} {', '.join(names[:-1])}{' and ' if len(names) > 1 else ''}{names[-1]}: {cure}"
 

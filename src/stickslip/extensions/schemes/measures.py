@@ -18,7 +18,7 @@ from stickslip.friction import FrictionLaw
 from stickslip.problem import default_event_rate
 from stickslip.solution import Solution
 
-COLUMNS = {
+COLUMNS_OF_SCHEMES = {
     "scheme": ("", "name of the scheme, or of the program"),
     "cells": ("", "cells in the thickness; 0 if unknown"),
     "step": ("s", "step of time"),

@@ -50,9 +50,9 @@ SEARCHES = {
     "fastest": "the largest root",
 }
 """Ways to search for a root, each with its meaning."""
-POINTS = 48
+SEARCH_RATES = 48
 """Number of slip rates, in each of two sets, in the search for roots."""
-ROUNDING = 16.0 * float(np.finfo(float).eps)
+ROUNDING_OF_LOAD = 16.0 * float(np.finfo(float).eps)
 """A load that exceeds the strength by less than this share of it does not begin slip."""
 NEWTON_STEPS = 50
 """Largest number of Newton's steps."""
@@ -86,7 +86,9 @@ class GridContact:
     def meet(self, meeting: Meeting, before: float) -> Met:
         """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
         strength = self.normal * float(self.law.static_coefficient(self._seen(meeting.slip)))
-        margin = -ROUNDING if self._yields else ROUNDING  # a load at the strength that is about to rise begins slip at once
+        margin = (
+            -ROUNDING_OF_LOAD if self._yields else ROUNDING_OF_LOAD
+        )  # a load at the strength that is about to rise begins slip at once
         holds = abs(meeting.load) <= strength * (1.0 + margin) and not self.smoothing
         self._yields = False
         way = 1.0 if meeting.load >= 0.0 else -1.0
@@ -124,7 +126,7 @@ class GridContact:
 
 def _scan(missing: Missing, start: float, top: float, search: str) -> float:
     """Return the root that a search finds between 0 and `top` (m/s), where more is resisted than loads; 0 if it finds none."""
-    rates = np.unique(np.concatenate([[start], np.linspace(0.0, top, POINTS), np.geomspace(1e-12 * top, top, POINTS)]))
+    rates = np.unique(np.concatenate([[start], np.linspace(0.0, top, SEARCH_RATES), np.geomspace(1e-12 * top, top, SEARCH_RATES)]))
     below = missing(rates) < 0.0
     rising, falling = np.flatnonzero(below[:-1] & ~below[1:]), np.flatnonzero(~below[:-1] & below[1:])
     place = int(np.searchsorted(rates, start))

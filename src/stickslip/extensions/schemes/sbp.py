@@ -26,9 +26,9 @@ INSIDE = {2: (1 / 2,), 4: (2 / 3, -1 / 12), 6: (3 / 4, -3 / 20, 1 / 60)}
 """Weights of the nodes to the right in a first difference; those to the left have the other sign."""
 STAGES = ((0.5, 1 / 6), (0.5, 1 / 3), (1.0, 1 / 3), (0.0, 1 / 6))
 """For each stage: the place of the next stage, as a share of the step, and the weight."""
-SHARES = np.array([weight for _, weight in STAGES])
-PRODUCTS = SHARES[:, None] * np.diag([share for share, _ in STAGES[:-1]], -1)
-DEFECT = PRODUCTS + PRODUCTS.T - np.outer(SHARES, SHARES)
+STAGE_SHARES = np.array([weight for _, weight in STAGES])
+PRODUCTS = STAGE_SHARES[:, None] * np.diag([share for share, _ in STAGES[:-1]], -1)
+DEFECT = PRODUCTS + PRODUCTS.T - np.outer(STAGE_SHARES, STAGE_SHARES)
 """Weights of the products of two stages' slopes in the change of an energy over a Runge-Kutta step."""
 
 

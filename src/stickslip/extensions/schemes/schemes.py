@@ -6,7 +6,7 @@ physical hypothesis". With the exact solution of every rule this can be measured
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -19,11 +19,11 @@ import pandas as pd
 import stickslip
 from stickslip.extensions.schemes.contract import Scheme, Series
 from stickslip.extensions.schemes.judgement import TOLERANCE, Judgement
-from stickslip.extensions.schemes.measures import COLUMNS, MeasuredSeries
+from stickslip.extensions.schemes.measures import COLUMNS_OF_SCHEMES, MeasuredSeries
 from stickslip.extensions.schemes.regularisations import LAB
 from stickslip.extensions.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
 from stickslip.extensions.schemes.shocks import SHOCK_COLUMNS
-from stickslip.extensions.schemes.verdict import NONE, SAME, UNTOLD, RulePaths, change, exact_runs, local_orders
+from stickslip.extensions.schemes.verdict import NONE, SAME_PATH, UNTOLD, RulePaths, change, exact_runs, local_orders
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
@@ -112,7 +112,7 @@ class Schemes(Study):
     def columns(self) -> dict[str, tuple[str, str]]:
         """The columns of the table, each with its unit and meaning."""
         meaning = "distance from the exact path of {}, as a share of the distance from that to the next rule's path"
-        return COLUMNS | {f"miss_{rule}": ("", meaning.format(rule)) for rule in self.exact}
+        return COLUMNS_OF_SCHEMES | {f"miss_{rule}": ("", meaning.format(rule)) for rule in self.exact}
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
@@ -153,7 +153,7 @@ class Schemes(Study):
         changes = rows[["slip_change", "rate_change"]].to_numpy(float)[1:]
         left = changes[-1:] * FALLING / (1.0 - FALLING)
         gaps = np.array([self.paths.gap(self.series[int(rows.index[-1])], rule) for rule in self.exact])
-        falls = (changes[1:] <= FALLING * changes[:-1]) | (changes[1:] <= SAME * np.array(self.paths.size))
+        falls = (changes[1:] <= FALLING * changes[:-1]) | (changes[1:] <= SAME_PATH * np.array(self.paths.size))
         return len(changes) >= FEWEST - 1 and bool(falls.all() and (left < FALLING * gaps).any(axis=1).all())
 
     def shocks_to_csv(self, path: str | Path) -> Path:
@@ -166,12 +166,12 @@ class Schemes(Study):
         for name, (unit, meaning) in self.columns.items():
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.schemes import figure
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.schemes.figure import draw_schemes
 
-        return figure
+        return draw_schemes
 
-    def _lines(self) -> Iterator[str]:
+    def _sentences(self) -> Iterator[str]:
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"
         if self.interrupted:
             yield "interrupted: these are the runs that were finished"

@@ -14,7 +14,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
 from stickslip.solution import Solution
 
-NEAR = 1.5
+NEAR_POWER = 1.5
 """A number whose ratio to the expected one lies within this factor of a power of 1000 has a wrong unit."""
 SMALLER = {1e-6: "M", 1e-3: "k", 1e3: "m", 1e6: "micro"}
 """The prefix of the unit in which a number must have been written, by the factor by which it is wrong."""
@@ -55,7 +55,9 @@ def _prefix(value: float, expected: float) -> str:
     """Return the prefix of the unit that would explain a wrong value; "" if a wrong unit does not explain it."""
     if not (value > 0.0 and expected > 0.0):
         return ""
-    return next((prefix for factor, prefix in SMALLER.items() if abs(math.log(value / expected / factor)) < math.log(NEAR)), "")
+    return next(
+        (prefix for factor, prefix in SMALLER.items() if abs(math.log(value / expected / factor)) < math.log(NEAR_POWER)), ""
+    )
 
 
 def _refuse(series: Series, what: str) -> NoReturn:

@@ -41,7 +41,7 @@ def groups(rules: Sequence[str], apart: Mapping[tuple[str, str], float], floor: 
 
 STRICT = 0.125
 """A series follows a rule if its distance to that rule's path is below this share of the distance to the next rule's path."""
-SAME = 1e-8
+SAME_PATH = 1e-8
 """Paths whose distance is below this share of the largest mean slip, and of the largest mean slip rate, are the same."""
 UNIFORM = 20_001
 """Number of evenly spaced times at which exact paths are compared; the breaks of their histories are added."""
@@ -117,7 +117,8 @@ class RulePaths:
     def groups(self, unresolved: float = 0.0) -> tuple[tuple[str, ...], ...]:
         """Return the rules in groups whose paths are the same, or differ by less than a shift of the peak by a time (s)."""
         floor = Gap(
-            max(SAME * self.size.slip, self.peak * unresolved), max(SAME * self.size.rate, self.peak * unresolved / self.until)
+            max(SAME_PATH * self.size.slip, self.peak * unresolved),
+            max(SAME_PATH * self.size.rate, self.peak * unresolved / self.until),
         )
         over = {pair: max(gap.slip / (floor.slip or 1e-300), gap.rate / (floor.rate or 1e-300)) for pair, gap in self.apart.items()}
         return tuple(groups(tuple(self.exact), over, 1.0))

@@ -9,6 +9,7 @@ Source: Campillo et al. 1996, Figs 5-7, who compare both bodies at three points;
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -31,15 +32,17 @@ from stickslip.run import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from stickslip.problem.scenarios import Scenario
 
 
 Quantity = Literal["slip", "peak_rate", "duration"]
-QUANTITIES: tuple[Quantity, ...] = ("slip", "peak_rate", "duration")
+QUANTITIES_COMPARED: tuple[Quantity, ...] = ("slip", "peak_rate", "duration")
 """Quantities of the first slip event that are compared: columns of `Solution.events` in m, m/s and s."""
 WITHIN = 0.1
 """Default tolerance: the block represents the slab if the ratio of slab to block differs from 1 by no more than this."""
-RTOL = 1e-8
+RTOL_OF_ANALOGY = 1e-8
 """Default relative tolerance of the runs, far below `WITHIN`."""
 REFUSED, NO_EVENT = "refused", "no slip event"
 """Status at points at which the problem is not valid, and of runs in which nothing slips."""
@@ -75,7 +78,7 @@ class Analogy(StudyWithDataset):
     def text(self) -> str:
         """Summarise where the block represents the slab, and how far it deviates elsewhere."""
         table, percent = self.table, f"{100 * self.within:g} %"
-        known, good = table.dropna(subset=[f"{one}_ratio" for one in QUANTITIES]), table[table.stands]
+        known, good = table.dropna(subset=[f"{one}_ratio" for one in QUANTITIES_COMPARED]), table[table.stands]
         count = f"at {len(good)} of {len(known)} points with an event (slip, peak rate and duration within {percent}, same pulses)"
         noun = self.problem.body.noun
         where = f"the block stands for the {noun} {count}"
@@ -84,16 +87,22 @@ class Analogy(StudyWithDataset):
                 f": there friction weakens with slip up to {good.weakening_slip.max() + 0.0:.3g} times the stiffness, "
                 f"and with slip rate up to {good.weakening_rate.max():.3g} times the impedance"
             )
-        ratios = ((name, known[f"{name}_ratio"]) for name in QUANTITIES)
+        ratios = ((name, known[f"{name}_ratio"]) for name in QUANTITIES_COMPARED)
         ranges = (f"{name.replace('_', ' ')} {ratio.min():.2g} to {ratio.max():.2g}" for name, ratio in ratios)
         return f"{where}; {noun} over block: {', '.join(ranges)}"
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.studies.figures import analogy as drawn
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
+        from stickslip.extensions.studies.figures.analogy import analogy_data
 
-        return drawn
+        return analogy_data(self)
 
-    def _lines(self) -> tuple[str, ...]:
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.studies.figures.analogy import draw_analogy
+
+        return draw_analogy
+
+    def _sentences(self) -> tuple[str, ...]:
         return (self.text,)
 
 
@@ -104,7 +113,7 @@ def analogy(
     x: Axis,
     y: Axis,
     *,
-    rtol: float = RTOL,
+    rtol: float = RTOL_OF_ANALOGY,
     within: float = WITHIN,
     progress: TextProgress | bool | None = None,
 ) -> Analogy:
@@ -147,7 +156,7 @@ def analogy(
             rows.append({names[0].name: at_x, names[1].name: at_y} | _point(put_both(names, (at_x, at_y)), lasts, rtol))
             tell(f"{len(rows)} of {x.points * y.points} points")
     table = pd.DataFrame(rows)
-    table = table.assign(**{f"{key}_ratio": table[f"{key}_slab"] / table[f"{key}_block"] for key in QUANTITIES})
+    table = table.assign(**{f"{key}_ratio": table[f"{key}_slab"] / table[f"{key}_block"] for key in QUANTITIES_COMPARED})
     return Analogy(given, lasts, x, y, within, table.assign(stands=_stands(table, within)))
 
 
@@ -178,15 +187,15 @@ def _first_event(problem: Problem, duration: float, rtol: float) -> dict[str, An
     if solution.events.empty:
         return _nothing(NO_EVENT)
     event = solution.events.iloc[0]
-    found = {name: float(event[name]) for name in QUANTITIES}
+    found = {name: float(event[name]) for name in QUANTITIES_COMPARED}
     return found | {"pulses": int(event.pulses), "shocks": len(solution.shocks), "status": solution.status.name}
 
 
 def _nothing(status: str) -> dict[str, Any]:
-    return dict.fromkeys(QUANTITIES, np.nan) | {"pulses": 0, "shocks": 0, "status": status}
+    return dict.fromkeys(QUANTITIES_COMPARED, np.nan) | {"pulses": 0, "shocks": 0, "status": status}
 
 
 def _stands(table: pd.DataFrame, within: float) -> pd.Series[bool]:
     """Return where the block represents the slab: all ratios are near 1, and the events have the same number of pulses."""
-    near = (table[[f"{key}_ratio" for key in QUANTITIES]] - 1.0).abs() <= within
+    near = (table[[f"{key}_ratio" for key in QUANTITIES_COMPARED]] - 1.0).abs() <= within
     return near.all(axis=1) & (table.pulses_slab == table.pulses_block)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -92,12 +92,12 @@ class Comparison(Study):
     def __repr__(self) -> str:
         return f"{super().__repr__()}\n{self._shown_table().to_string(float_format='{:.6g}'.format)}"
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.studies.figures import compare as drawn
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.studies.figures.compare import draw_compared
 
-        return drawn
+        return draw_compared
 
-    def _lines(self) -> Iterator[str]:
+    def _sentences(self) -> Iterator[str]:
         yield f"of {', '.join(self.runs)}"
         yield self.reach_text
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -188,12 +189,12 @@ class Ensemble(RunsCompared):
         lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon in this time"
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
 
-    def _figure(self) -> Any:
-        from stickslip.extensions.studies.figures import ensemble as drawn
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.studies.figures.ensemble import draw_ensemble
 
-        return drawn
+        return draw_ensemble
 
-    def _lines(self) -> tuple[str, ...]:
+    def _sentences(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
         return about, self.note, self.text, self.growth_text, self.stopped
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.studies.ensemble import Ensemble
     from stickslip.problem.scenarios import Scenario
 
-FIRST = 12
+EVENTS_SHOWN = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
 
 
@@ -119,10 +119,10 @@ def show_ensemble(scenario: Scenario, study: Ensemble) -> None:
 
 def _show_events(screen: Console, study: Ensemble) -> None:
     lost = study.first_lost or 0
-    first = max(0, min(lost - FIRST // 2, len(study.table) - FIRST))
+    first = max(0, min(lost - EVENTS_SHOWN // 2, len(study.table) - EVENTS_SHOWN))
     headings = ("event", "start\ns", "members", "amplification")
     rows = []
-    for i, row in enumerate(study.table.iloc[first : first + FIRST].to_dict("records"), first + 1):
+    for i, row in enumerate(study.table.iloc[first : first + EVENTS_SHOWN].to_dict("records"), first + 1):
         shared = f"{row['members']} of {len(study.runs)}"
         rows.append([str(i), number(float(row["start"]), 10), shared, number(float(row["amplification"]), 3)])
     say(screen, f"{len(study.table)} slip events" + (f", of them {first + 1} to {first + len(rows)}" if first else ""))

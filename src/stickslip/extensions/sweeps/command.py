@@ -129,9 +129,9 @@ def sweep(
     with _losses():
         found, spent = _found(plan, out, resources)
     if out is not None:
-        from stickslip.extensions.sweeps.results.layout import FORMAT
+        from stickslip.extensions.sweeps.results.layout import SWEEP_FORMAT
 
-        with FORMAT.reading(out):  # its chunks may have been damaged since they were written
+        with SWEEP_FORMAT.reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
     if (found.status.values == NOT_RUN).all():
         announce(out)

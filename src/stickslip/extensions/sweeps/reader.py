@@ -22,17 +22,17 @@ class SweepReader(Reader):
     def is_in(self, path: Path) -> bool:
         if not path.is_dir():
             return False
-        from stickslip.extensions.sweeps.results.layout import FORMAT
+        from stickslip.extensions.sweeps.results.layout import SWEEP_FORMAT
 
-        return FORMAT.is_in(path)
+        return SWEEP_FORMAT.is_in(path)
 
     @override
     def stored(self, path: Path) -> Stored:
         from stickslip.cli.results import Stored
-        from stickslip.extensions.sweeps.results.layout import FORMAT
+        from stickslip.extensions.sweeps.results.layout import SWEEP_FORMAT
         from stickslip.extensions.sweeps.results.store import open_store
         from stickslip.extensions.sweeps.shown import SweepResults
 
-        with FORMAT.reading(path):
+        with SWEEP_FORMAT.reading(path):
             dataset = open_store(path).load()
         return Stored(path, dataset.attrs, SweepResults(path, dataset))

@@ -36,9 +36,9 @@ class SweepResults(Results):
         if others := [option for option in pictures.wanted if option != "--figure"]:
             raise InputError(f"{self.path}: the results of a sweep have no {', '.join(others)}: --figure draws a quantity")
         if self.quantity is not None:
-            from stickslip.extensions.sweeps.figures.sweep import data
+            from stickslip.extensions.sweeps.figures.sweep import sweep_data
 
-            data(self.dataset, self.quantity)
+            sweep_data(self.dataset, self.quantity)
 
     @override
     def summarise(self, *, everything: bool = False) -> None:

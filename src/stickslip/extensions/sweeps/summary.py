@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.sweeps.sweep import SweepProgress
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
-FIRST = 5
+REASONS_SHOWN = 5
 """Number of reasons for failures, and of slow members, that are shown."""
 LARGEST_COUNT = 12
 """Largest number of distinct values of a quantity that is reported case by case; one with more is a number, not a case."""
@@ -92,12 +92,12 @@ def show_slowest(plan: Plan, spent: SweepProgress) -> None:
         return
     count, share = len(slow), sum(slow.values()) / spent.seconds
     named = []
-    for member, took in list(slow.items())[:FIRST]:
+    for member, took in list(slow.items())[:REASONS_SHOWN]:
         values = plan.design.values(np.array([member]))
         units = {parameter.name: parameter.unit for parameter in plan.design.parameters}
         at = ", ".join(f"{name} = {_valued(column[0], units[name])}" for name, column in values.items())
         named.append(f"{about_time(took)} at {at}")
-    more = f"; and {count - FIRST} others" if count > FIRST else ""
+    more = f"; and {count - REASONS_SHOWN} others" if count > REASONS_SHOWN else ""
     members = "1 member" if count == 1 else f"{count} members"
     total = f"{100.0 * share:.0f} % of the processor time ({about_time(spent.seconds)})"
     say(console(), f"{members} took {total}: {'; '.join(named)}{more}")
@@ -114,10 +114,10 @@ def _show_reasons(reasons: list[str]) -> None:
         alike.setdefault(_NUMBER.sub("#", reason), []).append(reason)
     told = sorted(alike.values(), key=len, reverse=True)
     screen = console()
-    for group in told[:FIRST]:
+    for group in told[:REASONS_SHOWN]:
         say(screen, f"  {len(group)}: {clean(group[0])}" + (" (and the like)" if len(set(group)) > 1 else ""))
-    if len(told) > FIRST:
-        say(screen, f"  and {len(told) - FIRST} other reasons")
+    if len(told) > REASONS_SHOWN:
+        say(screen, f"  and {len(told) - REASONS_SHOWN} other reasons")
 
 
 @dataclass(frozen=True)

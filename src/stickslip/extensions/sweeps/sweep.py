@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.extensions.sweeps.design.quantities import DEFAULT, Wanted
 from stickslip.extensions.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Runner, run_chunk
-from stickslip.extensions.sweeps.execution.plan import SAMPLES, Plan, make_plan
+from stickslip.extensions.sweeps.execution.plan import SAMPLES_OF_CURVES, Plan, make_plan
 from stickslip.extensions.sweeps.results.store import ResultStore
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.conversion import WithUnit
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-SLOWEST = 100
+SLOWEST_MEMBERS = 100
 """Number of members whose processor times are kept."""
 
 
@@ -40,7 +40,7 @@ class SweepProgress(NamedTuple):
     `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total number.
     `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the end. Both
     are NaN until a chunk is finished. `seconds` is the processor time of this call (s), and `alone` the processor time of the
-    SLOWEST members that ran by themselves, by their number in the design, longest first.
+    SLOWEST_MEMBERS members that ran by themselves, by their number in the design, longest first.
     """
 
     done: int
@@ -74,7 +74,7 @@ def sweep(
     seed: int = 0,
     quantities: Iterable[Wanted] = DEFAULT,
     series: Sequence[str] = (),
-    samples: int = SAMPLES,
+    samples: int = SAMPLES_OF_CURVES,
     out: str | Path | None = None,
     threads: int | None = None,
     workers: int | None = None,
@@ -286,7 +286,7 @@ class Tally:
         self.failed += int((result.status >= FIRST_FAILURE).sum())
         self.seconds += result.seconds
         slow = self.alone | {int(members[i]): took for i, took in result.alone.items()}
-        self.alone = dict(sorted(slow.items(), key=lambda one: -one[1])[:SLOWEST])
+        self.alone = dict(sorted(slow.items(), key=lambda one: -one[1])[:SLOWEST_MEMBERS])
         self.report()
 
     def report(self) -> None:

@@ -42,7 +42,9 @@ _ARROWS = 0.3, 14
 """Distance between the arrows on the path, as a share of the axes, and about how many there are at most."""
 
 
-def data(problem: Problem, solution: Solution | None = None, *, title: str = "", law_slip: float | None = None) -> xr.Dataset:
+def admissible_data(
+    problem: Problem, solution: Solution | None = None, *, title: str = "", law_slip: float | None = None
+) -> xr.Dataset:
     """Return the set K for forward slip at the start of a problem, or at `law_slip` (m), and the path of a run in it, as a dataset.
 
     It holds the curve as excess over the static strength at the start (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable,
@@ -132,7 +134,7 @@ def _fastest(contact: Uniqueness, path: Floats) -> float:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+def draw_admissible(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards.
 
     If friction depends on slip, the sets at some slips and the path of the run have the colour of the slip.

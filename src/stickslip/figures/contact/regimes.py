@@ -26,7 +26,7 @@ REGULAR, IRREGULAR = TWO
 
 
 @styled
-def draw(problem: Problem, found: RegimeMap, title: str = "", **place: Unpack[Place]) -> Figure | Axes:
+def draw_regimes(problem: Problem, found: RegimeMap, title: str = "", **place: Unpack[Place]) -> Figure | Axes:
     """Draw the two regimes as areas, the critical curve between them, and the point of the problem itself.
 
     `title` is that of the scenario.

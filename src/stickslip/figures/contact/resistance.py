@@ -34,7 +34,7 @@ LOOP = "loop"
 """Prefix of the variables of the set K in the dataset of the loop."""
 
 
-def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
+def resistance_data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
     """Return the set K of each problem for slip rates from 0 to `largest_rate` (m/s), with loads in Pa.
 
     It consists of slip, g(s), and of stick up to the static strength; the points O to E of Fig. 4 are added. The keys of `problems`
@@ -80,7 +80,7 @@ def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, flo
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_resistance(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a panel for each case, with stable branches solid and unstable ones dashed."""
     cases, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("cases", "case_titles"))
     figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.5), place, sharey=True)
@@ -144,7 +144,7 @@ def loop_data(solution: Solution) -> xr.Dataset:
     """Return slip rate (m/s) and load (Pa) of a run, whose load must rise and then fall, and the set K that it follows."""
     time, (rate, load) = solution.curves_together(("slip_rate", "load"))
     turn = int(np.argmax(load))
-    background = data({LOOP: solution.problem}, float(rate.max()))
+    background = resistance_data({LOOP: solution.problem}, float(rate.max()))
     run = {
         "run_time": curve_quantity("run_time", time, "time"),
         "run_slip_rate": curve_quantity("run_time", rate, "slip_rate"),

@@ -18,13 +18,13 @@ from stickslip.foundation.place import Place
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-POINTS = 801
+RATES_DRAWN = 801
 """Number of slip rates at which friction is drawn."""
 AROUND, FAST = 10.0, 10.0
 """Factor by which the drawn slip rates go beyond those that are named; and the rate (m/s) they reach if no rate is critical."""
 
 
-def data(found: SteadySlidings, title: str = "") -> xr.Dataset:
+def steady_data(found: SteadySlidings, title: str = "") -> xr.Dataset:
     """Return the friction of steady sliding along the slip rate and whether it is stable there, with the rates that are named."""
     assert found.problem is not None
     slidings = [abs(one.rate) for one in found.slidings]
@@ -32,7 +32,7 @@ def data(found: SteadySlidings, title: str = "") -> xr.Dataset:
     edge = _edge_from_rest(found)
     rests = [] if edge is None else [edge]
     named = np.array([*slidings, *critical, *rests, *([] if critical.size else [FAST / AROUND])])
-    rates = np.unique(np.concatenate((np.geomspace(named.min() / AROUND, named.max() * AROUND, POINTS), critical)))
+    rates = np.unique(np.concatenate((np.geomspace(named.min() / AROUND, named.max() * AROUND, RATES_DRAWN), critical)))
     below = not found.changes[0].stable_above if found.changes else bool(found.slidings and found.slidings[0].stable)
     stable = (np.searchsorted(critical, rates, side="right") % 2 == 0) == below
     contents = {
@@ -55,7 +55,7 @@ def _edge_from_rest(found: SteadySlidings) -> float | None:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+def draw_steady(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw friction of steady sliding, solid where it is stable, with the steady motion, critical rates and hysteresis."""
     axes = one_panel((5.6, 3.8), **place)
     metres, stress = unit_shown(dataset["slip_rate"]), unit_shown(dataset["traction"])

@@ -36,14 +36,14 @@ if TYPE_CHECKING:
 Point = tuple[float, float]
 ARROW: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "linewidth": 1.3, "mutation_scale": 11}
 """Look of all arrows: matplotlib's `arrowprops`, sizes in points."""
-PANELS = {
+PANELS_OF_LAWS = {
     "slip": ("slip_law", "Slip law, eq. (14)", "lower left"),
     "slip_rate": ("rate_law", "Slip-rate law, eq. (15)", "upper right"),
 }
 """Panels by their abscissa: the dimension of the laws, the title and the place of the legend."""
 
 
-def data(block: Problem, slab: Problem) -> xr.Dataset:
+def systems_data(block: Problem, slab: Problem) -> xr.Dataset:
     """Return the constants of both systems, and the displacement (m) of the slab at t = 0 across its thickness, all in SI."""
     inside = as_slab(slab.body)
     x = np.linspace(0.0, inside.thickness, 21)
@@ -60,7 +60,7 @@ def data(block: Problem, slab: Problem) -> xr.Dataset:
 
 
 @styled
-def draw(_: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_systems(_: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a sketch, not to scale, that shows what the symbols mean; it is the same whatever numbers the dataset holds."""
     figure, ((left, right),) = panels(1, 2, (7.2, 2.7), place)
     for axes in (left, right):
@@ -154,12 +154,12 @@ def laws_data(
 def draw_laws(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw two panels: the laws that depend on slip on the left, those that depend on slip rate on the right."""
     figure, axes = panels(1, 2, (7.2, 2.8), place)
-    for panel, (along, (laws, _, legend)) in zip(axes[0], PANELS.items(), strict=True):
+    for panel, (along, (laws, _, legend)) in zip(axes[0], PANELS_OF_LAWS.items(), strict=True):
         coefficient = dataset[f"coefficient_along_{along.removeprefix('slip_')}"]
         for i, law in enumerate(dataset[laws].values):
             look = {"color": LINE_COLOURS[i % 4], "linewidth": 1.5 if i == 0 else 1.0}
             panel.plot(shown(dataset[along]), shown(coefficient)[i], label=str(law), **look)
         panel.set(xlabel=label(dataset[along]), ylabel=label(coefficient), ylim=(0, None), xlim=(0, shown(dataset[along])[-1]))
         panel.legend(loc=legend)
-    letter_panels(axes[0], [title for _, title, _ in PANELS.values()])
+    letter_panels(axes[0], [title for _, title, _ in PANELS_OF_LAWS.values()])
     return figure

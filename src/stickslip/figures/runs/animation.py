@@ -56,7 +56,9 @@ def _ffmpeg() -> str | None:
     return str(get_ffmpeg_exe())
 
 
-def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None) -> xr.Dataset:
+def animation_data(
+    readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None
+) -> xr.Dataset:
     """Return the field at the time of each frame (default 150 frames), and the contact, from `start` to `end` (s), in SI.
 
     The default interval is that of `choose_interval`. Raises InputError for a block, for times outside the run, and for fewer than

@@ -24,8 +24,8 @@ from stickslip.figures.style import (
     GREEN,
     GREY,
     INK,
+    SPAN_OF_LOGARITHM,
     VERMILLION,
-    WIDE,
     curve_label,
     curve_quantity,
     quantity,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-CLOSE = 1e-3
+LAST_ZOOM = 1e-3
 """The last zoom shows this share of the event's duration after its start, and a quarter of that before it."""
 ZOOMS = {
     "run": ("slip in the run", "slip", "time $t$"),
@@ -54,10 +54,10 @@ ZOOMS = {
     "close": ("its start", "event_slip", "since its start"),
 }
 """Title, curve and name of the time axis of the three zooms, by the prefix of their variables."""
-TITLES = {"A": "slip events", **dict(zip("BCD", (title for title, *_ in ZOOMS.values()), strict=True))}
-TITLES |= {"E": "slips", "F": "recurrence times", "G": "return map"}
+TITLES_OF_ZOOMS = {"A": "slip events", **dict(zip("BCD", (title for title, *_ in ZOOMS.values()), strict=True))}
+TITLES_OF_ZOOMS |= {"E": "slips", "F": "recurrence times", "G": "return map"}
 """Titles of the panels, by their names in the mosaic: the time line, the zooms, and the distributions."""
-WHOLE = 7.0
+WHOLE_WIDTH = 7.0
 """Width (inches) of a figure below which it is narrow: letters are smaller, and labels have several lines."""
 THREE, TWO = 5.4, 3.0
 """Widths (inches) of a figure from which three, or two, panels and their labels stand side by side."""
@@ -65,11 +65,11 @@ ROW, KEY = 1.1, 0.75
 """Heights (inches) of the lowest row of panels with its labels, and of title and key together."""
 HELD = "\0"
 """Stands for a space at which no line may end."""
-LINE = 17
+LETTERS_OF_LINE = 17
 """Number of letters in a line of a title or a label of a panel in a narrow figure."""
 
 
-def data(solution: Solution, event: int | None = None) -> xr.Dataset:
+def catalogue_data(solution: Solution, event: int | None = None) -> xr.Dataset:
     """Return the catalogue of a run, its slip, and one event in local time, as a dataset in SI.
 
     `event` is the row number in `solution.events`; negative ones count from the last. By default it is the last event whose slip is
@@ -84,7 +84,7 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     chosen = last_large_event(table.slip.to_numpy(float)) if event is None else event
     window = solution.window(chosen)
     lasting = window.shown[1] / 1.1
-    near = solution.window(chosen, before=0.25 * CLOSE * lasting, after=CLOSE * lasting)
+    near = solution.window(chosen, before=0.25 * LAST_ZOOM * lasting, after=LAST_ZOOM * lasting)
     loads = solution.problem.load_unit
     contents = _events(table, loads)
     for name, readings in (("run", solution), ("window", window), ("close", near)):
@@ -120,7 +120,7 @@ def _title(title: str, table: pd.DataFrame) -> str:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_catalogue(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
 
     A catalogue without its run has no zooms, one of one event no distributions, and one of two no return map. In a narrow figure
@@ -130,7 +130,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     recurrence = recurrence[np.isfinite(recurrence)]
     distributions = "EFG"[: 0 if len(slip) == 1 else len(slip)]
     rows, usual = _rows("BCD" if "run_time" in dataset else "", distributions[:3], **place)
-    narrow = usual[0] < WHOLE
+    narrow = usual[0] < WHOLE_WIDTH
     figure = sheet(usual, **place)
     cells = math.lcm(*map(len, rows))
     axes = figure.subplot_mosaic(";".join("".join(name * (cells // len(row)) for name in row) for row in rows))
@@ -144,9 +144,9 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
         _draw_recurrence(axes["F"], recurrence / size, unit, narrow=narrow)
     if "G" in axes:
         _draw_return_map(axes["G"], recurrence / size, unit)
-    letter_panels((axes[name] for name in letters), (TITLES[name] for name in letters))
+    letter_panels((axes[name] for name in letters), (TITLES_OF_ZOOMS[name] for name in letters))
     for name in letters if narrow else ():
-        _make_small(axes[name], LINE if name != "A" else 2 * LINE)
+        _make_small(axes[name], LETTERS_OF_LINE if name != "A" else 2 * LETTERS_OF_LINE)
     add_legend(axes["A"], _marks(dataset, letters))
     set_title(figure, dataset.attrs["title"])
     return figure
@@ -176,7 +176,7 @@ def _make_small(axes: Axes, line: int) -> None:
     """Give a panel of a narrow figure smaller letters, and titles and labels in lines of so many letters."""
     axes.set_title(_in_lines(axes.get_title(loc="left"), line - 3), loc="left", fontsize=8.5, pad=4)
     axes.set_xlabel(_in_lines(axes.get_xlabel(), line), fontsize=8)
-    axes.set_ylabel(_in_lines(axes.get_ylabel(), LINE - 2), fontsize=8)
+    axes.set_ylabel(_in_lines(axes.get_ylabel(), LETTERS_OF_LINE - 2), fontsize=8)
     axes.tick_params(labelsize=7.5)
     for text in axes.texts:
         text.set_fontsize(7)
@@ -258,7 +258,7 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
 
 def _draw_distribution(axes: Axes, slips: xr.DataArray, name: str) -> None:
     slip = slips.values
-    many, wide = len(slip) > WIDE, spans_decades(slip)
+    many, wide = len(slip) > SPAN_OF_LOGARITHM, spans_decades(slip)
     unit, size = readable_unit(slips.attrs["units"], slip, log=wide)
     ordered = np.sort(slip) / size  # sizes, in either direction
     smallest = ordered[0] if wide else 0.0
@@ -280,7 +280,7 @@ def _draw_recurrence(axes: Axes, times: Floats, unit: str, *, narrow: bool) -> N
     edges = np.geomspace(times.min(), times.max(), bins + 1) if wide else np.linspace(0.0, 1.15 * times.max(), bins + 1)
     counts, _ = np.histogram(times, edges)
     axes.stairs(counts, edges, fill=True, color=BLUE)
-    if counts.max() > WIDE:
+    if counts.max() > SPAN_OF_LOGARITHM:
         axes.set(yscale="log", ylim=(0.5, (1000.0 if narrow else 10.0) * counts.max()))
     else:
         axes.set_ylim(0.0, (2.1 if narrow else 1.3) * counts.max())

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 Unit = tuple[str, float]
 """Name of a unit, and its size in SI units."""
-APART = 100.0
+APART_SYSTEMS = 100.0
 """Systems whose largest values differ by more than this factor have units of their own."""
-ROWS: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
+RUN_CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Curves of each run, in SI; the panel of traction shows the load too."""
 
 
-def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
+def comparison_data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
     """Return the curves of each run from t = 0 to `end` (s), in SI, with the run's name as prefix of the variables.
 
     Each run has its own times, with both limits at every shock. `titles` names the columns.
@@ -36,7 +36,7 @@ def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str
     contents: dict[str, xr.Variable] = {}
     for name, solution in solutions.items():
         body, along = solution.problem.body, f"{name}_time"
-        for row in ROWS:
+        for row in RUN_CURVES:
             time, values = solution.curve(row, 0.0, end)
             contents[f"{name}_{row}"] = curve_quantity(along, values, row, solution.problem.load_unit)
         contents[along] = curve_quantity(along, time, "time")
@@ -47,7 +47,7 @@ def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_comparison(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a column for each system, with friction as a solid line and the load as a dashed line behind it."""
     names, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("systems", "system_titles"))
     figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), place, sharex=True)
@@ -65,14 +65,14 @@ def _units(dataset: xr.Dataset, names: list[str], row: str) -> list[Unit]:
     """Return the unit of one row of panels for each system: the same for all, unless they are too far apart for that."""
     values = [dataset[f"{name}_{row}"] for name in names]
     tops = [top for one in values if (top := float(np.abs(one).max())) > 0.0]
-    if tops and max(tops) <= APART * min(tops):
+    if tops and max(tops) <= APART_SYSTEMS * min(tops):
         return [unit_shown(*values)] * len(names)
     return [unit_shown(one) for one in values]
 
 
 def _draw_column(column: Any, dataset: xr.Dataset, name: str, colour: str, units: Mapping[str, Unit]) -> None:
     time = dataset[f"{name}_time"]
-    for panel, row in zip(column[:2], ROWS, strict=False):
+    for panel, row in zip(column[:2], RUN_CURVES, strict=False):
         values = dataset[f"{name}_{row}"]
         panel.plot(shown(time, units["time"]), shown(values, units[row]), color=colour)
         panel.set_ylabel(label(values, units[row]))

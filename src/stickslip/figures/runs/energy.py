@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 TIMES = 800
 """Number of evenly spaced times; breakpoints of the run are added, up to as many."""
 
-PARTS = {
+PARTS_OF_ENERGY = {
     "elastic": ("elastic, above its minimum", BLUE),
     "kinetic": ("kinetic", GREEN),
     "radiated": ("radiated through the driver", SKY),
@@ -47,7 +47,7 @@ PARTS = {
 """The parts that are stacked, from below: name of the variable, text and colour."""
 
 
-def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
+def energy_data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
     """Return the parts of the energy against `time` (s), and their total, as a dataset (J/m^2 for a slab, J for a block).
 
     The interval from `start` to `end` (s) is by default that of `choose_interval`. Heat, radiated and damped energy count from
@@ -64,20 +64,20 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
     work = found["work"] - found["work"][0]
     total = parts["elastic"][0] + parts["kinetic"][0] + work + parts["radiated"]
-    contents = {name: quantity("time", parts[name], text, "", unit) for name, (text, _) in PARTS.items()}
+    contents = {name: quantity("time", parts[name], text, "", unit) for name, (text, _) in PARTS_OF_ENERGY.items()}
     contents["total"] = quantity("time", total, "initial energy plus work of the driver", "", unit)
     attributes = {"title": title_of(readings), "clock": clock(readings)}
     return xr.Dataset(contents, {"time": curve_quantity("time", time, "time")}, attributes)
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+def draw_energy(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw the parts stacked, without those that are zero throughout, and the total as a dashed line."""
     axes = one_panel((6.4, 3.8), **place)
     unit, size = readable_unit(dataset.total.attrs["units"], dataset.total.values)
     time_name, second = time_unit(float(np.ptp(dataset.time.values)))
     time = dataset.time.values / second
-    drawn = {name: look for name, look in PARTS.items() if dataset[name].values.any()}
+    drawn = {name: look for name, look in PARTS_OF_ENERGY.items() if dataset[name].values.any()}
     if drawn:
         texts, colours = zip(*drawn.values(), strict=True)
         axes.stackplot(time, *(dataset[name].values / size for name in drawn), labels=texts, colors=colours, linewidth=0.0)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def data(found: Edge) -> xr.Dataset:
+def edge_data(found: Edge) -> xr.Dataset:
     """Return the runs in the order in which they were made (parameter in SI, and what they gave) and the last bracket."""
     values = found.table.iloc[:, 0].to_numpy(float)
     words = parameter_name(found.parameter, found.meaning)
@@ -35,7 +35,7 @@ def data(found: Edge) -> xr.Dataset:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+def draw_edge(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw what each run gave against the parameter, and the bracket in which it changes."""
     axes = one_panel((5.6, 3.0), **place)
     unit = unit_shown(dataset["parameter"])

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 PERIODS = 60.0
 """A tone with more periods than this is drawn as a band of its amplitude: single periods could not be seen."""
-POINTS = 32
+POINTS_OF_TONE = 32
 """Points in a period of a tone, enough for a smooth line."""
 
 
@@ -47,6 +47,6 @@ def _straight(history: LoadingHistory, start: float, end: float, turns: float) -
     edges = [start, *(one.start for one in segments[1:] if start < one.start < end), end]
     first = sum(one.start <= start for one in segments[1:])
     parts = list(zip(segments[first:], pairwise(edges), strict=False))
-    dense = [np.linspace(low, high, 2 + int(POINTS * turns * (high - low) / (end - start))) for _, (low, high) in parts]
+    dense = [np.linspace(low, high, 2 + int(POINTS_OF_TONE * turns * (high - low) / (end - start))) for _, (low, high) in parts]
     values = [one.at(time) for (one, _), time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
     return np.concatenate(dense), np.concatenate(values)

@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-WIDTH = 6.4
+WIDTH_OF_FIGURE = 6.4
 """Usual width of the figure, inches."""
 HEIGHTS = {"curves": 1.75, "drive": 1.5, "loading": 1.25, "slip": 2.0}
 """Usual heights (inches) of a panel with a curve, with what a drive measures, with the loading, and with friction against slip."""
 
 
 @styled
-def draw(readings: Readings, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
+def draw_run(readings: Readings, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
     """Draw a run, or a window on it, from `start` to `end` (s).
 
     Shocks (jumps of the slip rate) are marked by dotted lines. The unit of time, from µs to years, suits the interval. If the
@@ -79,7 +79,7 @@ def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[An
     groups = {"curves": 3, "drive": int(bool(readings.at_drive)), "loading": len(varying(readings.problem))}
     groups |= {"slip": int(not readings.problem.friction.sticks)}
     heights = [HEIGHTS[name] for name, count in groups.items() for _ in range(count)]
-    figure = sheet((WIDTH, 0.35 + sum(heights)), **place)
+    figure = sheet((WIDTH_OF_FIGURE, 0.35 + sum(heights)), **place)
     grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
     found: dict[str, list[Any]] = {name: [] for name in groups}
     first = None

@@ -49,7 +49,7 @@ class Processor:
         return bytes(machine.emit_object(module))
 
 
-LEVELS = {
+LEVELS_OF_ARCHITECTURE = {
     "x86_64": ("x86-64-v3", {"avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}),
     "aarch64": ("generic", {"neon"}),
 }
@@ -63,7 +63,7 @@ def this_processor() -> Processor:
     """Return the level of this processor; STICKSLIP_PROCESSOR=native asks for code of its own."""
     wanted, has = os.environ.get("STICKSLIP_PROCESSOR", ""), llvm.get_host_cpu_features()
     architecture = ALIASES.get(platform.machine(), platform.machine())
-    level, needs = LEVELS.get(architecture, ("", {""}))
+    level, needs = LEVELS_OF_ARCHITECTURE.get(architecture, ("", {""}))
     if wanted not in ("", "native"):
         raise InputError(f"STICKSLIP_PROCESSOR must be empty or native, got {wanted!r}")
     if not wanted and all(has.get(feature, False) for feature in needs):

@@ -10,9 +10,9 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-NOTHING = c_char * 0
+NO_BYTES = c_char * 0
 """What is read of an array to learn its address, in a quarter of the time that numpy's own `ctypes.data` takes."""
-NUMBERS = {float: c_double, int: c_int64, bool: c_int64}
+NUMBERS_IN_C = {float: c_double, int: c_int64, bool: c_int64}
 """What C makes of Python's numbers."""
 
 
@@ -46,7 +46,7 @@ class Signature:
     @property
     def in_c(self) -> tuple[Any, list[Any]]:
         """The types of C of the result and of all arguments."""
-        return None if self.result is None else NUMBERS[self.result], [one for kind in self.kinds for one in _in_c(kind)]
+        return None if self.result is None else NUMBERS_IN_C[self.result], [one for kind in self.kinds for one in _in_c(kind)]
 
 
 def signature_of(function: Callable[..., Any]) -> Signature:
@@ -56,7 +56,7 @@ def signature_of(function: Callable[..., Any]) -> Signature:
 
 
 def _kind_of(hint: Any) -> Kind:
-    if hint in NUMBERS:
+    if hint in NUMBERS_IN_C:
         return hint
     if get_origin(hint) is Annotated:
         array, dimensions = get_args(hint)
@@ -69,7 +69,7 @@ def _in_c(kind: Kind) -> list[Any]:
         return [c_int64] * (1 + kind.dimensions)
     if isinstance(kind, Fields):
         return [one for each in kind.kinds for one in _in_c(each)]
-    return [NUMBERS[kind]]
+    return [NUMBERS_IN_C[kind]]
 
 
 class Ready:
@@ -94,7 +94,7 @@ def flattened(kinds: tuple[Kind, ...], given: tuple[Any, ...]) -> list[Any]:
             if one.dtype != kind.of or one.ndim != kind.dimensions or not one.flags.c_contiguous:
                 raise TypeError(f"machine code takes {kind}, not {one.dtype} of shape {one.shape} and strides {one.strides}")
             own = one.flags.owndata and one.flags.writeable  # as it is of no view that numpy has broadcast
-            flat += (addressof(NOTHING.from_buffer(one)) if own else one.ctypes.data, *one.shape)
+            flat += (addressof(NO_BYTES.from_buffer(one)) if own else one.ctypes.data, *one.shape)
         elif isinstance(kind, Fields):
             flat += flattened(kind.kinds, one)
         else:

@@ -11,14 +11,14 @@ from typing import NamedTuple
 from stickslip.foundation.headings import heading_of
 from stickslip.foundation.record_files.sheet import Asked, Lines, Sheet, number_in
 
-FIRST = "LabVIEW Measurement"
+MAGIC = "LabVIEW Measurement"
 """How such a file begins."""
 END = "***End_of_Header***"
 SPECIAL, END_SPECIAL = "***Start_Special***", "***End_Special***"
 _ENTRIES = frozenset(
     (
         *("Channels", "Samples", "Date", "Time", "Y_Unit_Label", "Y_Dimension", "X_Unit_Label", "X_Dimension", "X0", "Delta_X"),
-        *("Test_Name", "Test_Numbers", "Test_Series", "UUT_Name", "UUT_M/N", "UUT_S/N", "Notes", "Description", "X_Value", FIRST),
+        *("Test_Name", "Test_Numbers", "Test_Series", "UUT_Name", "UUT_M/N", "UUT_S/N", "Notes", "Description", "X_Value", MAGIC),
     )
 )
 """First cells of lines that belong to the header of a segment."""
@@ -107,7 +107,7 @@ class _Segment(NamedTuple):
 
 def begins(first: Sequence[str]) -> bool:
     """Return True for the first lines of such a file."""
-    return bool(first) and first[0].startswith(FIRST)
+    return bool(first) and first[0].startswith(MAGIC)
 
 
 def sheet(lines: Lines, asked: Asked) -> Sheet:

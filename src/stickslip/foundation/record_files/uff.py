@@ -15,7 +15,7 @@ MOST_NUMBERS = 50_000_000
 """Largest number of numbers that are read from a file: they are kept until all functions are there."""
 _EDGE = "-1"
 """The line before and behind each dataset."""
-TIME = 17
+CODE_OF_TIME = 17
 """The code of time among the types of abscissas."""
 _KINDS = {2: (13, 13), 4: (13, 20), 5: (13, 13), 6: (13, 20)}
 """Widths of an uneven abscissa and of an ordinate by the type of ordinates: real or complex, single or double."""
@@ -118,7 +118,7 @@ def _function(lines: Lines, asked: Asked) -> _Function | None:
     over, kept = (whole_in(head[k][:10].strip() or "0", asked, begun + k, "the type of an axis") for k in (7, 8))
     if kind not in _KINDS:
         raise asked.fault(begun + 6, "the type of ordinates must be 2, 4, 5 or 6")
-    if kind in _COMPLEX or over != TIME:
+    if kind in _COMPLEX or over != CODE_OF_TIME:
         return None
     if count > asked.most:
         raise asked.fault(begun + 6, f"more than {asked.most} rows")

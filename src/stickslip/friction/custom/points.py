@@ -16,7 +16,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.headings import COLUMNS, headings, missing, names_of
+from stickslip.foundation.headings import KNOWN_COLUMNS, headings, missing, names_of
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Choice, NumberSeries, Quantity, declare
@@ -125,7 +125,7 @@ class Points(CheckedArguments):
     def __repr__(self) -> str:
         columns = {"slip": self.slip, "slip_rate": self.slip_rate, "friction": self.friction}.items()
         units = own_units(self.load_unit)
-        given = [(name, x, COLUMNS[name].unit) for name, x in columns if x is not None]
+        given = [(name, x, KNOWN_COLUMNS[name].unit) for name, x in columns if x is not None]
         ranges = [f"{name} {np.min(x):.3g} to {np.max(x):.3g} {units.get(unit, unit)}" for name, x, unit in given]
         return f"Points({len(self)} points, {', '.join(ranges)})"
 

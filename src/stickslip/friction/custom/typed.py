@@ -24,12 +24,12 @@ EXAMPLE = '"dz/dt = (1 - z)/tau"'
 _EQUATION = re.compile(r"\s*d\s*([A-Za-z_]\w{0,39})\s*/\s*dt\s*=(?!=)(.*)", re.DOTALL)
 _NEXT = re.compile(r",\s*d\s*[A-Za-z_]\w*\s*/\s*dt\s*=")
 """The beginning of a second equation after a comma."""
-SIZES = np.geomspace(1e-18, 1e18, 145)
+MAGNITUDES_OF_STATE = np.geomspace(1e-18, 1e18, 145)
 """A steady state is sought between these magnitudes, in the unit of the state."""
-STATES = np.concatenate((-SIZES[::-1], [0.0], SIZES))
+STATES = np.concatenate((-MAGNITUDES_OF_STATE[::-1], [0.0], MAGNITUDES_OF_STATE))
 ROUNDS, SETTLED = 200, 1e-14
 """Two states must settle within this many rounds; they have settled when neither changes by more than this (relative, 1)."""
-HALVINGS = 200
+HALVINGS_OF_FLOATS = 200
 """After this many halvings an interval between two floats cannot be smaller."""
 
 
@@ -93,13 +93,13 @@ def _steady(change: Callable[[Floats], Floats], many: int) -> Floats | None:
     states = STATES[:, None]
     with np.errstate(all="ignore"):
         sign = np.sign(np.broadcast_to(change(states), (len(STATES), many)))
-        at_zero = (sign == 0.0).all(axis=0) | (sign[len(SIZES)] == 0.0)
+        at_zero = (sign == 0.0).all(axis=0) | (sign[len(MAGNITUDES_OF_STATE)] == 0.0)
         falls, exact = (sign[:-1] > 0.0) & (sign[1:] < 0.0), sign == 0.0
         if not (at_zero | falls.any(axis=0) | exact.any(axis=0)).all():
             return None
         k, other = (np.where(mask, abs(states[: len(mask)]), np.inf).argmin(axis=0) for mask in (falls, exact))
         low, high = STATES[k], STATES[k + 1]
-        for _ in range(HALVINGS):
+        for _ in range(HALVINGS_OF_FLOATS):
             middle = 0.5 * (low + high)
             cuts = (low < middle) & (middle < high)
             if not cuts.any():

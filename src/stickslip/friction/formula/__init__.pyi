@@ -45,14 +45,12 @@ from stickslip.friction.formula.operations import (
     OPERATIONS,  # All operations by their names in the nodes of formulas.
     operation_of,  # Return the operation of a node that has arguments.
 )
-from stickslip.friction.formula.operations.changes import (
-    SLOPE,
-)
 from stickslip.friction.formula.operations.enclosures import (
     add,  # Return [a, b] + [c, d].
     multiply,  # Return [a, b] times [c, d].
 )
 from stickslip.friction.formula.operations.operation import (
+    SLOPE,
     TINIEST,  # Smallest bound of a magnitude from below.
     Scaled,  # A series that differs from that of a node by a factor, and is known earlier.
     oldest_first,  # Sort the pairs of orders in a product's recurrence so that those which need the newest coefficients come last.

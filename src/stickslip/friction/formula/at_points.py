@@ -8,13 +8,13 @@ from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1, Int
 from stickslip.foundation.kernels.kernels import exact, exact_entry
 from stickslip.friction.formula.expression import VARIABLES as _VARIABLES
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.operation import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.tape import NUMBER, VARIABLE, rule_by_code
 
 rule = rule_by_code([one.change for one in OPERATIONS.values()])
 """Compiled code that writes the row of a node."""
 
-MANY = len(_VARIABLES)
+NUMBER_OF_VARIABLES = len(_VARIABLES)
 """Number of variables of formulas."""
 
 
@@ -25,7 +25,7 @@ class AtPoints(NamedTuple):
     values: Floats1
     spans: Integers2  # (members, 2): first row of the formula of each member, and the end
     numbers: Floats2  # (members, numbers): the law's numbers, of which the slip (m) at the reference point is the last
-    room: Floats2  # (MANY + nodes + 1, 4): rows as in `operations.changes` of variables, nodes, and an argument that is limited
+    room: Floats2  # (NUMBER_OF_VARIABLES + nodes + 1, 4): rows as in `operations.changes`: variables, nodes, a limited argument
 
 
 @exact
@@ -47,20 +47,20 @@ def walk(of: AtPoints, member: int) -> int:
     w, first, last = of.room, of.spans[member, 0], of.spans[member, 1]
     spare = len(w) - 1
     for row in range(first, last):
-        n, code, i = MANY + row - first, of.steps[row, 0], of.steps[row, 1]
+        n, code, i = NUMBER_OF_VARIABLES + row - first, of.steps[row, 0], of.steps[row, 1]
         if code > VARIABLE:
             if of.steps[row, 3] == 1:
-                _limit(w, MANY + i, spare)
+                _limit(w, NUMBER_OF_VARIABLES + i, spare)
                 rule(code, w, n, spare, spare)
             else:
-                rule(code, w, n, MANY + i, MANY + of.steps[row, 2])
+                rule(code, w, n, NUMBER_OF_VARIABLES + i, NUMBER_OF_VARIABLES + of.steps[row, 2])
         elif code == VARIABLE:
             for column in range(4):
                 w[n, column] = w[i, column]
         else:
             number = of.numbers[member, i] if code == NUMBER else of.values[row]
             w[n, REFERENCE], w[n, STEP], w[n, VALUE], w[n, SLOPE] = number, 0.0, number, 0.0
-    return int(MANY + last - first - 1)
+    return int(NUMBER_OF_VARIABLES + last - first - 1)
 
 
 @exact
@@ -75,7 +75,7 @@ def change_at(of: AtPoints, member: int, slip_step: float, rate: float) -> int:
     """Work out the change of the formula of a member from rest to a point; return the row of `of.room` with the result."""
     put_variable(of, 0, of.numbers[member, -1], slip_step, 0.0)
     put_variable(of, 1, 0.0, rate, 1.0)
-    for place in range(2, MANY):
+    for place in range(2, NUMBER_OF_VARIABLES):
         put_variable(of, place, 0.0, 0.0, 0.0)
     return walk(of, member)
 
@@ -99,7 +99,7 @@ def slopes_at(of: AtPoints, points: Floats2, found: Floats2) -> None:
     """
     for k in range(len(points)):
         for by in range(points.shape[1]):
-            for place in range(MANY):
+            for place in range(NUMBER_OF_VARIABLES):
                 number = points[k, place] if place < points.shape[1] else 0.0
                 put_variable(of, place, number, 0.0, 1.0 if place == by else 0.0)
             row = walk(of, k if len(of.numbers) > 1 else 0)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.at_points import MANY, AtPoints, changes_at, slopes_at
+from stickslip.friction.formula.at_points import NUMBER_OF_VARIABLES, AtPoints, changes_at, slopes_at
 from stickslip.friction.formula.expression import Expression, as_expression, depends_on, nodes_of
 from stickslip.friction.formula.operations import operation_of
 from stickslip.friction.formula.tape import Integers, Tape, written
@@ -97,7 +97,7 @@ def difference(
 
 def points_of(tape: Tape, formula: Integers, numbers: Floats) -> AtPoints:
     """Return what compiled code needs to follow formulas of members, with a row of numbers each, the slip last."""
-    return AtPoints(tape.steps, tape.values, tape.spans[formula], numbers, np.empty((MANY + tape.longest + 1, 4)))
+    return AtPoints(tape.steps, tape.values, tape.spans[formula], numbers, np.empty((NUMBER_OF_VARIABLES + tape.longest + 1, 4)))
 
 
 def changes(of: AtPoints, member: Integers, slip_step: ArrayLike, rate: Floats) -> tuple[Floats, Floats]:

@@ -27,7 +27,7 @@ from stickslip.friction.formula.expression import (
 )
 from stickslip.friction.formula.functions import COMPOSED, OTHER_NAMES
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS, operation_of
-from stickslip.friction.formula.operations.operation import UNITS, Dimension, unit_text, without_zeros
+from stickslip.friction.formula.operations.operation import FORMULA_UNITS, Dimension, unit_text, without_zeros
 from stickslip.friction.formula.operations.powers import POW
 
 LONGEST = 1000
@@ -40,7 +40,7 @@ LARGEST_EXPONENT = 100.0
 """Largest size of an exponent: powers of slips and slip rates up to 10 (m or m/s) stay far from overflow."""
 RESERVED = ("u", "v", "pi", *FUNCTIONS)
 """Names that a parameter cannot have because they mean something else in an expression."""
-ALLOWED = f"allowed are numbers, u, v, pi, declared parameters, + - * / ** and {', '.join(FUNCTIONS)}"
+ALLOWED_PARTS = f"allowed are numbers, u, v, pi, declared parameters, + - * / ** and {', '.join(FUNCTIONS)}"
 """End of a message about a part that is not allowed."""
 KINKED = ("abs", "min", "max", "where", "minimum", "maximum", "sign", "heaviside", "clip", "floor", "ceil")
 """Functions with kinks or jumps that users try, which have no Taylor series there."""
@@ -66,7 +66,7 @@ def parse(text: str, names: tuple[str, ...], states: tuple[str, ...] = ()) -> Ex
         raise InputError(f"longer than {LONGEST} characters")
     if not text.isascii() or not text.isprintable():
         odd = next(c for c in text if not (c.isascii() and c.isprintable()))
-        raise InputError(f"the character {odd!a} is not allowed; {ALLOWED}")
+        raise InputError(f"the character {odd!a} is not allowed; {ALLOWED_PARTS}")
     tree = _Reader(text, names, states).read(_syntax(text), 0)
     if len(nodes_of(tree)) > MOST_OPERATIONS:
         raise InputError(f"more than {MOST_OPERATIONS} operations, powers written out as products")
@@ -85,7 +85,7 @@ def _syntax(text: str) -> ast.expr:
                 f"{_shown(text)} is not an expression, because of its sign =; write only what comes after it"
             ) from None
         where = f" at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
-        raise InputError(f"{_shown(text)} is not an expression: mistake{where}; {ALLOWED}") from None
+        raise InputError(f"{_shown(text)} is not an expression: mistake{where}; {ALLOWED_PARTS}") from None
 
 
 class _Reader:
@@ -112,11 +112,11 @@ class _Reader:
             raise InputError(f"{self.part(node)} is not allowed, because it is a branch; {KINKS}")
         if isinstance(node, ast.Tuple):
             raise InputError(f"{self.part(node)} is not allowed, because of its comma; a decimal point is written as in 0.5")
-        raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
+        raise InputError(f"{self.part(node)} is not allowed; {ALLOWED_PARTS}")
 
     def number(self, node: ast.Constant) -> Expression:
         if type(node.value) not in (int, float):
-            raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
+            raise InputError(f"{self.part(node)} is not allowed; {ALLOWED_PARTS}")
         try:
             value = float(node.value)  # type: ignore[arg-type] # checked above
         except OverflowError:
@@ -149,7 +149,7 @@ class _Reader:
     def binary(self, node: ast.BinOp, depth: int) -> Expression:
         if type(node.op) not in _BINARY:
             hint = "; a power is written **" if isinstance(node.op, ast.BitXor) else ""
-            raise InputError(f"the operator in {self.part(node)} is not allowed{hint}; {ALLOWED}")
+            raise InputError(f"the operator in {self.part(node)} is not allowed{hint}; {ALLOWED_PARTS}")
         left, right = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
         if isinstance(node.op, ast.Pow):
             self.check_exponent(node, right)
@@ -165,7 +165,7 @@ class _Reader:
         if isinstance(node.func, ast.Attribute) and node.func.attr in (*FUNCTIONS, *COMPOSED, *OTHER_NAMES, *KINKED):
             raise InputError(f"{self.part(node.func)} is written {node.func.attr}, without the name of a library")
         if not isinstance(node.func, ast.Name):
-            raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
+            raise InputError(f"{self.part(node)} is not allowed; {ALLOWED_PARTS}")
         name = OTHER_NAMES.get(node.func.id, node.func.id)
         if name in KINKED:
             raise InputError(f"the function {self.part(node.func)} has a kink or a jump; {KINKS}")
@@ -224,10 +224,10 @@ def check_dimensions(tree: Expression, units: Mapping[str, str], state: str | No
         if found[tree] != wanted and not zero:
             is_in = unit_text(found[tree]) or "a pure number"
             must = f"it must be in {unit_text(wanted)}, the unit of the state over s"
-            raise InputError(f"{must}, but {quoted(tree)} is {is_in}; {UNITS}")
+            raise InputError(f"{must}, but {quoted(tree)} is {is_in}; {FORMULA_UNITS}")
     elif found[tree]:
         raise InputError(
-            f"the friction coefficient must be a pure number, but {quoted(tree)} is in {unit_text(found[tree])}; {UNITS}"
+            f"the friction coefficient must be a pure number, but {quoted(tree)} is in {unit_text(found[tree])}; {FORMULA_UNITS}"
         )
 
 

@@ -21,11 +21,11 @@ QUARTER = math.exp(-50.0)
 """Fourth root (1) of the smallest v / (2 rate) that this other form resolves: 1e-93 m/s for a `rate` of 1e-6 m/s, which is rest."""
 LOWEST = 2800.0
 """That other form holds for exponents above minus this (1)."""
-FASTEST = 1e3
+FASTEST_CONTACT = 1e3
 """A slip rate (m/s) that no contact exceeds."""
 FARTHEST_STATE = 60.0
 """Largest w = ln(rate theta / distance) allowed for: that of a contact that has healed for longer than the age of the Earth."""
-SLOWEST = 1e-24
+SQUARE_AT_REST = 1e-24
 """Number added to (v / rate)^2 in the logarithm of the slip law, which would otherwise be infinite at rest."""
 
 
@@ -179,7 +179,7 @@ def _prz(law: Any, u: Any, v: Any, w: Any) -> Any:
 def _logarithm(law: Any, v: Any) -> Any:
     """Return ln(v / rate), finite at rest."""
     y = v / law.rate
-    return 0.5 * log(y * y + SLOWEST)
+    return 0.5 * log(y * y + SQUARE_AT_REST)
 
 
 _EVOLUTIONS: dict[str, Formula] = {"ageing": _ageing, "slip": _slip, "prz": _prz}
@@ -309,7 +309,7 @@ class FlashHeating(DirectEffect):
 
     @override
     def check(self) -> None:
-        lowest = self.reference - (self.b - self.a) * math.log(FASTEST / self.rate)
+        lowest = self.reference - (self.b - self.a) * math.log(FASTEST_CONTACT / self.rate)
         if self.overflows and lowest < -LOWEST * self.a:
             least = -lowest / LOWEST
             raise InputError(f"FlashHeating: a must be at least {least:.3g} with this reference, b and rate, got {self.a:g}")

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import KINDS, Name, si_unit
+from stickslip.foundation.names import KINDS_OF_BODY, Name, si_unit
 from stickslip.foundation.quantities import check_fields
 
 
@@ -25,7 +25,7 @@ class Body(Protocol):
     kind: ClassVar[str]
     """Name in scenario files."""
     load_unit: ClassVar[str]
-    """SI unit of loads and tractions, which decides the other units: a row of `foundation.names.KINDS`."""
+    """SI unit of loads and tractions, which decides the other units: a row of `foundation.names.KINDS_OF_BODY`."""
     noun: ClassVar[str]
     """What sentences call the body: "slab", "block" or "string"."""
 
@@ -248,7 +248,7 @@ MACHINE = "a driver with a mass or an integral gain"
 
 def check_body(body: BodyOnCharacteristics) -> None:
     """Check the fields of a body. Its normal load is one number, whereas a history belongs to the problem."""
-    normal = KINDS[body.load_unit].normal
+    normal = KINDS_OF_BODY[body.load_unit].normal
     if hasattr(getattr(body, normal), "segments"):
         one = f"{type(body).__name__}: {normal} is one number, that at the start"
         raise InputError(f"{one}: a history is normal_load of the Problem, [loading.normal_load] in a scenario")
@@ -308,7 +308,7 @@ class WithNormalLoad:
     @property
     def normal_field(self: Body) -> str:
         """The name of the field that holds the normal load."""
-        return KINDS[self.load_unit].normal
+        return KINDS_OF_BODY[self.load_unit].normal
 
     @property
     def normal_load(self: Body) -> float:

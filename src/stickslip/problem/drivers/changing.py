@@ -8,8 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.at_first import far_at_first
-from stickslip.problem.drivers.driver import inflow_of
+from stickslip.problem.drivers.driver import far_at_first, inflow_of
 from stickslip.problem.drivers.lossy import LossyDriver
 from stickslip.problem.drivers.segments import arriving, in_parts, straight
 from stickslip.problem.inflow import Inflow

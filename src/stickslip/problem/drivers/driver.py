@@ -21,6 +21,22 @@ from stickslip.problem.loading import SILENT, Segment, Tone
 from stickslip.problem.problem import Problem
 
 
+def wave_before(problem: Problem) -> Any:
+    """Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start."""
+    return problem.excess - 2.0 * problem.body.impedance * problem.rate
+
+
+def far_excess(problem: Problem) -> Any:
+    """Return the default far stress, that in the slab at the start, minus the reference strength (Pa)."""
+    return problem.excess - problem.body.impedance * problem.rate
+
+
+def far_at_first(problem: Problem) -> Any:
+    """Return the stress behind the last layer, or behind a slab, at the start, minus the reference strength (Pa)."""
+    body = problem.body
+    return body.first_share * far_excess(problem) + body.held_at_start(problem.rate, problem.initial_shear)[0]
+
+
 class Driver(ABC):
     """The questions to a driver, whose numbers are those of a problem and of its body. Units are those of `Body`."""
 

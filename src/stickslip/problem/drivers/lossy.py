@@ -6,9 +6,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.problem.at_first import far_at_first
 from stickslip.problem.bodies import BodyOnCharacteristics
-from stickslip.problem.drivers.driver import Driver
+from stickslip.problem.drivers.driver import Driver, far_at_first
 from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.fields import ProblemFields

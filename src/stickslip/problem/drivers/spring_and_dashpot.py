@@ -19,7 +19,7 @@ from stickslip.problem.inflow import Inflow
 from stickslip.problem.loading import SILENT, LoadingHistory, Segment, Tone
 from stickslip.problem.problem import Problem
 
-SAME = 1e-14
+NO_JUMP_OF_PULL = 1e-14
 """A change of the pull rate below this share of the largest one (1) is rounding and no jump."""
 
 
@@ -52,7 +52,7 @@ class SpringAndDashpot(Spring):
             return []
         start, value, slope = np.array(problem.pull_rate.segments).T
         jump = value[1:] - (value[:-1] + slope[:-1] * np.diff(start))
-        jump[np.abs(jump) <= SAME * np.abs(value).max()] = 0.0
+        jump[np.abs(jump) <= NO_JUMP_OF_PULL * np.abs(value).max()] = 0.0
         force = as_on_spring(problem.body).driver_damping * jump
         return [(time, step) for time, step in zip(start[1:].tolist(), force.tolist(), strict=True) if step != 0.0]
 

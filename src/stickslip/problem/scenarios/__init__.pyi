@@ -29,9 +29,9 @@ from stickslip.problem.scenarios.scenario import (
     scenario_of,  # Return a scenario from a parsed TOML document.
 )
 from stickslip.problem.scenarios.schema import (
-    KINDS,  # Tables that must have a key `kind`, each with the classes that it may name.
     ONE_WAY,  # Meaning of the key one_way.
     TABLES,  # The tables of a scenario; extensions add others.
+    TABLES_WITH_KIND,  # Tables that must have a key `kind`, each with the classes that it may name.
     # A key of a table: the function that converts and checks its value, its default (MISSING if it must be given), its meaning.
     Key,
     check_rule,  # Return the name of a selection rule if there is such a rule.
@@ -67,11 +67,11 @@ from stickslip.problem.scenarios.text_of_files import (
 )
 
 __all__ = [
-    "KINDS",
     "LARGEST_SCENARIO_FILE",
     "LARGEST_TEXT",
     "ONE_WAY",
     "TABLES",
+    "TABLES_WITH_KIND",
     "UNNAMED",
     "YES_OR_NO",
     "Key",

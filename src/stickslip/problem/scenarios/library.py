@@ -40,7 +40,7 @@ STARTERS = {
 }
 
 
-LISTED = "`stickslip new --list` lists them"
+NAMES_LISTED = "`stickslip new --list` lists them"
 """Where all names are."""
 
 
@@ -63,7 +63,7 @@ def names() -> list[str]:
 def text(name: str) -> str:
     """Return the TOML text of a bundled scenario. Raises InputError for a name that is not among `names()`."""
     if name not in names():
-        raise InputError(f"no bundled scenario {ascii(name)[:60]}; {nearest(name, names(), listed=LISTED)}")
+        raise InputError(f"no bundled scenario {ascii(name)[:60]}; {nearest(name, names(), listed=NAMES_LISTED)}")
     return _files()[name].read_text(encoding="utf-8")
 
 

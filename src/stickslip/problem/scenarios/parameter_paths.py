@@ -27,7 +27,7 @@ from stickslip.problem.selection_rule import names as rules
 
 EVENTS = Quantity("1", EVENTS_WANTED.meaning, at_least=1)
 SELECTION = "selection rule"
-LISTED = "`stickslip check SCENARIO --parameters` lists all"
+PARAMETERS_LISTED = "`stickslip check SCENARIO --parameters` lists all"
 """Where all parameters are."""
 YES_OR_NO = Choice("true or false", ("true", "false"))
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
@@ -95,7 +95,7 @@ def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     if plain is not None:
         return ParameterPath(plain.name, plain.declared, plain.written)
     found = {parameter.name: parameter for parameter in parameter_paths(scenario)}
-    return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario", LISTED)]
+    return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario", PARAMETERS_LISTED)]
 
 
 Changes = Sequence[tuple[ParameterPath, Any]]

@@ -11,7 +11,7 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import column_given
-from stickslip.foundation.headings import COLUMNS, TURNED, find, missing
+from stickslip.foundation.headings import KNOWN_COLUMNS, TURNED, find, missing
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import LARGEST_SERIES
 from stickslip.foundation.record_files.foreign import text_in
@@ -77,7 +77,7 @@ def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedCol
     points = {columns[column]: numbers.tolist() for column, numbers in table.warned().columns.items()}
     unit = find(table.header, (value,), file)[value].unit
     if unit is not None:
-        points[columns[value]] = column_given(points[columns[value]], unit, COLUMNS[value].unit)
+        points[columns[value]] = column_given(points[columns[value]], unit, KNOWN_COLUMNS[value].unit)
     return points
 
 

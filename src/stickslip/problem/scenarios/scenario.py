@@ -247,7 +247,7 @@ class BundledScenarios(Mapping[str, Scenario]):
         if not isinstance(name, str):
             raise InputError(f"scenarios: a name must be text, such as 'fig6-slab', got {shown(name)}")
         if name not in self:
-            close = nearest(name, library.names(), listed=library.LISTED)
+            close = nearest(name, library.names(), listed=library.NAMES_LISTED)
             cure = "a file is read with ss.load_scenario" if name.endswith(".toml") else close
             raise InputError(f"no bundled scenario {ascii(name)[:60]}; {cure}")
         return load_scenario(name)
@@ -266,14 +266,8 @@ class BundledScenarios(Mapping[str, Scenario]):
         return "\n".join(f"{name:<{width}}  {entry.title}" for name, entry in library.entries().items())
 
     def _repr_html_(self) -> str:
-        from html import escape  # here, because only notebooks need it
-
-        rows = "".join(
-            f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{escape(entry.title)}</td>"
-            f"<td style='text-align:left'>{escape(entry.description)}</td></tr>"
-            for name, entry in library.entries().items()
-        )
-        return f"<table><caption>bundled scenarios: ss.scenarios[name], ss.simulate(name)</caption>{rows}</table>"
+        rows = ((name, entry.title, entry.description) for name, entry in library.entries().items())
+        return html_table("bundled scenarios: ss.scenarios[name], ss.simulate(name)", rows)
 
     def _ipython_key_completions_(self) -> list[str]:
         return library.names()

@@ -15,8 +15,7 @@ from stickslip.extension import tables
 from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
-from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
-from stickslip.foundation.names import TURNS, own_units
+from stickslip.foundation.names import KINDS_OF_BODY, TURNS, own_units
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
 from stickslip.foundation.synonyms import same
@@ -32,9 +31,9 @@ from stickslip.problem.run_options import RunOptions
 from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 
-KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
+TABLES_WITH_KIND: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
-REGISTERED = KINDS | {"loading": HISTORIES}
+REGISTERED = TABLES_WITH_KIND | {"loading": HISTORIES}
 """Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
 LISTED, EXPLAINED = "`stickslip new --list` lists all", "`stickslip new slab`, or another starter, explains all"
 """Where the kinds of laws and histories are, and the keys."""
@@ -86,7 +85,7 @@ def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()
     `kind` is the class of the law for [friction] and of the body for every other table, because loads are stresses for a slab and
     forces for a block. `states` are the friction law's states, which [initial] needs.
     """
-    if table in KINDS or table in tables():
+    if table in TABLES_WITH_KIND or table in tables():
         return _declared(tables()[table].kind() if table in tables() else kind)
     if table == "run":
         return _declared(RunOptions)
@@ -121,7 +120,7 @@ def entries_in(
 
 def has_kind(table: str) -> bool:
     """Return True if a table has a key `kind`, which names a class."""
-    return table in KINDS or "." in table
+    return table in TABLES_WITH_KIND or "." in table
 
 
 def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
@@ -151,7 +150,7 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
     if varies and isinstance(value, dict):
         unit = declared.unit if isinstance(declared, Quantity) else ""
         return read_part(place.inner, value, place.source) if place.key != "normal_load" else _read_normal_load(value, place, unit)
-    if place.table == "body" and isinstance(value, dict) and any(place.key == kind.normal for kind in KINDS_OF_BODIES.values()):
+    if place.table == "body" and isinstance(value, dict) and any(place.key == kind.normal for kind in KINDS_OF_BODY.values()):
         raise InputError(f"{place.source.file}: {place} is one number, that at the start: a history is [loading.normal_load]")
     if place.source.load_unit:
         declared = in_units(declared, own_units(place.source.load_unit))
@@ -174,7 +173,7 @@ def _read_normal_load(table: dict[str, Any], place: DocumentPlace, unit: str) ->
         return _read_weight(table, place)
     if not units <= {unit}:
         raise InputError(f"{place.source.file}: [{place.inner}] must be in {unit}, as the loads of this body are")
-    heading = KINDS_OF_BODIES[unit].normal if unit in KINDS_OF_BODIES else ""
+    heading = KINDS_OF_BODY[unit].normal if unit in KINDS_OF_BODY else ""
     try:
         found: LoadingHistory = read_part(place.inner, table, place.source, heading)
     except InputError as error:
@@ -329,6 +328,6 @@ def _belongs(name: str, table: str) -> str:
         return f"it is a key of {', '.join(having)}, and not of this kind"
     others = () if table.startswith("friction.") else (other for other in (*TABLES, *tables()) if other not in ("friction", table))
     for other in others:
-        if any(name in keys_of(other, body) for body in KINDS["body"].values()):
+        if any(name in keys_of(other, body) for body in TABLES_WITH_KIND["body"].values()):
             return f"it belongs in [{other}]"
     return ""

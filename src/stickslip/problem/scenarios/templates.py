@@ -11,8 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
-from stickslip.foundation.names import TURNS
+from stickslip.foundation.names import KINDS_OF_BODY, TURNS
 from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
 from stickslip.foundation.show import brief, clean
 from stickslip.friction import LAWS, FrictionLaw
@@ -27,9 +26,9 @@ from stickslip.problem.scenarios.entries import Source, describe, key_of, to_tab
 from stickslip.problem.scenarios.parameter_paths import find_parameter, put_into
 from stickslip.problem.scenarios.scenario import scenario_of
 from stickslip.problem.scenarios.schema import (
-    KINDS,
     SOFT_TORQUE,
     TABLES,
+    TABLES_WITH_KIND,
     WITH_SOFT_TORQUE,
     columns_of,
     entries_in,
@@ -78,7 +77,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
     if name in library.STARTERS:
         return _starter(tomllib.loads(library.text(library.STARTERS[name].example)), friction, pull)
     if name not in template_names():
-        raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.LISTED)}")
+        raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.NAMES_LISTED)}")
     if friction is not None or pull is not None:
         chosen = "pull rate" if friction is None else "friction law"
         raise InputError(f"new: only {', '.join(library.STARTERS)} take a {chosen}; {name} has its own")
@@ -88,7 +87,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
 def check_takes_law(name: str) -> None:
     """Raise InputError unless `with_law` knows the name."""
     if name not in template_names():
-        raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.LISTED)}")
+        raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.NAMES_LISTED)}")
     if name not in (*library.STARTERS, *library.in_1d()):
         raise InputError(f"{name} has a [contact] of many nodes, which takes no other law: name another scenario")
 
@@ -103,7 +102,7 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[
     """
     check_takes_law(name)
     example = tomllib.loads(library.text(library.STARTERS[name].example if name in library.STARTERS else name))
-    of_body = KINDS_OF_BODIES[kind_of("body", example["body"], name).load_unit]  # type: ignore[attr-defined] # registered
+    of_body = KINDS_OF_BODY[kind_of("body", example["body"], name).load_unit]  # type: ignore[attr-defined] # registered
     if law.slips_in not in ("", of_body.slip):
         raise InputError(f"{name}: the points are in {law.slips_in}, but its contact {of_body.moves}: name another scenario")
     former = kind_of("friction", example["friction"], name)
@@ -160,7 +159,7 @@ def _starter(example: dict[str, Any], friction: str | None, pull: str | None) ->
 
 def _written(example: dict[str, Any], about: str = "") -> str:
     """Return a scenario as text that explains every key, after `about`, some lines of comments."""
-    kinds = {table: kind_of(table, example[table], "starter") for table in KINDS}
+    kinds = {table: kind_of(table, example[table], "starter") for table in TABLES_WITH_KIND}
     texts = [f"{key} = {_toml(example[key])}\n" for key in ("title", "description") if key == "title" or example[key]]
     parts = [about + "#\n" * bool(about) + _HEADER, "".join(texts)]
     for table in TABLES:

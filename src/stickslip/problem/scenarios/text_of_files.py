@@ -92,7 +92,7 @@ def _hint(path: Path) -> str:
     if path.stem in library.STARTERS:
         return f"`stickslip new {path.stem} > {path.stem}.toml` writes one to start from"
     close = meant(path.stem, library.names())
-    return did_you_mean(close) if close else library.LISTED
+    return did_you_mean(close) if close else library.NAMES_LISTED
 
 
 def is_scenario_name(text: str) -> bool:

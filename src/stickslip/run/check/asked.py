@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar
 
 from stickslip.contact import Uniqueness
@@ -11,8 +12,17 @@ from stickslip.foundation.by_kind import ByKind
 from stickslip.problem import BODY_KINDS, DRIVER_KINDS, Problem
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario
-from stickslip.run.check.facts import Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A number with its unit, or a word, with its name and its meaning, as `stickslip check` shows it."""
+
+    name: str
+    value: float | str
+    unit: str
+    meaning: str
 
 
 class CheckOfKind(ABC):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,14 +20,14 @@ from stickslip.contact import (
 )
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
-from stickslip.foundation.show import brief
+from stickslip.foundation.show import brief, with_unit
 from stickslip.friction import FrictionLaw, RateAndState
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.problem import (
+    EXACT_TRIPS,
     MOST_PIECES,
-    PATIENCE,
     STEADY,
     VARYING,
     LoadingHistory,
@@ -41,8 +41,7 @@ from stickslip.problem import (
 )
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario, doubts, key_of, quantities_in
-from stickslip.run.check.asked import CHECK_KINDS
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_KINDS, Fact
 from stickslip.run.check.stability import stability_of, start_of, wait_of
 from stickslip.run.check.starts import chosen_starts
 
@@ -67,6 +66,28 @@ class Examination:
     """Critical values of single parameters: the regime changes there while all others stay as they are."""
     along_slip: str
     warnings: list[str]
+
+    def numbers(self) -> Iterator[tuple[str, ...]]:
+        """Yield name, value and meaning of each number, given or derived, below the name of its table alone."""
+        for heading, facts in [*((f"[{name}]", facts) for name, facts in self.given.items()), ("what follows", self.derived)]:
+            yield (heading,)
+            for one in facts:
+                yield one.name, one.value if isinstance(one.value, str) else with_unit(one.value, one.unit), one.meaning
+
+    def findings(self) -> Iterator[tuple[str, str]]:
+        """Yield the name and the text of each finding."""
+        yield "start", self.start
+        yield from (("chosen", line) for line in self.chosen)
+        if self.stability:
+            yield "stability", self.stability
+        yield from (("steady sliding", line) for line in self.steady.lines())
+        yield "uniqueness", self.uniqueness.summary
+        if self.along_slip:
+            yield "along slip", self.along_slip
+        for fact in self.critical:
+            yield "critical value", f"{fact.name} = {brief(float(fact.value), fact.unit, 9)}; {fact.meaning}"
+        yield from self.uniqueness.fold_lines()
+        yield from (("warning", warning) for warning in self.warnings)
 
 
 def examine(scenario: Scenario) -> Examination:
@@ -125,7 +146,7 @@ def _automatic(scenario: Scenario) -> list[Fact]:
     if scenario.creep_rtol is None and tolerance > 0.0:
         over = leaps_over(problem)
         turn, of = problem.body.turn, "with slip" if "creep" in over else "of it"
-        does = f"leaps over {over} after {PATIENCE} {turn}s {of}, error of slip at most this times the slip so far"
+        does = f"leaps over {over} after {EXACT_TRIPS} {turn}s {of}, error of slip at most this times the slip so far"
         facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every {turn}"))
     if scenario.shortest_event is None and lumps_by_itself(problem):
         does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from stickslip.foundation.names import KINDS
+from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.foundation.show import brief
 from stickslip.problem import LoadingHistory, Problem, far_at_first
 from stickslip.run.check.asked import CheckOfDriver
 
-SAME = 1e-12
+SAME_STRESS = 1e-12
 """Relative difference (1) between two stresses that is rounding."""
 
 
@@ -26,12 +26,12 @@ class GivesWay(CheckOfDriver):
         body, far, unit, inside = problem.body, problem.far_stress, problem.load_unit, problem.stress
         if far is None:
             drag = ", and what drag takes" * any(body.held_at_start(problem.rate, problem.initial_shear))
-            held = f"it holds the {KINDS[unit].loads} in the {body.noun} at the start, {brief(inside, unit)}{drag}"
+            held = f"it holds the {KINDS_OF_BODY[unit].loads} in the {body.noun} at the start, {brief(inside, unit)}{drag}"
             yield f"the far stress is not given: {held}"
             return
         first = far.first if isinstance(far, LoadingHistory) else far
         behind = inside if body.drivers > 1 else far_at_first(problem) + problem.strength
-        if abs(first - behind) > SAME * max(abs(first), abs(behind)):
+        if abs(first - behind) > SAME_STRESS * max(abs(first), abs(behind)):
             does = "accelerates the driver" if body.driver_inertia > 0.0 else "comes to the contact as a jump"
             apart = f"{brief(first, unit)} at first, beside {brief(behind, unit)} in the {body.noun}"
             yield f"the far stress is {apart}: the difference {does}"

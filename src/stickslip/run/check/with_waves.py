@@ -6,14 +6,13 @@ from abc import abstractmethod
 from collections.abc import Iterator
 
 from stickslip.contact import Uniqueness
-from stickslip.foundation.names import KINDS
+from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.foundation.show import brief
 from stickslip.friction import SinusoidalSlip
 from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario
-from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind, Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 from stickslip.run.reference.slab import PulseTrain
 
@@ -77,7 +76,7 @@ class CheckOfWaves(CheckOfKind):
         held = problem.body.held_at_start(problem.rate, problem.initial_shear)
         if any(held):
             sizes = " and ".join(brief(one, problem.load_unit) for one in held if one)
-            yield f"the {KINDS[problem.load_unit].loads} grows from the contact to the driver by what drag takes, {sizes}"
+            yield f"the {KINDS_OF_BODY[problem.load_unit].loads} grows from the contact to the driver by what drag takes, {sizes}"
         yield from CHECK_DRIVERS[problem.driver_kind].at_start(problem)
 
     def other_start(self, problem: Problem) -> str:

@@ -14,7 +14,7 @@ from stickslip.solution.files.curves import (
 )
 from stickslip.solution.files.netcdf import (
     CATALOGUE,  # Attribute that holds the version in the checkpoint of a catalogue.
-    FORMAT,  # Version of the file layout below; a file with another version is refused.
+    FILE_FORMAT,  # Version of the file layout below; a file with another version is refused.
     about_curves,  # Return the attributes units and long_name of each curve of a run, and of its time.
     is_catalogue,  # Return True if a file is the checkpoint of a catalogue.
     origin,  # Return the attributes that say where a run comes from, but for those that take a computation.
@@ -41,7 +41,7 @@ from stickslip.solution.files.zarr_store import (
 
 __all__ = [
     "CATALOGUE",
-    "FORMAT",
+    "FILE_FORMAT",
     "FolderFormat",
     "Rows",
     "RowsInMemory",

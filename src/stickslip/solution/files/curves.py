@@ -14,7 +14,7 @@ from stickslip.solution.files.sampling import Span, sampled_curves
 if TYPE_CHECKING:
     from stickslip.foundation.arrays import Floats
 
-FIRST: tuple[Curve, ...] = ("slip", "event_slip", "slip_rate", "load", "traction")
+CURVES_IN_ORDER: tuple[Curve, ...] = ("slip", "event_slip", "slip_rate", "load", "traction")
 """The order of the columns after time; states of the law follow."""
 SUFFIXES = (".csv", ".nc")
 """File suffixes of curves."""
@@ -37,7 +37,7 @@ def write_curves(run: Readings, path: str | Path, **evenly: Unpack[Evenly]) -> P
     Raises InputError as that does, and for another suffix.
     """
     file, known = checked_path(Path(path)), run.curves
-    names = [*(name for name in FIRST if name in known), *(name for name in known if name not in FIRST)]
+    names = [*(name for name in CURVES_IN_ORDER if name in known), *(name for name in known if name not in CURVES_IN_ORDER)]
     time, values = sampled_curves(run, names, **evenly)
     if file.suffix.lower() == ".csv":
         return write_columns(file, {heading("time", "s"): time} | _with_headings(run, names, values))

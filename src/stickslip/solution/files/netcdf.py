@@ -48,11 +48,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-FORMAT = 1
+FILE_FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
 CATALOGUE = "stickslip_catalogue"
 """Attribute that holds the version in the checkpoint of a catalogue."""
-KINDS = {
+FILE_KINDS = {
     "stickslip_format": "a solution: continue it with stickslip.resume",
     CATALOGUE: "a catalogue's checkpoint: continue it with stickslip.resume",
 }
@@ -170,7 +170,7 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
     curves = _curves(solution, time, dict(zip(names, values, strict=True)))
     variables = history_variables(solution) | curves | _at_drive(solution) | _tables(solution)
     try:
-        return write_variables(variables, _engine(solution) | provenance(solution) | {"stickslip_format": FORMAT}, file)
+        return write_variables(variables, _engine(solution) | provenance(solution) | {"stickslip_format": FILE_FORMAT}, file)
     except FullDiskError as error:
         error.solution = solution
         raise
@@ -191,7 +191,7 @@ def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None
     `about` holds the attributes of a checkpoint that is not a solution. A full disk does not end the run: the previous checkpoint
     stays in the file, and a warning says so.
     """
-    attributes = _engine(solution) | origin(solution) | (about or {"stickslip_format": FORMAT})
+    attributes = _engine(solution) | origin(solution) | (about or {"stickslip_format": FILE_FORMAT})
     try:
         write_variables(history_variables(solution), attributes, path)
     except FullDiskError as error:
@@ -281,11 +281,11 @@ def read_solution(path: Path) -> Solution:
 
 def read(path: Path, kind: str = "stickslip_format") -> Tables:
     """Read a file of stickslip whose version is stored in the attribute `kind`. Raises InputError for any other file."""
-    what = KINDS[kind].partition(":")[0]
+    what = FILE_KINDS[kind].partition(":")[0]
     tables = netcdf_file.read_tables(path, what)
-    if tables.attrs.get(kind) != FORMAT:
-        other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in tables.attrs), None)
-        found = f"it is {other}" if other else f"format {FORMAT} expected, found {tables.attrs.get(kind, 'none')}"
+    if tables.attrs.get(kind) != FILE_FORMAT:
+        other = next((FILE_KINDS[attribute] for attribute in FILE_KINDS if attribute != kind and attribute in tables.attrs), None)
+        found = f"it is {other}" if other else f"format {FILE_FORMAT} expected, found {tables.attrs.get(kind, 'none')}"
         raise InputError(f"{path}: not {what} of this version of stickslip ({found})")
     return tables
 

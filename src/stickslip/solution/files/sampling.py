@@ -16,15 +16,15 @@ from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.window import Window
 
 MOST_VALUES = 20_000_000
-"""Largest number of values computed for a series: one for each sample or, with the filter, some FINER len(NODES) = 64."""
-POINTS = 1001
+"""Largest number of values computed for a series: one for each sample or, with the filter, some FINER len(SAMPLING_NODES) = 64."""
+TIMES_OF_SERIES = 1001
 """Number of times of a series if neither a rate nor a number is given: a thousand equal steps."""
 FINER = 8
 """Number of averages for each sample; the filter keeps one of them."""
 _GAUSS = np.polynomial.legendre.leggauss(8)
-NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
+SAMPLING_NODES, SAMPLING_WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 """Gauss's rule on [0, 1] with eight nodes: between breaking points the curves of a slipping contact are smooth."""
-BLOCK = 1 << 17
+TIMES_TOGETHER = 1 << 17
 """Number of times that are looked up together, which bounds the memory."""
 Read = Callable[[Floats], Sequence[Floats]]
 """A function that reads several quantities of a run at given times (s)."""
@@ -110,12 +110,12 @@ def sampled_curves(
 ) -> tuple[Floats, list[Floats]]:
     """Return evenly spaced times (s) and the values of several curves there, at a rate (Hz) or at a number of `points`.
 
-    The points include `start` and `end`; without either there are `POINTS` of them. Otherwise as `sample`.
+    The points include `start` and `end`; without either there are `TIMES_OF_SERIES` of them. Otherwise as `sample`.
     """
     if sampling_rate is not None and points is not None:
         raise InputError("samples: give either a sampling rate or a number of points, got both")
     if sampling_rate is None:
-        number = check_whole("the number of points", POINTS if points is None else points, least=2)
+        number = check_whole("the number of points", TIMES_OF_SERIES if points is None else points, least=2)
         _bounded(number, antialias=antialias)
         first, last = _interval(run, start, end)
         even = EvenTimes(first, last, (number - 1) / (last - first), number)
@@ -144,7 +144,7 @@ def _even_times(run: Readings, sampling_rate: float, start: float | None, end: f
 
 def _bounded(wanted: float, *, antialias: bool) -> float:
     """Return a number of samples, or of the intervals between them. Raises InputError if there are too many."""
-    most = MOST_VALUES // (FINER * len(NODES)) if antialias else MOST_VALUES
+    most = MOST_VALUES // (FINER * len(SAMPLING_NODES)) if antialias else MOST_VALUES
     if not wanted < most:
         raise InputError(f"{wanted:.3g} samples are too many: use a lower rate, or a single event (at most {most})")
     return wanted
@@ -178,7 +178,7 @@ def _since_the_start(run: Readings, x: float) -> Read:
 
 def _values(read: Read, time: Floats) -> list[Floats]:
     """Return the quantities at times, right limits."""
-    blocks = np.split(time, range(BLOCK, len(time), BLOCK))
+    blocks = np.split(time, range(TIMES_TOGETHER, len(time), TIMES_TOGETHER))
     return [np.concatenate(parts) for parts in zip(*(read(block) for block in blocks), strict=True)]
 
 
@@ -189,8 +189,8 @@ def _means(run: Readings, read: Read, time: Floats, width: float) -> list[Floats
     breaks = run.breaks[(run.breaks > bounds[0]) & (run.breaks < bounds[-1])]
     edges = np.union1d(bounds, breaks)
     lengths, cells = np.diff(edges), np.searchsorted(edges, bounds[:-1])
-    nodes = edges[:-1, None] + lengths[:, None] * NODES
+    nodes = edges[:-1, None] + lengths[:, None] * SAMPLING_NODES
     return [
-        np.add.reduceat(lengths * (one.reshape(nodes.shape) @ WEIGHTS), cells) / np.diff(bounds)
+        np.add.reduceat(lengths * (one.reshape(nodes.shape) @ SAMPLING_WEIGHTS), cells) / np.diff(bounds)
         for one in _values(read, nodes.ravel())
     ]

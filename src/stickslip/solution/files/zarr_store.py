@@ -23,13 +23,13 @@ from stickslip.foundation.errors import InputError
 
 CRC = 4
 """Bytes of the CRC-32C at the end of a chunk."""
-KINDS = {"stickslip_sweep": "the store of a sweep", "stickslip_planar": "the run of a planar slab"}
+FOLDER_KINDS = {"stickslip_sweep": "the store of a sweep", "stickslip_planar": "the run of a planar slab"}
 """What a folder is in words, by the attribute that holds the version of its layout."""
 
 
 @dataclass(frozen=True)
 class FolderFormat:
-    """One of the `KINDS` of folders, with the version of its layout.
+    """One of the `FOLDER_KINDS` of folders, with the version of its layout.
 
     The attributes named in `changes` are not part of the checksum of the others, which is the attribute `digest`.
     """
@@ -41,7 +41,7 @@ class FolderFormat:
     @property
     def what(self) -> str:
         """The name of the kind in messages."""
-        return KINDS[self.kind]
+        return FOLDER_KINDS[self.kind]
 
     def attributes(self, about: Mapping[str, Any]) -> dict[str, Any]:
         """Return the attributes of a new folder, with its version and the checksum."""
@@ -72,7 +72,7 @@ class FolderFormat:
         version = group.attrs.get(self.kind, "none")
         if version != self.version:
             older = isinstance(version, int) and version < self.version
-            other = next((f"it is {what}" for kind, what in KINDS.items() if kind in group.attrs and kind != self.kind), "")
+            other = next((f"it is {what}" for kind, what in FOLDER_KINDS.items() if kind in group.attrs and kind != self.kind), "")
             found = other or f"found {version}{', which the version that made it reads' if older else ''}"
             raise InputError(f"{path}: not {self.what} of this version of stickslip (format {self.version} expected, {found})")
         if group.attrs.get("digest") != self.digest_of(group.attrs):

@@ -1,6 +1,6 @@
 # What others take from solution.observables. Each name is imported when it is first used; all else is the room's own.
 
-from stickslip.solution.observables.at_driver import (
+from stickslip.solution.observables.driver_of_waves import (
     # Return the times (s since the epoch) when the ends of recorded pieces are at the driver, in the run, and the run's ends.
     fronts_at_driver,
 )

@@ -23,6 +23,16 @@ SumOfPower = Callable[[Epoch | None, Epoch], float]
 """The sum of a power of waves at the driver between two moments, or since the start (J/m^2)."""
 
 
+def fronts_at_driver(history: History) -> Floats:
+    """Return the times (s since the epoch) when the ends of recorded pieces are at the driver, in the run, and the run's ends.
+
+    In layers these are the fronts that come straight from the contact.
+    """
+    begin, end = history.span
+    fronts = history.breaks + history.problem.body.time_to_driver
+    return np.concatenate([[begin], fronts[(fronts > begin) & (fronts < end)], [end]])
+
+
 class FromMachine:
     """What a driver that is a machine adds to the echo, 2 Z Vd, as it arrives at the contact (Pa): in the form of an `Inflow`."""
 

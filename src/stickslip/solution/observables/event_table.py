@@ -22,13 +22,13 @@ from stickslip.solution.observables.energy.balance import event_energies
 if TYPE_CHECKING:
     import pandas as pd
 
-QUANTITIES = ("recurrence", "duration", "slip", "peak_rate", "traction_drop", "static_drop", "released", "trapped")
+COLUMNS_DESCRIBED = ("recurrence", "duration", "slip", "peak_rate", "traction_drop", "static_drop", "released", "trapped")
 """Columns of a catalogue whose distribution is described, if the table has them."""
 
 DIRECTED = ("slip", "static_drop")
 """Columns that are negative for an event that slips back: statistics describe their sizes."""
 
-SAME = 1e-9
+NO_SPREAD = 1e-9
 """Relative spread below which values count as equal: the correlation of successive values then says nothing."""
 
 
@@ -45,7 +45,7 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     import pandas as pd
 
     check_type("catalogue_statistics: table", table, pd.DataFrame, "a table of slip events, such as solution.events")
-    rows = {name: _describe(pd.Series(that_count(table, name))) for name in QUANTITIES if name in table}
+    rows = {name: _describe(pd.Series(that_count(table, name))) for name in COLUMNS_DESCRIBED if name in table}
     frame = pd.DataFrame.from_dict(rows, orient="index", columns=list(_describe(table.slip[:0])))
     return frame.astype({"count": int})
 
@@ -80,7 +80,7 @@ def _describe(values: pd.Series[float]) -> dict[str, float]:
 def _next(values: NDArray[np.float64]) -> float:
     """Return the correlation of each value with the next one."""
     now, later = values[:-1], values[1:]
-    if len(now) < 3 or min(np.ptp(now), np.ptp(later)) <= SAME * np.abs(values).max():
+    if len(now) < 3 or min(np.ptp(now), np.ptp(later)) <= NO_SPREAD * np.abs(values).max():
         return np.nan
     return float(np.corrcoef(now, later)[0, 1])
 

@@ -22,11 +22,11 @@ from stickslip.problem.bodies import BodyWithWaves, as_waves
 from stickslip.solution.observables.asked import Extent, Field, observables_of
 from stickslip.solution.observables.waves import Waves
 
-POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
+POINTS_OF_WAVE: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
 """Sampling points for the wave of a piece. Their number makes the interpolation exact for the polynomials of the history times the
 linear derivative of time with respect to xi.
 """
-TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)), float)
+TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS_OF_WAVE, TERMS)), float)
 """Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
 
 
@@ -104,8 +104,8 @@ class WaveInterval:
         self._piece, leaped = at.piece[another], at.leaped[another]
         store = self.history.store
         self._origin = self.history.seconds(store.trip[self._piece] + leaped, store.phase_from[self._piece])
-        count = len(POINTS)
-        places = Positions.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
+        count = len(POINTS_OF_WAVE)
+        places = Positions.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS_OF_WAVE, len(self._piece)))
         self._values = waves.leaving(replace(places, leaped=np.repeat(leaped, count))).reshape(-1, count).T
         self._wave = TO_SERIES @ self._values
 
@@ -156,7 +156,7 @@ class WaveInterval:
         The integral is taken in xi: dtheta = (speed + 2 bend xi) dxi.
         """
         speed, bend = (column[self._piece] for column in (self.history.store.speed, self.history.store.bend))
-        pace = speed + bend * (1.0 + POINTS[:, None])
+        pace = speed + bend * (1.0 + POINTS_OF_WAVE[:, None])
         return np.asarray(chebyshev.chebint(TO_SERIES @ (pace * self._values), scl=0.5, lbnd=-1.0, axis=0))
 
     @cached_property

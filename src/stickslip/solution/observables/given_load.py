@@ -14,7 +14,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.problem import LoadingHistory, Problem, far_at_first
 from stickslip.solution.observables.asked import observables_of
 
-BESIDE = 1e-10
+BESIDE_BREAK = 1e-10
 """Loads are compared this far (1) before and after a break of the loading, too, as a share of the round trip or of the time."""
 
 
@@ -113,5 +113,5 @@ def breaks_at_contact(problem: Problem) -> Floats:
 
 def beside(problem: Problem, times: Floats) -> Floats:
     """Return the times (s) just before and just after given ones: where a break in the wrong place shows."""
-    away = BESIDE * np.maximum(problem.round_trip_time, times)
+    away = BESIDE_BREAK * np.maximum(problem.round_trip_time, times)
     return np.concatenate([times - away, times + away])

@@ -87,20 +87,20 @@ class NormalLoads(NamedTuple):
         return [Disc.of(growth, reached), Disc.of(rate, bent + rounding + self.slopes_apart)]
 
 
-SAMPLES = np.linspace(0.0, 1.0, 9)
+PLACES_IN_STEP = np.linspace(0.0, 1.0, 9)
 """Places (1) in a step where what the engine wrote of the normal load is compared with what was given."""
 
 
 def missed_growth(history: History, n: NDArray[np.intp]) -> Floats:
     """Return how far (1) the normal load that a history has in its pieces n is at most from the one that was given, relatively.
 
-    It is looked at in SAMPLES only, and is 0 if it lies within the rounding of the given one.
+    It is looked at in PLACES_IN_STEP only, and is 0 if it lies within the rounding of the given one.
     """
     assert history.problem.normal_load is not None
     lowest = history.problem.normal_load.lowest / history.problem.normal
     first = len(history.problem.friction.states)
-    known = history.store.state[n, first] @ SAMPLES ** np.arange(history.store.state.shape[2])[:, None]
-    given, _ = NormalLoads.of(history, n).at(SAMPLES)
+    known = history.store.state[n, first] @ PLACES_IN_STEP ** np.arange(history.store.state.shape[2])[:, None]
+    given, _ = NormalLoads.of(history, n).at(PLACES_IN_STEP)
     return np.asarray(np.maximum(np.abs(known - given.centre) - given.radius, 0.0).max(axis=1, initial=0.0) / lowest)
 
 

@@ -13,9 +13,9 @@ from stickslip.engine import Floats, History, Integers, Side
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import MOVED, MOVED_IN_TRIP
-from stickslip.solution.observables.layers import MOST, LayerWaves
+from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
 
-ROUNDING = 1e-12
+ROUNDING_OF_PLACE = 1e-12
 """Places may lie outside by this share (1) of the thickness."""
 
 
@@ -31,7 +31,7 @@ def field_of_layers(
     waves = LayerWaves(history, body)
     depths = [np.append(0.0, np.cumsum(_widths(waves, n))) for n in range(len(body.stacks))]
     lowest = -depths[1][-1] if len(depths) > 1 else 0.0
-    slack = ROUNDING * (depths[0][-1] - lowest)
+    slack = ROUNDING_OF_PLACE * (depths[0][-1] - lowest)
     if not np.all((x >= lowest - slack) & (x <= depths[0][-1] + slack)):
         of_lowest = "0 (the contact)" if lowest == 0.0 else f"{lowest:g} m (the other driver)"
         raise InputError(f"field: x must lie between {of_lowest} and {depths[0][-1]:g} m (the driver)")
@@ -42,7 +42,7 @@ def field_of_layers(
         share = (np.abs(x[chosen]) - edges[inside]) / np.diff(edges)[inside]
         cell[chosen], away[chosen] = waves.starts[n] + inside, waves.time * np.clip(share, 0.0, 1.0)
     found = np.empty((3, len(x)))
-    together = max(MOST // len(waves.is_away), 1)
+    together = max(NUMBERS_TOGETHER // len(waves.is_away), 1)
     for low in range(0, len(x), together):
         part = slice(low, low + together)
         found[:, part] = _field(waves, slip[part], t[part], side, cell=cell[part], away=away[part])

@@ -30,7 +30,7 @@ from stickslip.solution.observables.field import WaveInterval, check_side, round
 from stickslip.solution.observables.quadrature import NODES, WEIGHTS
 from stickslip.solution.observables.waves import Waves
 
-ROUNDS = 8
+ROUND_TRIPS_TOGETHER = 8
 """Round trips that are evaluated together."""
 CURVED_PLACES = NODES**2 * (3.0 - 2.0 * NODES)
 """Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
@@ -50,7 +50,7 @@ def field_of_slab(history: History, contact: AtContact, place: Floats, time: Flo
     at_contact = contact()  # raises InputError for times outside the run
     waves, away, moment = Waves(history, body), place.ravel() / body.wave_speed, time.ravel()
     rise, velocity, stress = np.empty((3, moment.size))
-    batch = np.floor(moment / (ROUNDS * waves.round))
+    batch = np.floor(moment / (ROUND_TRIPS_TOGETHER * waves.round))
     for number in np.unique(batch):
         chosen = batch == number
         rise[chosen], velocity[chosen], stress[chosen] = _InsideOfSlab(waves, moment[chosen]).field(away[chosen], side)

@@ -36,9 +36,9 @@ from stickslip.solution.observables.layer_records import (
 )
 from stickslip.solution.observables.layer_replay import answer, replay
 
-MOST = 1 << 19
+NUMBERS_TOGETHER = 1 << 19
 """Numbers that are kept together, of cells or of what drivers send: it keeps the memory bounded."""
-TOGETHER = 64
+PHASES_TOGETHER = 64
 """Phases that are replayed together (1): what they need fits into the fast memory of a processor."""
 
 
@@ -169,14 +169,14 @@ class LayerWaves:
         late_first = np.argsort(-last, kind="stable")  # phases that need but a part of the history stand together
         rank = np.empty_like(late_first)
         rank[late_first] = np.arange(len(phases))
-        order = np.lexsort((trip, rank[which] // TOGETHER))
-        first = np.searchsorted(rank[which[order]] // TOGETHER, np.arange(len(phases) // TOGETHER + 2))
+        order = np.lexsort((trip, rank[which] // PHASES_TOGETHER))
+        first = np.searchsorted(rank[which[order]] // PHASES_TOGETHER, np.arange(len(phases) // PHASES_TOGETHER + 2))
         for n in range(len(first) - 1):
-            part, here = order[first[n] : first[n + 1]], phases[late_first[n * TOGETHER : (n + 1) * TOGETHER]]
+            part, here = order[first[n] : first[n + 1]], phases[late_first[n * PHASES_TOGETHER : (n + 1) * PHASES_TOGETHER]]
             if len(part):
                 asked, place = trip[part].astype(np.int64), self._at_first(here, levels)
                 found = np.empty((len(part) if cells else 0, levels, cells)), np.empty((len(part), SUMS))
-                self._replay_together(here, place, WaveQueries(asked, rank[which[part]] % TOGETHER, *found))
+                self._replay_together(here, place, WaveQueries(asked, rank[which[part]] % PHASES_TOGETHER, *found))
                 sums[part] = found[1]
                 if cells:
                     rows[part] = found[0]
@@ -213,7 +213,7 @@ class LayerWaves:
             changes, _, by = self.driver.turned
             turned = np.column_stack([changes, np.arange(len(asked), len(phase)), by])
         last = int(queries.asked[-1])
-        trips, block = self._steps[self._steps <= max(last, 0)], max(MOST // (6 * len(phase)), 1)
+        trips, block = self._steps[self._steps <= max(last, 0)], max(NUMBERS_TOGETHER // (6 * len(phase)), 1)
         for low in range(0, len(trips), block):
             part = trips[low : low + block]
             when = np.broadcast_arrays(part[:, None], phase)

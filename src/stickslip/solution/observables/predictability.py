@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from stickslip.engine import History
-from stickslip.engine.input import SAFETY, is_algebraic
+from stickslip.engine.input import SHARE_OF_TOLERANCE, is_algebraic
 from stickslip.foundation.arguments import NamesAttributes, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
@@ -121,13 +121,13 @@ def predictability(run: PredictedRun) -> Predictability:
     waves = 2.0 * body.impedance * float(np.abs(store.rate[:, 0]).max())
     # the load is stored as a difference from the strength, so only this difference is rounded
     rounding = float(np.finfo(float).eps * np.abs(store.load[:, 0]).max())
-    error = max(run.rtol * SAFETY, rounding / waves if waves > 0.0 else 0.0)
+    error = max(run.rtol * SHARE_OF_TOLERANCE, rounding / waves if waves > 0.0 else 0.0)
     return Predictability(history.start, store.amplified, error)
 
 
 def predictability_of_events(events: pd.DataFrame, rtol: float) -> Predictability:
     """Return the predictability from the column "amplification" of a catalogue and from the tolerance `rtol` of its run."""
-    error = max(rtol * SAFETY, float(np.finfo(float).eps))
+    error = max(rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps))
     return Predictability(events.start.to_numpy(float), events.amplification.to_numpy(float), error)
 
 

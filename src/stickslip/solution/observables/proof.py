@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine import TERMS, History
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import KINDS
+from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula import VARIABLES, Disc, Expression, largest, on_discs
 from stickslip.problem import Problem
@@ -84,12 +84,12 @@ class Proof:
     def short(self) -> str:
         """The bound in a few words."""
         but = f", but for {100.0 * self.unproven_share:.2g} % of the sliding time" if self.unproven else ""
-        return f"to {self.relative:.1g} of the normal {KINDS[self.unit].loads} at every moment{but}"
+        return f"to {self.relative:.1g} of the normal {KINDS_OF_BODY[self.unit].loads} at every moment{but}"
 
     @property
     def text(self) -> str:
         """One line on the bound."""
-        share = f"{self.relative:.1g} of the normal {KINDS[self.unit].loads}"
+        share = f"{self.relative:.1g} of the normal {KINDS_OF_BODY[self.unit].loads}"
         found = f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {share}"
         if self.steps:
             found += f"; proven from the law's formula alone: {self.anew} of {self.steps} steps"

@@ -28,7 +28,7 @@ AT_ONCE = 1024
 """Number of steps that are compared together: it keeps the memory bounded."""
 BREAKS = 1000
 """Largest number of breaks of the loading beside which loads are compared."""
-SHORT = 1e-11
+SHORT_STEP = 1e-11
 """Steps shorter than this share (1) of the round trip, or of the time since the start, are not compared: times are rounded."""
 
 
@@ -67,7 +67,7 @@ def comparable(history: History) -> Places:
     """Return the pieces of a history that are long enough, and neither averages nor echoes of averages."""
     store, trips = history.store, history.store.trip
     lasting, since = store.speed + store.bend, trips * history.round_trip_time + store.phase_from
-    known = lasting > SHORT * np.maximum(history.round_trip_time, since)
+    known = lasting > SHORT_STEP * np.maximum(history.round_trip_time, since)
     for first, leaped in history.creep[:, :2]:
         known &= (trips < first) | (trips > first + leaped)
     return np.flatnonzero(known)

@@ -19,7 +19,7 @@ RECORDED = 1024
 """Largest number of recorded rests whose load is looked at."""
 RESTS = 64
 """Largest number of rests that were not recorded, but leaped over, whose load is looked at."""
-SAMPLES = 32
+PLACES_IN_REST = 32
 """Places at which it is looked at in such a rest, and as many again in its last round trip."""
 
 
@@ -71,7 +71,7 @@ def _in_leaped(history: History) -> float:
         return 0.0
     n = n[np.unique(np.linspace(0, len(n) - 1, RESTS).astype(int))]
     begins, ends = history.end[n], np.append(history.start[1:], history.span[1])[n]
-    shares = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    shares = (np.arange(PLACES_IN_REST) + 0.5) / PLACES_IN_REST
     late = np.maximum(begins, ends - history.round_trip_time)
     times = np.concatenate([low[:, None] + (ends - low)[:, None] * shares for low in (begins, late)], axis=1).ravel()
     at = history.find(np.clip(times, *history.span), "right")

@@ -18,7 +18,7 @@ FULL = 20
 polynomials; it integrates the law along a Taylor step to rounding.
 """
 
-BLOCK = 1 << 14
+PIECES_TOGETHER = 1 << 14
 """Number of pieces that are integrated together, which keeps the memory bounded."""
 
 
@@ -45,7 +45,7 @@ def over(
 ) -> Floats:
     """Integrate over the part [low, high] (in xi) of each piece, or of its echo `leaped` whole rows later if those are given."""
     leaped = np.zeros(len(piece)) if leaped is None else leaped
-    cuts = [slice(n, n + BLOCK) for n in range(0, max(len(piece), 1), BLOCK)]
+    cuts = [slice(n, n + PIECES_TOGETHER) for n in range(0, max(len(piece), 1), PIECES_TOGETHER)]
     parts = (places_in(history, piece[cut], low[cut], high[cut], leaped[cut], nodes=nodes) for cut in cuts)
     return np.concatenate([(integrand(at).reshape(weights.shape) * weights).sum(axis=1) for at, weights in parts])
 

@@ -13,7 +13,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 
-TIME = Quantity("s", "time since the start of the run")
+TIME_OF_RUN = Quantity("s", "time since the start of the run")
 
 
 class RunWithHistory(Protocol):
@@ -60,8 +60,8 @@ def severity(run: RunWithHistory, start: float | str | WithUnit | None = None, e
     if not isinstance(history, History):
         raise InputError(f"severity: needs a Solution, got {shown(run)}")
     lasts = history.duration
-    begin = LAST_THIRD * lasts if start is None else TIME.check("severity", "start", start)
-    until = lasts if end is None else TIME.check("severity", "end", end)
+    begin = LAST_THIRD * lasts if start is None else TIME_OF_RUN.check("severity", "start", start)
+    until = lasts if end is None else TIME_OF_RUN.check("severity", "end", end)
     if not 0.0 <= begin < until <= lasts:
         raise InputError(f"severity: start and end must ascend within the run, 0 to {lasts:g} s, got {begin:g} and {until:g} s")
     turns = Turn.of(walk(history, 0.0))

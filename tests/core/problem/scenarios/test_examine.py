@@ -13,8 +13,8 @@ from stickslip.friction import LAWS, FromTable, HyperbolicRate, RateAndState, Si
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.problem.scenarios.templates import template
+from stickslip.run.check.asked import Fact
 from stickslip.run.check.examine import examine
-from stickslip.run.check.facts import Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 
 Floats = NDArray[np.float64]

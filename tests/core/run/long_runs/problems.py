@@ -26,7 +26,7 @@ import stickslip as ss
 from stickslip.run import run_loop
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
 run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
-run_loop.SHARE = math.inf  # a checkpoint after every call of the solver, however busy the machine is
+run_loop.SHARE_OF_TASKS = math.inf  # a checkpoint after every call of the solver, however busy the machine is
 """
 """What code to be killed begins with."""
 

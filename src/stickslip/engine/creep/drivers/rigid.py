@@ -17,7 +17,7 @@ STILL, LONG = 1e-3, 1000
 """Largest deviation that is dropped, as a share of the slip rate, where its energy is proven never to grow and the leap is this
 many times as long as the run so far: the swings of a contact with mass fade ever more slowly. Else the tolerance is that share.
 """
-MOST = 700.0
+LARGEST_ARGUMENT = 700.0
 """Largest exponent of an exponential."""
 
 
@@ -38,7 +38,7 @@ class Multiplier(NamedTuple):
 
     def power(self, n: int) -> float:
         """Return the factor of n round trips."""
-        return self.sign ** (n % 2) * math.exp(min(n * self.size, MOST)) if self.size > -math.inf else 0.0
+        return self.sign ** (n % 2) * math.exp(min(n * self.size, LARGEST_ARGUMENT)) if self.size > -math.inf else 0.0
 
 
 class Multiplied(NamedTuple):

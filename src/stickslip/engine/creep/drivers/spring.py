@@ -7,9 +7,9 @@ import math
 from typing_extensions import override
 
 from stickslip.engine.creep.cycles import leap_over_cycles
-from stickslip.engine.creep.landing import LookedFor
+from stickslip.engine.creep.landing import ROUNDING_OF_NUMBER, LookedFor
 from stickslip.engine.creep.leaping_run import LeapingRun
-from stickslip.engine.creep.steady import BELOW_REST, ROOM, ROUNDING, SteadyLeaps, Tried
+from stickslip.engine.creep.steady import BELOW_REST, ROOM, SteadyLeaps, Tried
 from stickslip.engine.creep.steady_landing import Leap
 from stickslip.problem.bodies import BodyOnCharacteristics
 
@@ -54,7 +54,7 @@ def _repeated(tried: Tried) -> Leap | None:
         return None
     low, high = tried.slopes(ROOM * swing)
     varies = 2.0 * swing * max(-low, high)  # range of friction
-    missed = (tried.trips + 1) * (turn * varies / body.inertia + ROUNDING * swing)
+    missed = (tried.trips + 1) * (turn * varies / body.inertia + ROUNDING_OF_NUMBER * swing)
     if not missed <= tried.tolerance * rate:
         return None
     return tried.leap(1.0, 0.0, missed * math.sqrt(body.inertia / body.stiffness), swing + missed)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.extensions.explorer.model.words import short
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.show import brief
 from stickslip.problem.scenarios import Scenario
 from stickslip.solution import Solution
 
@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 CurveName = Literal["law", "steady state", "law at the state of the start"]
 """What the curve of a friction law is, for its legend."""
 MarkKind = Literal["start", "pulse", "arrest", "jump", "fold", "echo"]
+DIGITS = 4
+"""Number of significant digits of quantities in sentences."""
+
+
+def short(value: float, unit: str) -> str:
+    """Return a quantity (SI) briefly, such as "2.721 m"."""
+    return brief(float(value), unit, DIGITS).replace(" um", " µm")
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ RARE_IN_CONTACT = ("frames", "courant", "taper")
 """Numbers of a contact and its patches that are seldom changed."""
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
 """Numbers that are seldom changed: a page may hide them at first."""
-TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
+TITLES_OF_TABLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
 EMPTY = {
     "initial.state": "needed",
     "initial.second_state": "needed",
@@ -273,7 +273,7 @@ class _Tables:
             elif not isinstance(entry, LawField):
                 controls.append(self.control(f"{table}.{name}", entry, default))
         own = getattr(kind, "kind", "") if kinds else ""
-        return ControlGroup(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
+        return ControlGroup(table, title or TITLES_OF_TABLES[table.partition(".")[0]], own, kinds, tuple(controls))
 
     def of_run(self) -> ControlGroup:
         numbers = self.of("run", type(self.problem.body), ())

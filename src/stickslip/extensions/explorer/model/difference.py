@@ -9,10 +9,9 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.extensions.explorer.model.answer import Answer, KeyNumber
+from stickslip.extensions.explorer.model.answer import Answer, KeyNumber, short
 from stickslip.extensions.explorer.model.fault import FaultAnswer
 from stickslip.extensions.explorer.model.setting import Setting, inner_leaves_of
-from stickslip.extensions.explorer.model.words import short
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.show import clean
 
@@ -39,9 +38,9 @@ def _short(value: Any) -> str:
     return f"{len(value)} values" if isinstance(value, list) else clean(str(value))
 
 
-SAME = 1e-9
+EQUAL_NUMBERS = 1e-9
 """Two numbers that differ by less than this (relative) count as equal."""
-TEXTS = ("title", "description")
+ENTRIES_OF_TEXT = ("title", "description")
 """Entries that change no number."""
 MOST_NAMED = 6
 """Largest number of changes, and of moved numbers, that the text names."""
@@ -109,7 +108,7 @@ def difference(before: tuple[Setting, Answer | FaultAnswer], after: tuple[Settin
 def _changes(old: Setting, new: Setting) -> tuple[ChangedEntry, ...]:
     """Return the changes; "1 s/m" and 1.0 are the same."""
     was, now = (inner_leaves_of(tomllib.loads(one.scenario().to_toml())) for one in (old, new))
-    paths = [path for path in dict.fromkeys((*was, *now)) if path not in TEXTS and was.get(path) != now.get(path)]
+    paths = [path for path in dict.fromkeys((*was, *now)) if path not in ENTRIES_OF_TEXT and was.get(path) != now.get(path)]
     return tuple(ChangedEntry(path, _shown(old, path, was), _shown(new, path, now)) for path in paths)
 
 
@@ -127,4 +126,4 @@ def _moved(old: tuple[KeyNumber, ...], new: tuple[KeyNumber, ...]) -> tuple[Move
 
 
 def _equal(one: float, other: float) -> bool:
-    return math.isclose(one, other, rel_tol=SAME) or (math.isnan(one) and math.isnan(other))
+    return math.isclose(one, other, rel_tol=EQUAL_NUMBERS) or (math.isnan(one) and math.isnan(other))

@@ -15,7 +15,7 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import HISTORIES, STEADY, written_out
 from stickslip.problem.bodies import BODIES
-from stickslip.problem.scenarios import KINDS, Source, entries_in, example_of, kind_of, library, read_part
+from stickslip.problem.scenarios import TABLES_WITH_KIND, Source, entries_in, example_of, kind_of, library, read_part
 
 
 def with_kind(setting: Setting, table: str, kind: str) -> Setting:
@@ -74,7 +74,7 @@ def _started(setting: Setting) -> Setting:
     initial = {key: value for key, value in setting.value("initial").items() if key == "slip"}
     if setting.name in library.names():
         began = Setting.bundled(setting.name)
-        same = all(began.value(f"{table}.kind") == setting.value(f"{table}.kind") for table in KINDS)
+        same = all(began.value(f"{table}.kind") == setting.value(f"{table}.kind") for table in TABLES_WITH_KIND)
         if same:
             return setting.with_value("initial", dict(began.value("initial")))
     if law.sticks:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.extensions.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
-from stickslip.extensions.explorer.model.words import short
+from stickslip.extensions.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark, short
 from stickslip.foundation.errors import InputError
 from stickslip.problem import in_given_units
 from stickslip.problem.scenarios import Scenario

@@ -11,9 +11,8 @@ import pandas as pd
 
 from stickslip.contact import Uniqueness
 from stickslip.engine import largest_of
-from stickslip.extensions.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
+from stickslip.extensions.explorer.model.answer import DIGITS, BodyCurves, KeyNumber, Mark, MarkKind, short
 from stickslip.extensions.explorer.model.asked import SHOWN_KINDS
-from stickslip.extensions.explorer.model.words import DIGITS, several, short
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem
 from stickslip.solution import Solution, last_large_event
@@ -64,7 +63,7 @@ class Findings:
 
 MOST_MARKS = 120
 """Largest number of marks; of more, those of smaller events and shocks are left away."""
-KINDS: dict[str, MarkKind] = {"fold": "fold", "echo": "echo"}
+KINDS_OF_SHOCK: dict[str, MarkKind] = {"fold": "fold", "echo": "echo"}
 """Kinds of the marks of shocks by their cause, if it is not "jump"."""
 
 
@@ -72,6 +71,11 @@ def marks_of(found: Findings, motion: BodyCurves) -> tuple[Mark, ...]:
     """Return the marks of a run in order of time."""
     marks = [*_events(found), *_pulses(found, motion), *_jumps(found)]
     return tuple(sorted(marks, key=lambda mark: mark.time))
+
+
+def several(count: int, thing: str) -> str:
+    """Return a number of things: "no pulse", "one pulse", "3 pulses"."""
+    return f"{ {0: 'no', 1: 'one'}.get(count, count) } {thing}{'' if count in (0, 1) else 's'}"
 
 
 def largest_first(table: pd.DataFrame) -> pd.DataFrame:
@@ -112,7 +116,7 @@ def _jumps(found: Findings) -> list[Mark]:
     for _, shock in shocks.nlargest(MOST_MARKS // 4, "size").iterrows():
         step = f"from {short(shock.rate_before, rate)} to {short(shock.rate_after, rate)}"
         text = f"the slip rate jumps {step} at {short(shock.time, 's')} ({shock.cause})"
-        marks.append(Mark(float(shock.time), KINDS.get(shock.cause, "jump"), text))
+        marks.append(Mark(float(shock.time), KINDS_OF_SHOCK.get(shock.cause, "jump"), text))
     return marks
 
 
@@ -140,9 +144,9 @@ def key_numbers(found: Findings, contact: Uniqueness, motion: BodyCurves) -> tup
     )
 
 
-NEAR = 5e-4
+NEAR_ONE = 5e-4
 """If a ratio is closer to 1 than this, its distance from 1 is given instead."""
-FEW = 2
+JUMPS_NAMED = 2
 """Largest number of jumps that are all named."""
 RULES = {
     "perfect-delay": "the rule of perfect delay",
@@ -191,7 +195,7 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
     word = one.name.rpartition(".")[2].replace("_", " ")
     if ratio == 1.0:
         return f"; {word} = {own} is {limit}"
-    if abs(ratio - 1.0) > NEAR:
+    if abs(ratio - 1.0) > NEAR_ONE:
         return f"; {word} = {own} is {ratio:.4g} times {limit}"
     return f"; {word} is {'above' if ratio > 1.0 else 'below'} {limit} by {abs(ratio - 1.0):.2g} of it"
 
@@ -227,7 +231,7 @@ def _jumped(found: Findings) -> str:
         return ""
     if shocks.empty:
         return "the slip rate never jumps"
-    if len(shocks) <= FEW:
+    if len(shocks) <= JUMPS_NAMED:
         return f"the slip rate jumps {' and '.join(_jump(shock, found.units[1]) for shock in shocks.itertuples())}"
     largest = int(np.argmax(np.abs(shocks.rate_after - shocks.rate_before)))
     return f"the slip rate jumps {len(shocks)} times, most {_jump(list(shocks.itertuples())[largest], found.units[1])}"

@@ -20,15 +20,15 @@ from stickslip.problem import Problem
 from stickslip.solution import Solution, Window, fronts_of
 from stickslip.solution.observables import FULL, energies, heat, shaken, speed, taken
 
-POINTS = 600
+POINTS_OF_CURVE = 600
 """Number of points of the curve."""
-MARGIN = 0.15
+MARGIN_OF_CURVE = 0.15
 """Margin before and after the range that the run passed through, as a share of that range."""
 SCALES = 4.0
 """Number of characteristic slip rates of the law that are shown at least."""
 DECADES = 20
 """Largest number of decades of slip rate that a logarithmic axis shows."""
-SEEN = 1e-3
+SMALLEST_JUMP_DRAWN = 1e-3
 """Jumps that change the slip rate by a smaller share of it are not seen: pieces of the history meet within a tolerance only."""
 PATH, INSIDE, CELLS = 20_000, 8, 500
 """The path has `INSIDE` points in each piece of the history, or fewer if there were more than `PATH`. Of those that lie in one of
@@ -51,10 +51,10 @@ def _along_slip(solution: Solution) -> LawPicture:
     everywhere = np.arange(len(history))
     slips = np.concatenate([history.law_slip(Positions.inside(everywhere, end)) for end in (0.0, 1.0)])
     visited = float(slips.min()), float(slips.max())
-    margin = MARGIN * (visited[1] - visited[0]) or _slip_scale(law)
+    margin = MARGIN_OF_CURVE * (visited[1] - visited[0]) or _slip_scale(law)
     low = visited[0] - margin if law.counts == "net" and law.memory == "all" else max(visited[0] - margin, 0.0)
     knots = [knot for knot in law.knots if low < knot < visited[1] + margin]
-    slip = np.union1d(np.linspace(low, visited[1] + margin, POINTS), knots)
+    slip = np.union1d(np.linspace(low, visited[1] + margin, POINTS_OF_CURVE), knots)
     return LawPicture("slip", slip, law.static_coefficient(slip), visited, log=False)
 
 
@@ -76,11 +76,15 @@ def _along_rate(problem: Problem, rates: Floats) -> LawPicture:
     if log:
         top = 10.0 * max(fastest, min(scales, default=1e-6))
         bottom = max(0.1 * min(float(moving.min()) if moving.size else top, min(scales, default=top)), top * 10.0**-DECADES)
-        rate = np.geomspace(bottom, top, POINTS)
+        rate = np.geomspace(bottom, top, POINTS_OF_CURVE)
     else:
-        top = max((1.0 + MARGIN) * fastest, 0.0 if law.states else SCALES * min(scales, default=0.0)) or 1.0
+        top = max((1.0 + MARGIN_OF_CURVE) * fastest, 0.0 if law.states else SCALES * min(scales, default=0.0)) or 1.0
         knots = [knot for knot in law.knots if 0.0 < knot < top and law.knot_variable == "rate"]
-        rate = np.unique(np.concatenate([np.linspace(0.0, top, POINTS // 2), np.geomspace(1e-6 * top, top, POINTS // 2), knots]))
+        rate = np.unique(
+            np.concatenate(
+                [np.linspace(0.0, top, POINTS_OF_CURVE // 2), np.geomspace(1e-6 * top, top, POINTS_OF_CURVE // 2), knots]
+            )
+        )
     name, coefficient = _coefficient(problem, rate)
     if not mirrored:
         return LawPicture("slip_rate", rate, coefficient, (float(speeds.min()), fastest), log, name)
@@ -104,7 +108,7 @@ def _law_path(solution: Solution, *, log: bool) -> Floats:
     moves = np.where(rate == 0.0, np.nan, np.sign(rate)) if log else np.ones(len(rate))
     path = np.column_stack([moves * rate, moves * traction / solution.problem.normal])
     is_left = order < len(breaks)
-    jumps = np.flatnonzero(is_left[:-1] & (np.abs(np.diff(rate)) > SEEN * np.abs(rate[1:]))) + 1
+    jumps = np.flatnonzero(is_left[:-1] & (np.abs(np.diff(rate)) > SMALLEST_JUMP_DRAWN * np.abs(rate[1:]))) + 1
     return _thinned(np.insert(path, jumps, np.nan, axis=0), log=log)
 
 
@@ -131,7 +135,7 @@ def _coefficient(problem: Problem, rate: Floats) -> tuple[CurveName, Floats]:
 
 CURVE_POINTS = 500
 """Number of evenly spaced slip rates of the curve; as many in even ratios, folds and knots are added."""
-BEYOND = 1.15
+BEYOND_FASTEST = 1.15
 """The curve reaches this far beyond the fastest slip rate of the run, and of the jumps of the rule."""
 
 
@@ -142,7 +146,7 @@ def contact_picture(contact: Uniqueness, motion: BodyCurves) -> ContactPicture |
         return None
     fastest = [float(np.abs(motion.slip_rate).max()), *(max(jump.rate_before, jump.rate_after) for jump in contact.jumps)]
     fastest += [2.0 * fold.rate for fold in contact.folds]
-    top = BEYOND * max(fastest) or 2.0 * min(g.scales)
+    top = BEYOND_FASTEST * max(fastest) or 2.0 * min(g.scales)
     own = [*(fold.rate for fold in contact.folds), *g.rate_knots]
     grid = np.concatenate([np.linspace(0.0, top, CURVE_POINTS), np.geomspace(1e-5 * top, top, CURVE_POINTS), own])
     rate = np.unique(grid[grid <= top])

@@ -8,9 +8,9 @@ from typing import NamedTuple
 from stickslip.foundation.quantities import LARGEST_WHOLE, Quantity
 from stickslip.problem import Problem
 
-WIDE = 30.0
+SLIDER_FACTOR = 30.0
 """A logarithmic slider reaches from the value over this factor to the value times it."""
-REACH = 3.0
+SLIDER_REACH = 3.0
 """A linear slider that begins at 0 reaches to this many times the value."""
 SPECIAL_WIDE = {"loading.pull_rate": 1000.0, "run.duration": 10.0}
 """Other factors of logarithmic sliders."""
@@ -61,14 +61,14 @@ def range_of(path: str, declared: Quantity, anchor: float | None, problem: Probl
     if not math.isfinite(anchor):
         return None
     if declared.unit == "1":
-        high = max(COEFFICIENTS, 1.5 * anchor) if anchor >= LARGE_COEFFICIENT else REACH * anchor or LARGE_COEFFICIENT
+        high = max(COEFFICIENTS, 1.5 * anchor) if anchor >= LARGE_COEFFICIENT else SLIDER_REACH * anchor or LARGE_COEFFICIENT
         return SliderRange(0.0 if declared.above is None else NEARLY * high, high)
     if anchor > 0.0 and (declared.at_least != 0.0 or declared.unit in INVERSE_RATES):
-        factor = SPECIAL_WIDE.get(path, WIDE)
+        factor = SPECIAL_WIDE.get(path, SLIDER_FACTOR)
         return SliderRange(anchor / factor, anchor * factor, log=True)
     if anchor == 0.0:
         return None
-    return SliderRange(min(0.0, REACH * anchor), max(0.0, REACH * anchor))
+    return SliderRange(min(0.0, SLIDER_REACH * anchor), max(0.0, SLIDER_REACH * anchor))
 
 
 def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
@@ -86,16 +86,16 @@ def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
     if path == "body.driver_impedance":
         return SliderRange(0.0, max(5.0 * body.impedance, 1.5 * anchor if math.isfinite(anchor) else 0.0))
     if path == "body.contact_mass":
-        return SliderRange(0.0, max(0.1 * body.impedance * body.round_trip_time, REACH * anchor))
+        return SliderRange(0.0, max(0.1 * body.impedance * body.round_trip_time, SLIDER_REACH * anchor))
     if path == "body.driver_inertia":
-        return SliderRange(0.0, max(body.impedance * body.round_trip_time, REACH * anchor if math.isfinite(anchor) else 0.0))
+        return SliderRange(0.0, max(body.impedance * body.round_trip_time, SLIDER_REACH * anchor if math.isfinite(anchor) else 0.0))
     if path == "body.driver_integral_gain":
-        return SliderRange(0.0, max(body.stiffness, REACH * anchor))
+        return SliderRange(0.0, max(body.stiffness, SLIDER_REACH * anchor))
     if path in ("body.damping", "body.driver_damping", "body.contact_damping"):
-        return SliderRange(0.0, max(2.0 * body.impedance, REACH * anchor))
+        return SliderRange(0.0, max(2.0 * body.impedance, SLIDER_REACH * anchor))
     if path == "loading.pull_rate" and anchor <= 0.0:
         return (
-            SliderRange(REACH * anchor, -REACH * anchor)
+            SliderRange(SLIDER_REACH * anchor, -SLIDER_REACH * anchor)
             if anchor < 0.0
             else SliderRange(0.0, 1e-3 * problem.normal / body.impedance)
         )

@@ -42,13 +42,13 @@ class ShownInterval(NamedTuple):
 
 EVEN = 3000
 """Number of evenly spaced samples."""
-INSIDE = 6
+SAMPLES_INSIDE = 6
 """Number of samples within each piece of the history, if there are not more than `ENDS_ONLY` pieces."""
 ENDS_ONLY = 600
 """With more pieces than this, only their ends are sampled besides."""
 OF_START = 500
 """Number of samples of the load that the initial state brings."""
-MANY = 300_000
+MANY_PLACES = 300_000
 """Places between which another piece may hold; if there may be more of them in an interval, means are sampled."""
 PHASES = 8
 """Number of times between two samples whose mean is a sample."""
@@ -176,14 +176,14 @@ class SampledWaves:
         end, round_trip = self.shown.end, self.waves.round
         within = begin - self.first + round_trip, end - self.first + round_trip
         check_known(self.history, begin, end)
-        if many_places(self.history, begin, end) > MANY or self.waves.inflow.many_edges(*within) > MANY:
+        if many_places(self.history, begin, end) > MANY_PLACES or self.waves.inflow.many_edges(*within) > MANY_PLACES:
             return self._means(begin)
         interval, slack = WaveInterval(self.waves, begin, end), NEARBY * round_trip
         edges = self.waves.inflow.edges(*within)
         edges = edges + self.first - round_trip
         breaks = np.unique(np.append(interval.start, self.first))
         breaks = breaks[(breaks >= begin) & (breaks <= end)]
-        inside = np.diff(breaks) * np.linspace(0.0, 1.0, INSIDE + 2)[1:-1, None] + breaks[:-1]
+        inside = np.diff(breaks) * np.linspace(0.0, 1.0, SAMPLES_INSIDE + 2)[1:-1, None] + breaks[:-1]
         inner = np.ravel(inside) if len(breaks) <= ENDS_ONLY else breaks[:0]
         right = np.concatenate([np.linspace(begin, end, EVEN), breaks, inner, edges - slack, edges + slack])
         time = np.concatenate([right, breaks - slack])

@@ -189,7 +189,9 @@ def _bundled(name: str) -> dict[str, Any]:
 
 VERSION = "1"
 """Version of the form of links."""
-LONGEST = 16_000
+FIRST_SCENARIO = "fig6-slab"
+"""The explorer shows this scenario first if none is named."""
+LONGEST_SETTING = 16_000
 """Largest number of characters of all parameters together: browsers and servers pass on about twice as many."""
 READABLE = 2_000
 """Largest number of characters of readable parameters; a longer link is compressed."""
@@ -206,8 +208,8 @@ def parameters_of(setting: Setting) -> dict[str, str]:
         return readable
     packed = base64.urlsafe_b64encode(zlib.compress(json.dumps(setting.document).encode(), 9)).decode().rstrip("=")
     found = {"scenario": setting.name[:LONGEST_NAME], "document": packed, "v": VERSION}
-    if _length(found) > LONGEST:
-        raise InputError(f"link: the scenario is too large for a link of {LONGEST} characters; save it as a file instead")
+    if _length(found) > LONGEST_SETTING:
+        raise InputError(f"link: the scenario is too large for a link of {LONGEST_SETTING} characters; save it as a file instead")
     return found
 
 
@@ -257,8 +259,8 @@ def setting_of(parameters: Mapping[str, str]) -> Setting:
         for key, value in parameters.items()
         if key in ("scenario", "document", "v") or key.split(".")[0] in (*TABLES, CONTACT)
     }
-    if _length(ours) > LONGEST:
-        raise InputError(f"link: it has more than {LONGEST} characters")
+    if _length(ours) > LONGEST_SETTING:
+        raise InputError(f"link: it has more than {LONGEST_SETTING} characters")
     if ours.get("v", VERSION) != VERSION:
         raise InputError(f"link: version {shown(ours['v'])} is unknown, this explorer reads version {VERSION}")
     name = ours.get("scenario", "")
@@ -269,7 +271,9 @@ def setting_of(parameters: Mapping[str, str]) -> Setting:
 
 def _changed(name: str, parameters: Mapping[str, str]) -> Setting:
     if name not in library.names():
-        raise InputError(f"link: no bundled scenario {ascii(name)[:60]}; {nearest(name, library.names(), listed=library.LISTED)}")
+        raise InputError(
+            f"link: no bundled scenario {ascii(name)[:60]}; {nearest(name, library.names(), listed=library.NAMES_LISTED)}"
+        )
     leaves = leaves_of(Setting.bundled(name).document)
     changes = {path: text for path, text in parameters.items() if path not in ("scenario", "v")}
     for path, text in changes.items():

@@ -72,7 +72,7 @@ def _beside_name(problem: Problem) -> str:
     return f"{SHOWN_KINDS[problem.body.structure].beside}{problem.body.noun}"
 
 
-LONG = 5_000
+PIECES_OF_LONG_RUN = 5_000
 """From this many pieces of a run on, its pictures take so long that their progress is reported."""
 
 
@@ -87,7 +87,7 @@ def solve(scenario: Scenario, told: Told = silent, behind: RecordBehind | None =
     solution = run(scenario, told)
     companion = None if solution.status.name == "interrupted" else run_companion(scenario, told)
     runs = (solution,) if companion is None else (solution, companion)
-    is_long = max(len(one.history) for one in runs) > LONG
+    is_long = max(len(one.history) for one in runs) > PIECES_OF_LONG_RUN
     answer = answer_of(scenario, solution, companion, contact, partial(_tell, told) if is_long else silent)
     return answer if behind is None else _with_record(answer, behind)
 

@@ -6,8 +6,7 @@ import tomllib
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from stickslip.extensions.explorer.model.asked import ShownKind
-from stickslip.extensions.explorer.model.pairs import slab_of_figure
+from stickslip.extensions.explorer.model.asked import ShownKind, slab_of_figure
 from stickslip.foundation.names import TURNS
 from stickslip.problem import block_for
 from stickslip.problem.bodies import BodyOnCharacteristics

@@ -1,7 +1,7 @@
 """The look of the page, one colour for each role on a light and on a dark ground, and its parts that are scripts.
 
 Every model of Bokeh that has a colour or a size is tagged with its role (`paint`). The browser reads the tags when the ground
-changes (assets/theme.js), so that a page without Python can change it too.
+changes (assets/theme.js).
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from stickslip.extensions.explorer.model.controls import Control, ControlGroup, controls_of
 from stickslip.extensions.explorer.model.exchange import with_kind
-from stickslip.extensions.explorer.model.setting import Setting
+from stickslip.extensions.explorer.model.setting import FIRST_SCENARIO, Setting
 from stickslip.extensions.explorer.page.components import ControlRows, finite
 from stickslip.extensions.explorer.page.explorer import Explorer
 from stickslip.figures.names import symbol
@@ -19,9 +19,6 @@ from stickslip.foundation.names import GREEK, for_readers
 from stickslip.friction import FromExpression
 from stickslip.friction.formula import RESERVED
 from stickslip.problem.scenarios import library
-
-FIRST = "fig6-slab"
-"""The first scenario of the explorer."""
 
 
 class Offered(NamedTuple):
@@ -43,7 +40,7 @@ def faults() -> list[str]:
 def offered() -> tuple[Offered, ...]:
     """Return all bundled scenarios in 1D in the order of the menu: by their trade, first that of the first one."""
     entries, known = library.entries(), library.in_1d()
-    trades = sorted(library.by_trade().items(), key=lambda one: FIRST not in one[1])
+    trades = sorted(library.by_trade().items(), key=lambda one: FIRST_SCENARIO not in one[1])
     found = ((name, entries[name]) for _, names in trades for name in names if name in known)
     return tuple(Offered(one.trade, name, one.title, one.description) for name, one in found)
 
@@ -189,7 +186,7 @@ def spelled(unit: str) -> str:
     return re.sub(r"\bu(?=[mNPs])", "µ", unit).replace("/ m", "1/m") if unit.startswith(("u", "/")) else unit
 
 
-_NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+_NAME_IN_FORMULA = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 """A name in a formula; the e of 1e-3 is none."""
 
 
@@ -202,6 +199,6 @@ def with_expression(setting: Setting, text: str) -> Setting:
     if setting.value("friction.kind") != FromExpression.kind:
         setting = with_kind(setting, "friction", FromExpression.kind)
     known = setting.value("friction.parameters") or {}
-    names = dict.fromkeys(name for name in _NAME.findall(text) if name not in RESERVED)
+    names = dict.fromkeys(name for name in _NAME_IN_FORMULA.findall(text) if name not in RESERVED)
     parameters = {name: known.get(name, 1.0) for name in names}
     return setting.with_value("friction.expression", text).with_value("friction.parameters", parameters or None)

@@ -212,4 +212,4 @@ def _figure(answer: Any, kind: str) -> bytes:
     with _DRAWING:
         if isinstance(answer, FaultAnswer):
             return image(answer.run.plot(figure=StickslipFigure()), kind)
-        return image(run.draw(answer.solution), kind)
+        return image(run.draw_run(answer.solution), kind)

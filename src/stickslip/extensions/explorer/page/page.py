@@ -18,7 +18,7 @@ from stickslip.extensions.explorer.page.tools import Tools
 from stickslip.extensions.explorer.page.view import View, headings_of, view_bytes
 from stickslip.extensions.explorer.page.words import PinnedRun, Tour, Words
 
-TITLES = {
+TITLES_OF_PANELS = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",
     "state": "State of friction", "given": "Loading", "also_given": "Loading",
     "residual": "Measured minus run", "traction": "Traction", "field": "Slab in space and time", "energy": "Energy",
@@ -128,15 +128,15 @@ HEIGHTS = {
     "shape": 240,
 }
 """Heights (px) of the panels, with their headings."""
-ROWS = (
+ROWS_OF_PANELS = (
     ("law", "contact", "shape"),
     (("slip", "rate", "state", "residual", "given", "also_given", "traction"), ("field", "energy")),
 )
 """The rows of panels: names side by side, and within the second row names below each other."""
-OF_ONE_PLACE = PageLayout(TITLES, ROWS, plots, FIELDS, FIRST_WORDS)
+OF_ONE_PLACE = PageLayout(TITLES_OF_PANELS, ROWS_OF_PANELS, plots, FIELDS, FIRST_WORDS)
 OF_A_FAULT = PageLayout(
-    fault.TITLES,
-    (("profile_rate", "profile_slip"), (("slip", "rate", "traction"), ROWS[1][1])),
+    fault.TITLES_OF_FAULT,
+    (("profile_rate", "profile_slip"), (("slip", "rate", "traction"), ROWS_OF_PANELS[1][1])),
     fault.plots,
     (("velocity", "slip rate"), ("displacement", "slip"), ("stress", "change of traction")),
     "All pictures show one run of a fault in 2D: a slab whose slip varies along its contact. First move a slider: they all follow.",

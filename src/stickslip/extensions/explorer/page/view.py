@@ -141,7 +141,7 @@ def headings_of(view: View, titles: Mapping[str, str]) -> dict[str, str]:
     return {name: heading(view.titles.get(name, title), view.keys.get(name, ())) for name, title in titles.items()}
 
 
-STEP = 8
+ALIGNMENT = 8
 """Numbers begin at multiples of so many bytes, as arrays in a browser must."""
 
 
@@ -165,7 +165,7 @@ def view_bytes(view: View, headings: Mapping[str, str]) -> bytes:
         "facts": view.facts,
     }
     text = _padded(json.dumps(content, allow_nan=False, separators=(",", ":")).encode("ascii"), b" ")
-    return b"".join((len(text).to_bytes(STEP, "little"), text, *arrays))
+    return b"".join((len(text).to_bytes(ALIGNMENT, "little"), text, *arrays))
 
 
 def _placed(values: Any, arrays: list[bytes]) -> Any:
@@ -180,4 +180,4 @@ def _placed(values: Any, arrays: list[bytes]) -> Any:
 
 
 def _padded(content: bytes, filling: bytes) -> bytes:
-    return content + filling * (-len(content) % STEP)
+    return content + filling * (-len(content) % ALIGNMENT)

@@ -104,7 +104,7 @@ def _nothing(changed: bool) -> str:
     return "" if changed else '<p class="kind">Nothing is changed yet: move a control, and what moves is named here.</p>'
 
 
-FIRST = "The first answer is being calculated."
+FIRST_ANSWER_COMING = "The first answer is being calculated."
 
 
 class WordsBox(JSComponent):  # type: ignore[misc] # panel has no types
@@ -136,7 +136,7 @@ class Words:
     def show(self) -> None:
         """Show the words of the explorer as it is now."""
         explorer, answer = self._explorer, self._explorer.answer
-        told = words_of(answer) if answer else {"sentence": FIRST, "regime": "", "notes": []}
+        told = words_of(answer) if answer else {"sentence": FIRST_ANSWER_COMING, "regime": "", "notes": []}
         self.view.texts = told | {"fault": explorer.fault, "progress": explorer.progress}
 
 

@@ -17,7 +17,7 @@ from stickslip.foundation.errors import InputError
 
 Call = Callable[[], None]
 
-PATIENCE = 0.3
+TIME_TO_FINISH = 0.3
 """Work that takes less than this (s) is finished and shown even if a newer request waits: pictures follow while a slider moves."""
 QUIET = 0.2
 """Nothing is said of work in its first moments (s): most of it is finished then, and lines that flicker tell nothing."""
@@ -45,8 +45,8 @@ class ThreadDesk:
     """The `Desk` of a page: one piece of work at a time; of the requests that come meanwhile only the latest is kept.
 
     Work is given the function `told` and calls it about ten times a second. After `stop`, `told` raises `Stopped`, which ends a run
-    with its results so far. It raises `Dropped` if the page is closed, or if the work has taken longer than PATIENCE and a newer
-    request waits.
+    with its results so far. It raises `Dropped` if the page is closed, or if the work has taken longer than TIME_TO_FINISH and a
+    newer request waits.
 
     `deliver`, which any thread may call, has a function called on the page's own thread. There `report` is called with lines on the
     progress of the work.
@@ -146,7 +146,7 @@ class ThreadDesk:
 
     def _told(self, task: _Task, text: str) -> None:
         taken = time.monotonic() - task.begun
-        if task.fate == "drop" or (self._next is not None and taken > PATIENCE):
+        if task.fate == "drop" or (self._next is not None and taken > TIME_TO_FINISH):
             raise Dropped
         if task.fate == "stop":
             raise Stopped
@@ -185,14 +185,14 @@ FIRST_RUNS = (("fig6-slab", 20.0), ("fig6-block-reconstructed", 20.0), ("rate-an
 """Scenarios, each with a duration (s), that between them use the parts of the engine that most runs need."""
 FIRST_STRIP = Axis("friction.alpha", 0.05, 2.0, 16)
 """A strip of a few runs, to warm up batches."""
-LINE = "The engine is being loaded: the first picture takes a moment longer."
+ENGINE_IS_LOADED = "The engine is being loaded: the first picture takes a moment longer."
 
 
 @dataclass(eq=False)
 class Warming:
     """The warming of the compiler, in a thread of its own; pages ask for its `line` and are told when it changes."""
 
-    line: str = LINE
+    line: str = ENGINE_IS_LOADED
     _calls: list[Callable[[str], None]] = field(default_factory=list)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 

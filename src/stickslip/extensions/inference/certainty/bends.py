@@ -13,7 +13,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 from stickslip.problem import LoadingHistory
 
-NEAR = 3.0
+NEAR_BEND = 3.0
 """A bend belongs to what happens at most this many samples away."""
 
 
@@ -33,10 +33,10 @@ def rough_words(model: Model, x: Floats, labels: Sequence[str], rows: NDArray[np
             first = float(times[0]) if first is None and len(times) else first
             if run is None or not len(times):
                 continue
-            step = NEAR * float(np.median(np.diff(block.time)))
+            step = NEAR_BEND * float(np.median(np.diff(block.time)))
             pull = run.problem.pull_rate
             drive = changes_of(pull, part.duration) if isinstance(pull, LoadingHistory) else np.zeros(0)
-            loads = np.setdiff1d(felt(run.problem, part.duration, step / NEAR), drive)
+            loads = np.setdiff1d(felt(run.problem, part.duration, step / NEAR_BEND), drive)
             jumps = model.jumps(run, i, name).time
             for cause, at in zip(causes, (jumps, drive, loads), strict=True):
                 causes[cause] += int((np.abs(times[:, None] - at).min(axis=1) <= step).sum()) if len(at) else 0

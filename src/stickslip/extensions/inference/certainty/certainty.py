@@ -19,23 +19,22 @@ from stickslip.extensions.inference.fit.pieces import pieces_of
 from stickslip.extensions.inference.fit.progress import Tell
 from stickslip.extensions.inference.record.noise import cost_of, weights
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.determined import UNSEEN as DETERMINED
-from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
+from stickslip.foundation.determined import UNSEEN_CHANGE, covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.show import brief
 
-EXACT = 1e-10
+RTOL_OF_DERIVATIVES = 1e-10
 """Relative tolerance of the runs behind the derivatives at the best fit."""
-UNSEEN = 3e-5
+UNSEEN_EFFECT = 3e-5
 """Profiles ignore combinations with less than this share of the largest effect: differences between runs have noise near 1e-6."""
-TOGETHER = 0.9
+KNOWN_TOGETHER = 0.9
 """Two numbers more correlated than this get a note if their sum, difference, product or ratio is known much better."""
 AT_BOUND = 1e-4
 """A searched number closer to its bound than this lies on the bound."""
 ROUGH = 0.1
 """If left and right derivatives differ by more than this share, the fit is not smooth."""
-HALF, NORMAL = 0.975, 1.959963984540054
+HALF, NORMAL_DEVIATE = 0.975, 1.959963984540054
 """Probability below the upper end of an interval of 95 %, and that end for a normal deviate."""
-FEWEST = 4.0
+INDEPENDENT_SAMPLES = 4.0
 """At least this many independent samples beyond the free numbers are assumed; so few widen intervals by a factor of 1.4."""
 GAIN = 0.02
 """A point of a profile is found when a further step gains less than this in twice the log-likelihood."""
@@ -62,7 +61,7 @@ class Certainty:
     slopes: Floats
     excess: Floats
     uneven: Mapping[str, Unevenness] = field(default_factory=dict)
-    factor: float = NORMAL
+    factor: float = NORMAL_DEVIATE
 
 
 def unknown(found: Estimate) -> Certainty:
@@ -81,7 +80,7 @@ def certainty_of(found: Estimate) -> Certainty:
     covariance).
     """
     x = found.searched
-    model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)
+    model = found.model.with_(rtol=min(RTOL_OF_DERIVATIVES, found.model.rtol)).fine(x)
     slopes, rough, rough_rows = _slopes(model, x)
     rest = model.residual(x)
     count = np.sqrt(weights(rest, found.loss))
@@ -107,7 +106,7 @@ def certainty_of(found: Estimate) -> Certainty:
     values = model.values(x)
     notes += [_bound_note(model.free[i], values[i], at_low=bool(x[i] - low[i] < AT_BOUND)) for i in np.flatnonzero(on_bound)]
     inner = inner[shown[inner]]  # what was not asked for is last
-    notes += _words(model, np.array(values), (slopes, moves[: len(inner)], covariance, correlation), inner, NORMAL)
+    notes += _words(model, np.array(values), (slopes, moves[: len(inner)], covariance, correlation), inner, NORMAL_DEVIATE)
     notes += rough_words(model, x, [model.free[i].label for i in rough if i in inner], rough_rows)
     return Certainty(covariance, widths, correlation, on_bound, tuple(notes), slopes, excess, uneven)
 
@@ -122,8 +121,10 @@ def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float)
 
     uneven = dict[str, Unevenness]()
     sizes = np.linalg.norm(slopes, axis=0)
-    influence = (np.linalg.pinv(slopes / sizes, rcond=DETERMINED) / sizes[:, None]).T
-    factor = math.sqrt(variance) * float(student.ppf(HALF, max(model.independent - len(sizes), FEWEST))) / NORMAL
+    influence = (np.linalg.pinv(slopes / sizes, rcond=UNSEEN_CHANGE) / sizes[:, None]).T
+    factor = (
+        math.sqrt(variance) * float(student.ppf(HALF, max(model.independent - len(sizes), INDEPENDENT_SAMPLES))) / NORMAL_DEVIATE
+    )
     if model.of_means:
         return np.asarray(factor**2 * influence.T @ influence), uneven
     before = influence[model.samples :]
@@ -155,7 +156,7 @@ def _words(
             words.append(text)
         else:
             open_sets.append([labels[i] for i in sorted(numbers)])
-    for i, j in np.argwhere(np.abs(np.triu(correlation, 1)) > TOGETHER).tolist():
+    for i, j in np.argwhere(np.abs(np.triu(correlation, 1)) > KNOWN_TOGETHER).tolist():
         alike = free[i].declared.unit == free[j].declared.unit and free[i].name.partition(".")[0] == free[j].name.partition(".")[0]
         chosen = inner[[i, j]]
         text = better_known(values[chosen], covariance[np.ix_(chosen, chosen)], (labels[i], labels[j]), alike=alike)
@@ -272,7 +273,7 @@ def _least_with(found: Estimate, sure: Certainty, column: int, target: float) ->
     cost, renewed = cost_of(rest, found.loss), False
     for _ in range(CHORDS if len(others) else 0):
         trial = x.copy()
-        trial[others] -= np.linalg.lstsq(slopes[:, others], rest, rcond=UNSEEN)[0]
+        trial[others] -= np.linalg.lstsq(slopes[:, others], rest, rcond=UNSEEN_EFFECT)[0]
         trial[others] = np.clip(trial[others], low[others], high[others])
         trial_rest = model.residual(trial)
         gain = cost - cost_of(trial_rest, found.loss)

@@ -24,7 +24,7 @@ SURE_BELOW, LEAST_SHARE = 1e-9, 30.0
 """Least effect (as a share of the largest) of the directions used for such steps; multiple of the runs' noise that is no effect."""
 TAKES_PART = 0.1
 """A number belongs to those that move together without effect if its own move has an effect above this (standard deviations)."""
-SAME = 0.02
+SAME_PRODUCT = 0.02
 """A product of powers that changes by less than this share along a direction counts as constant."""
 POWERS = (1, -1, 2, -2)
 """Powers to try for a product of two numbers, the simplest first."""
@@ -112,7 +112,11 @@ def constants(moves: Floats) -> list[Floats]:
         powers = np.zeros(count)
         powers[[i, j]] = p, q
         changed, size = np.abs(powers @ moves), np.abs(powers) @ np.abs(moves)
-        if len(chosen) < wanted and np.all(changed <= SAME * size) and np.linalg.matrix_rank([*chosen, powers]) > len(chosen):
+        if (
+            len(chosen) < wanted
+            and np.all(changed <= SAME_PRODUCT * size)
+            and np.linalg.matrix_rank([*chosen, powers]) > len(chosen)
+        ):
             chosen.append(powers)
     return chosen if len(chosen) == wanted else []
 

@@ -27,7 +27,7 @@ TRENDS = ("auto", "none")
 """What may be done about a drift: free it where it shows, or nothing."""
 KEPT = 3.0
 """A drift stays free if it is larger than this many standard errors; normal noise alone gives one record of 370 so large a one."""
-UNITS = {TREND: "1/m", DRIFT: "1/s"}
+UNITS_OF_DRIFTS = {TREND: "1/m", DRIFT: "1/s"}
 
 
 class Offer(NamedTuple):
@@ -119,7 +119,7 @@ def needed(found: Estimate, sure: Certainty, name: str) -> bool:
 def said(offer: Offer, found: Estimate, sure: Certainty) -> list[str]:
     """Return sentences on a drift that is free although nobody asked for it."""
     value, error = _size(found, sure, offer.name)
-    size = f"{brief(value, UNITS[offer.name], 3)} ± {brief(error, UNITS[offer.name], 1)}"
+    size = f"{brief(value, UNITS_OF_DRIFTS[offer.name], 3)} ± {brief(error, UNITS_OF_DRIFTS[offer.name], 1)}"
     both = {TREND, DRIFT} <= {one.name for one in found.model.free}
     caveats = () if both else offer.unsure
     return [f"{offer.why}: {offer.name} is free, too, and is {size}; trend='none' leaves it out", *caveats]

@@ -17,11 +17,11 @@ from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import Variable
 
-FORMAT = 1
+FORMAT_OF_WALK = 1
 """Version of the layout of the file."""
 EVERY = 30.0
 """Time (s of wall clock) between two checkpoints."""
-SHARE = 0.1
+SHARE_OF_WRITING = 0.1
 """Largest share of the time that writing them may take."""
 GENERATOR = "MT19937"
 """The generator of random numbers of emcee."""
@@ -51,7 +51,7 @@ class KeptWalk:
         if self.path is None or not self.path.exists():
             return None
         found = netcdf_file.read(self.path, "the checkpoint of a walk")
-        if found.attrs.get("walk") != FORMAT or found.attrs.get("digest") != self.digest:
+        if found.attrs.get("walk") != FORMAT_OF_WALK or found.attrs.get("digest") != self.digest:
             raise InputError(f"infer: checkpoint {self.path}: is of another inference: choose another name, or remove it")
         steps = found["steps"].to_numpy()
         wrong = steps.shape[1:] != shape[1:] or not 0 < len(steps) <= shape[0] or not np.isfinite(steps).all()
@@ -84,11 +84,11 @@ class KeptWalk:
             "probability": Variable(("walker",), np.asarray(state.log_prob, float)),
             "key": Variable(("word",), np.asarray(key, np.int64)),
         }
-        about = {"source": "stickslip", "walk": FORMAT, "digest": self.digest, "place": int(place)}
+        about = {"source": "stickslip", "walk": FORMAT_OF_WALK, "digest": self.digest, "place": int(place)}
         about |= {"has_normal": int(has_normal), "normal": float(normal)}
         netcdf_file.write_variables(arrays, about, self.path)
         ended = time.monotonic()
-        self.due = ended + max(EVERY, (ended - begun) / SHARE)
+        self.due = ended + max(EVERY, (ended - begun) / SHARE_OF_WRITING)
 
 
 NOT_KEPT = KeptWalk(None)

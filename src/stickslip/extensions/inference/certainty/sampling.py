@@ -19,7 +19,7 @@ from stickslip.extensions.inference.record.noise import cost_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
-DECIDE = tuple(f"extensions/inference/{name}" for name in ("certainty", "fit", "record"))
+WALK_CODE = tuple(f"extensions/inference/{name}" for name in ("certainty", "fit", "record"))
 """Folders of the package whose code decides the steps of a walk, beside that of its runs."""
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
@@ -114,7 +114,7 @@ def sample(
     if before is None:
         factor = np.empty(0) if jumps is None else jumps.factor
         own = found.searched, begin, factor, posterior.tempered, *found.model.limits, found.model.rtol, found.loss
-        keep = keep.of(*own, seed, count, engine_key(*DECIDE))
+        keep = keep.of(*own, seed, count, engine_key(*WALK_CODE))
         if (taken := keep.read(new.shape, library.State)) is not None:
             done, state = len(taken[0]), taken[1]
             new[:done] = taken[0]

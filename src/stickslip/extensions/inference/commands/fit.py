@@ -172,7 +172,7 @@ def _write_text(path: Path, text: str) -> Path:
 def _draw(result: Fit | Smooth, **place: Any) -> object:
     from stickslip.extensions.inference.figures import measured
 
-    return measured.draw(measured.data(result), **place)
+    return measured.draw_measured(measured.measured_data(result), **place)
 
 
 def _show_result(result: Fit | Smooth) -> None:

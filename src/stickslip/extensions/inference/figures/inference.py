@@ -39,7 +39,7 @@ from stickslip.foundation.place import Place
 if TYPE_CHECKING:
     from stickslip.extensions.inference.inference import Inference
 
-MANY, FEW = 200, 50
+MANY, FEW_EVENTS = 200, 50
 """Number of points from which they are drawn small, and of events up to which they are drawn large."""
 MOST_PAIRED = 4
 """Largest number of parameters that are drawn against each other."""
@@ -47,13 +47,13 @@ JOINT = 2.4477468306808166
 """Half width, in standard uncertainties, of an ellipse that holds two numbers with a probability of 95 %."""
 TWO = 1.96
 """Half width, in standard errors, of the band that holds a mean with a probability of 95 %."""
-PANELS = {"record": "record and best run", "residual": "residual", "rate": "slip rate of the best run"}
+RECORD_PANELS = {"record": "record and best run", "residual": "residual", "rate": "slip rate of the best run"}
 """The panels of samples of a record, with their titles."""
 FRAMES = 4000
 """Number of times at which the slip rate is drawn, evenly spaced, besides those of the samples."""
 
 
-def data(study: Inference) -> xr.Dataset:
+def inference_data(study: Inference) -> xr.Dataset:
     """Return data, model and residual of each sample, the slip rate of the runs, and the numbers with their covariance, in SI."""
     table = study.curves
     begins = np.array([part.record.time[0] for part in study.parts])  # the first sample, or the first event
@@ -127,11 +127,15 @@ def _numbers(study: Inference) -> dict[str, xr.Variable]:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_inference(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw record and best run, the residual and the slip rate below each other, and beside them pairs of numbers."""
     paired = _paired(dataset)
     count = max(len(paired) - 1, 0)
-    shown = PANELS if "feature" not in dataset else {name: name_of(name, dataset.attrs["load_unit"]) for name in _features(dataset)}
+    shown = (
+        RECORD_PANELS
+        if "feature" not in dataset
+        else {name: name_of(name, dataset.attrs["load_unit"]) for name in _features(dataset)}
+    )
     figure = sheet((7.2 if count else 5.0, max(5.4, 1.2 * len(shown) + 1.0)), **place)
     axes: Any = figure.subplot_mosaic(_layout(list(shown), count), width_ratios=[2.2, *[1.0] * count] if count else None)
     if "feature" in dataset:
@@ -239,7 +243,7 @@ def _draw_features(axes: Mapping[str, Axes], dataset: xr.Dataset) -> None:
             chosen = of & (dataset["part"].values == dataset["part_of_mean"].values[row])
             time = dataset["time"].values[chosen] / size
             mean, error, run = (float(dataset[what].values[row]) / scale for what in ("mean", "error", "run"))
-            dots = 3 if chosen.sum() > FEW else 6
+            dots = 3 if chosen.sum() > FEW_EVENTS else 6
             axes[name].plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=dots, rasterized=True)
             axes[name].fill_between(time[[0, -1]], mean - TWO * error, mean + TWO * error, color=BLUE, alpha=0.4, linewidth=0.0)
             axes[name].plot(time[[0, -1]], [run, run], color=INK, linewidth=1.0)

@@ -41,11 +41,11 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpa
     """
     if not isinstance(result, Fit | Smooth):
         raise InputError(f"plot_fit: result must come from fit or smooth, got {type(result).__name__}")
-    figure: Figure = shown_or_saved(draw(data(result), **place), path, place)
+    figure: Figure = shown_or_saved(draw_measured(measured_data(result), **place), path, place)
     return figure
 
 
-def data(result: Fit | Smooth) -> xr.Dataset:
+def measured_data(result: Fit | Smooth) -> xr.Dataset:
     """Return the points, their differences from the law, the law along its variable with its standard error, and the residual.
 
     For a law of slip and slip rate the variable is the friction coefficient of the law.
@@ -88,7 +88,7 @@ def _along(place: Floats) -> Floats:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_measured(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw points, law and the bands of a fit in the upper panel, and in the lower one how far the points are from the law."""
     figure = sheet((5.6, 5.0), **place)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))

@@ -19,7 +19,7 @@ from stickslip.problem import PiecewiseLinear, Steps
 
 STEP, JUMP, RAMP = "record.step_", "record.jump_", "record.ramp"
 """Names: by how much a step of the drive, or a jump of the normal load, comes later than it seems, and how long jumps take (s)."""
-FARTHEST = 3.0
+FARTHEST_TIME = 3.0
 """A time may lie this many standard deviations from where it seems to be."""
 NARROWEST = 1e-3
 """A jump of the normal load takes at least this share of the time between its samples."""
@@ -53,7 +53,7 @@ def _of_drive(part: Part, number: int) -> Iterable[Free]:
     )
     for k, unsure in enumerate(corners.unsure):
         if unsure > 0.0:
-            yield _later(f"{STEP}{k + 1}", unsure, FARTHEST * unsure, number)
+            yield _later(f"{STEP}{k + 1}", unsure, FARTHEST_TIME * unsure, number)
 
 
 def _of_pressing(part: Part, number: int) -> Iterable[Free]:

@@ -14,7 +14,7 @@ MANY_RATES = 40
 """A load point with more rates than this raises a doubt, unless it speeds up and slows down in turn so seldom as a ramp does."""
 MOST_TURNS = 2
 """Largest number of times that a ramp turns from speeding up to slowing down, or back."""
-FAR = 100.0
+FAR_RATE = 100.0
 """A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
 LONG, LEVEL = 2.0, 0.1
 """A torque is level if it spreads by less than this share of its median over so many two-way travel times (both 1)."""
@@ -71,7 +71,7 @@ def doubts_of_rate(problem: Problem, rate: LoadingHistory | float) -> Iterator[s
         yield f"the rate of the load point changes in {len(segments) - 1} places, as slip does and a driven machine hardly: {cure}"
     moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)
     usual = float(moving[0]) if len(moving) else 0.0
-    if assumed > 0.0 and usual > 0.0 and not assumed / FAR < usual < assumed * FAR:
+    if assumed > 0.0 and usual > 0.0 and not assumed / FAR_RATE < usual < assumed * FAR_RATE:
         unit = problem.unit_of("slip_rate")
         speeds = f"{brief(usual, unit, 3)}, and at {brief(assumed, unit, 3)} in the problem"
         yield f"the load point moves at {speeds}: are the units of time and load point in their headings?"

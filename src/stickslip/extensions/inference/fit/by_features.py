@@ -13,9 +13,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stickslip.extensions.inference.fit.memory import ResidualBlock
-from stickslip.extensions.inference.fit.model import FAILED, JUMPING, LARGEST, Model, breaks_of, is_at_driver, measured
+from stickslip.extensions.inference.fit.model import FAILED, JUMPING, LARGEST_RESIDUAL, Model, breaks_of, is_at_driver, measured
 from stickslip.extensions.inference.fit.part import Part
-from stickslip.extensions.inference.record.features import FEATURES, LEVELS, Samples, features_in
+from stickslip.extensions.inference.record.features import FEATURES, LEVELS_OF_SHEAR, Samples, features_in
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
@@ -31,7 +31,7 @@ COARSE, FINE = 1000, 200
 """Numbers of times to sample a whole run, and a part of it between two times, besides the ends of its pieces."""
 COARSER = 1e-2
 """Step of differences, in searched numbers; it is large because waves in a slab shift its features by some 1e-4 of their size."""
-FEWEST = 4.0
+SAMPLES_OF_FALL = 4.0
 """Falls shorter than this many samples have no measurable duration and peak rate."""
 MISSED, ALLOWED = 4.0, 0.1
 """A run misses the mean of a feature if it is farther away than MISSED times the root of the sum of squares of the standard error
@@ -134,7 +134,7 @@ def by_features(parts: Sequence[Part], observe: Sequence[str] | str | None) -> t
 
 def _chosen(wanted: Sequence[str] | None, record: Record) -> list[str]:
     """Return the full names of features; by default all but the drop, the difference of two of them. Raises InputError."""
-    levels = dict(zip(LEVELS, record.measured, strict=False))
+    levels = dict(zip(LEVELS_OF_SHEAR, record.measured, strict=False))
     if wanted is None:
         return [name for name in record.measured if name != levels["drop"]]
     names = list(dict.fromkeys(levels.get(name, name) for name in wanted))
@@ -167,7 +167,7 @@ def events_of(part: Part) -> tuple[Record, list[str]]:
         )
     notes = []
     lasting = found["duration"][np.isfinite(found["duration"])]
-    if not len(lasting) or float(np.median(lasting)) < FEWEST * float(np.median(np.diff(time))):
+    if not len(lasting) or float(np.median(lasting)) < SAMPLES_OF_FALL * float(np.median(np.diff(time))):
         found = {name: one for name, one in found.items() if name not in ("duration", "peak_rate")}
         notes.append("a fall lasts too few samples for its duration and its peak rate: they are not used")
     whole = np.all([np.isfinite(one) for one in found.values()], axis=0)
@@ -175,7 +175,7 @@ def events_of(part: Part) -> tuple[Record, list[str]]:
     if hidden.any():
         notes.append(f"slip events with a gap in the record before them are left out: {int(hidden.sum())}")
     whole &= ~hidden
-    names = (*(f"{shear}_{level}" for level in LEVELS), *FEATURES)
+    names = (*(f"{shear}_{level}" for level in LEVELS_OF_SHEAR), *FEATURES)
     found = {name: found[name][whole] for name in names if name in found}
     return Record(record.time[0] + at[whole], found, name=record.name, notes=record.notes), notes
 
@@ -219,7 +219,7 @@ class FeatureModel(Model):
         found = np.full(len(means.values), math.nan) if run is None else np.array(list(self._found(run, part).values()))
         if not np.isfinite(found).all():
             return np.full(len(found), FAILED)
-        return np.asarray(np.clip(np.linalg.solve(means.root, found - means.values), -LARGEST, LARGEST))
+        return np.asarray(np.clip(np.linalg.solve(means.root, found - means.values), -LARGEST_RESIDUAL, LARGEST_RESIDUAL))
 
     def blocks(self, part: int) -> list[tuple[str, ResidualBlock]]:
         """Return the residual of each feature."""

@@ -29,18 +29,18 @@ from stickslip.extensions.inference.fit.search import (
 from stickslip.extensions.inference.record.noise import GAUSSIAN, cost_of
 from stickslip.foundation.arrays import Floats
 
-FEW = 1500
+SAMPLES_OF_STARTS = 1500
 """Starts are compared and followed on this many samples of a part."""
 
 ROUGH = 1.2
 """If residuals exceed this multiple of the noise of neighbouring samples, the best fit is improved without derivatives."""
-ROUNDS = 4
+TURNS_OF_NOISE = 4
 """Largest number of times that noise and numbers are estimated in turn."""
-SETTLED = 0.05
+SETTLED_NUMBERS = 0.05
 """No further turn is needed if no number changes by more than this many standard uncertainties."""
 NARROWING = (64, 16, 4)
 """Jumps of a run are spread over these numbers of samples in turn, so that a fit finds the jumps of the record."""
-APART = 5.0
+APART_MINIMA = 5.0
 """Minima closer than this many standard uncertainties are one."""
 
 
@@ -68,7 +68,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
     """Return the best fit of a model. Raises InputError if no run succeeds, KeyboardInterrupt if Ctrl-C comes before any did."""
     best, found = Best(), Estimate(model, model.begin, loss=loss)
     try:
-        thin = light(model.thinned(FEW)).with_(blur=NARROWING[0])
+        thin = light(model.thinned(SAMPLES_OF_STARTS)).with_(blur=NARROWING[0])
         minima = searched_minima(thin, starts, loss, seed, tell=tell, best=best)
         searched = _at_jumps(model, [x for _, x in minima], loss, tell)
         best.cost, best.searched = np.inf, searched
@@ -112,7 +112,7 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
     Several quantities are weighted by the sizes of their noise. Fit and sizes are estimated in turn until both settle. The memory
     only sets the weight of the data against the priors.
     """
-    for turn in range(ROUNDS):
+    for turn in range(TURNS_OF_NOISE):
         tell(f"fit {turn + 1} to all samples")
         best.cost = np.inf
         before = searched
@@ -123,7 +123,7 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
         by = model.jacobian(searched)
         new = _noise(model, searched, by, loss)
         same = all(abs(new.sizes[k] / model.sizes[k] - 1.0) < 0.1 for k in new.sizes)
-        settled = turn > 0 and np.all(np.abs(searched - before) < SETTLED * _widths(by[: model.samples]))
+        settled = turn > 0 and np.all(np.abs(searched - before) < SETTLED_NUMBERS * _widths(by[: model.samples]))
         keeps = turn == 0 and not model.unsure and loss == "linear" and len(model.sizes) == 1
         known = len(model.priors(searched)) > 0
         model = new
@@ -161,7 +161,7 @@ def _competing(model: Model, best: Floats, others: list[Floats], every: int) -> 
     lowest, width = cost_of(thin.residual(best)), _widths(thin.jacobian(best))
     found: list[Floats] = []
     for x in others:
-        apart = all(np.any(np.abs(x - one) > np.maximum(APART * width, 0.05)) for one in [best, *found])
+        apart = all(np.any(np.abs(x - one) > np.maximum(APART_MINIMA * width, 0.05)) for one in [best, *found])
         if apart and cost_of(thin.residual(x)) - lowest < COMPETES:
             found.append(x)
     return tuple(found)
@@ -169,7 +169,7 @@ def _competing(model: Model, best: Floats, others: list[Floats], every: int) -> 
 
 KEPT_BEFORE, KEPT_AFTER = (1.0, 0.5), (1.0, 0.75, 0.5, 0.35)
 """Shares to keep of the time before the first change of the pull rate, and after the last one."""
-LEAST = 10
+SAMPLES_FOR_EACH_NUMBER = 10
 """Smallest number of samples for each free number."""
 
 
@@ -182,7 +182,7 @@ def windows_of(found: Estimate, tell: Tell) -> pd.DataFrame:
     for shares in list(product(KEPT_BEFORE, KEPT_AFTER))[1:]:
         parts = [_cut(part, found, *shares) for part in found.model.parts]
         model = found.model.with_(parts=tuple(part for part in parts if part is not None), unsure={})
-        if len(model.parts) < len(parts) or model.samples < LEAST * len(labels):
+        if len(model.parts) < len(parts) or model.samples < SAMPLES_FOR_EACH_NUMBER * len(labels):
             continue
         begin = float(model.parts[0].record.time[0] - found.model.parts[0].record.time[0])
         tell(f"the record from {begin:.4g} s on, {model.parts[0].duration:.4g} s long")

@@ -17,10 +17,10 @@ FARTHEST, FARTHEST_PURE = 1e3, 30.0
 """Largest factors between a positive number (with a unit, without) and its starting value, unless the user gives bounds."""
 NEAR, NEAR_KNOWN = 10.0, 2.0
 """Starts are drawn within these factors: slips and rates of a law; pure numbers and the body, which are known better."""
-LISTED = "`stickslip check SCENARIO --parameters` lists those of the scenario"
+FREE_LISTED = "`stickslip check SCENARIO --parameters` lists those of the scenario"
 """Where the numbers that may be free are."""
 TREND, DRIFT, DELAY, SERVO = "record.trend", "record.drift", "record.delay", "record.servo"
-LOAD, STATE = "initial.load", "initial.state"
+LOAD, INITIAL_STATE = "initial.load", "initial.state"
 _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,()]+)\s*\)\s*")
 
 
@@ -123,7 +123,7 @@ def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float]
         names = [one for one in names.split(",") if one.strip()]
     if not names or not all(isinstance(one, str) for one in names):
         raise InputError('infer: free must name at least one number, as ["friction.a", "friction.b"]')
-    chosen = [full_name(one.strip(), known, "infer: free: ", "is no number of this problem", LISTED) for one in names]
+    chosen = [full_name(one.strip(), known, "infer: free: ", "is no number of this problem", FREE_LISTED) for one in names]
     twice = next((one for one in chosen if chosen.count(one) > 1), None)
     if twice is not None:
         raise InputError(f"infer: free: {twice} is named twice")
@@ -144,7 +144,10 @@ def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tup
     found[LOAD] = Quantity(problem.load_unit, "load at the start"), hints.get(LOAD, math.nan)
     if problem.friction.states:
         state = problem.friction.states[0]
-        found[STATE] = Quantity(state.unit, "state at the start", above=None if state.signed else 0.0), hints.get(STATE, math.nan)
+        found[INITIAL_STATE] = (
+            Quantity(state.unit, "state at the start", above=None if state.signed else 0.0),
+            hints.get(INITIAL_STATE, math.nan),
+        )
     found[TREND] = Quantity("1/m", "trend of friction with slip"), 0.0
     found[DRIFT] = Quantity("1/s", "drift of friction with time"), 0.0
     found[DELAY] = Quantity("s", "delay of the record behind the machine"), 0.0

@@ -12,7 +12,7 @@ from stickslip.foundation.arrays import Floats
 
 FELT = 0.3
 """A number counts if its standard deviation changes the residuals by this many standard deviations in all."""
-MOST = 24
+LOOSENED_NUMBERS = 24
 """Largest number of such numbers that are free in a fit."""
 
 
@@ -41,7 +41,7 @@ def loosened(model: Model, searched: Floats) -> Loosened:
                     changed = replace(part, asides=tuple(replace(each, start=by) if each is one else each for each in part.asides))
                     after = model.with_(parts=(*model.parts[:i], changed, *model.parts[i + 1 :])).part_residual(searched, i)
                     felt.append((float(np.linalg.norm(after - before)), replace(one, part=i)))
-    chosen = [one for size, one in sorted(felt, key=lambda pair: -pair[0])[:MOST] if size > FELT]
+    chosen = [one for size, one in sorted(felt, key=lambda pair: -pair[0])[:LOOSENED_NUMBERS] if size > FELT]
     order = [one for _, one in felt if any(one is each for each in chosen)]
     added = np.array([one.searched(one.start) for one in order])
     return Loosened(model.with_(free=(*model.free, *order)), added)

@@ -15,11 +15,11 @@ from stickslip.foundation.arrays import Floats
 
 FORGOTTEN = 0.02
 """Noise is white if neighbouring samples are less correlated than this."""
-UNSEEN = 1e-9
+UNSEEN_EIGENVALUE = 1e-9
 """A combination of numbers is undetermined if its eigenvalue of the normal matrix (diagonal 1) is below this."""
-LONGEST = 1.0 / 8.0
+LONGEST_MEMORY = 1.0 / 8.0
 """Longest correlation time considered, as a share of the longest part of a record; anything longer is a misfit, not noise."""
-MOST = 4000
+SAMPLES_OF_MEMORY = 4000
 """Largest number of samples to estimate the memory from; if there are more, means over neighbours are used."""
 TIMES, SHARES = (2.0, 8.0, 32.0, 128.0), (0.05, 0.5, 0.9)
 """Starting values for the correlation time (samples) and for the share of white noise."""
@@ -29,7 +29,7 @@ CHANCE = 1e-4
 """Significance level of the test whether residuals are larger where the run changes than elsewhere."""
 ACTIVE = 0.5
 """The active samples are those with the largest leverage, which together have this share of it."""
-FEWEST = 3
+ACTIVE_SAMPLES = 3
 """With fewer active samples than this, or fewer others, nothing is said: their second differences have no mean."""
 
 
@@ -79,7 +79,7 @@ def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock])
     """
     from scipy.optimize import minimize
 
-    width = -(-len(residual) // MOST)
+    width = -(-len(residual) // SAMPLES_OF_MEMORY)
     if width > 1:
         residual, slopes, blocks = _means(residual, slopes, blocks, width)
     slopes = independent_columns(slopes)
@@ -89,7 +89,7 @@ def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock])
     alone = Memory(0.0, 0.0, white * math.sqrt(width))
     if n < p + 10 or not len(steps) or white == 0.0:
         return alone
-    usual, longest = float(np.median(steps)), LONGEST * max(float(np.ptp(time)) for _, time in blocks)
+    usual, longest = float(np.median(steps)), LONGEST_MEMORY * max(float(np.ptp(time)) for _, time in blocks)
     shortest = usual / -math.log(FORGOTTEN)
     if longest <= shortest:
         return alone
@@ -154,7 +154,7 @@ def independent_columns(slopes: Floats) -> Floats:
     """Return orthonormal columns that span all changes of the residuals by the parameters."""
     sizes = np.linalg.norm(slopes, axis=0)
     left, seen, _ = np.linalg.svd(slopes[:, sizes > 0.0] / sizes[sizes > 0.0], full_matrices=False)
-    return np.asarray(left[:, seen**2 > UNSEEN])
+    return np.asarray(left[:, seen**2 > UNSEEN_EIGENVALUE])
 
 
 def rms(residual: Floats, slopes: Floats) -> float:
@@ -230,7 +230,7 @@ def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequenc
     order = np.argsort(leverage)[::-1]
     last = int(np.searchsorted(np.cumsum(leverage[order]), ACTIVE * leverage.sum())) + 1
     active, rest = residual[np.sort(order[:last])], residual[np.sort(order[last:])]
-    if min(len(active), len(rest)) < FEWEST:
+    if min(len(active), len(rest)) < ACTIVE_SAMPLES:
         return EVEN
     share = sum(independent(time, memory) for _, time in blocks) / len(residual)
     freedom = [max(1.0, share * len(one)) for one in (active, rest)]

@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.engine import Side
 from stickslip.extensions.inference.fit.asides import moved
-from stickslip.extensions.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free
+from stickslip.extensions.inference.fit.free import DELAY, DRIFT, INITIAL_STATE, LOAD, SERVO, TREND, Free
 from stickslip.extensions.inference.fit.memory import Memory, ResidualBlock, independent
 from stickslip.extensions.inference.fit.part import Part, approached, changed, not_begun
 from stickslip.extensions.inference.fit.turns import felt, moving
@@ -29,13 +29,13 @@ OF_NO_ZERO = ("slip",)
 """Quantities with an arbitrary zero of the sensor: the mean of their residual is subtracted."""
 JUMPING = (*SHEAR, "slip_rate", "drive_rate")
 """Quantities that may jump in a run."""
-SEEN = 0.1
+SMALLEST_JUMP_SPREAD = 0.1
 """Jumps higher than this many standard deviations are spread between samples."""
 FAILED = 1e5
 """Residual, in standard deviations, of every sample of a failed run."""
-LARGEST = 1e7
+LARGEST_RESIDUAL = 1e7
 """Largest residual, in standard deviations, so that squares and their sums stay finite."""
-STEP = 2e-4
+STEP_OF_DIFFERENCES = 2e-4
 """Longest step of differences, in searched numbers. Errors: the square of the step, and the noise of runs, 1e-8 over the step."""
 NO_ROOM = 1e-10
 """If a limit leaves less room than this for a step, there is no difference to that side."""
@@ -64,7 +64,7 @@ class Model:
     sizes: dict[str, float] = field(default_factory=dict)
     memory: dict[str, Memory] = field(default_factory=dict)
     every: int = 1
-    step: float | Floats = STEP
+    step: float | Floats = STEP_OF_DIFFERENCES
     smooth: float = 0.0
     max_pieces: int = 20_000
     blur: int = RAMP
@@ -83,13 +83,13 @@ class Model:
         """Return the problem of a part at searched numbers. Raises InputError if there is none."""
         values = self.values(searched)
         own = {one.name: v for one, v in zip(self.free, values, strict=True) if one.part in (None, part)}
-        first = {name: v for name, v in own.items() if name not in (LOAD, STATE)}
+        first = {name: v for name, v in own.items() if name not in (LOAD, INITIAL_STATE)}
         asked = any(one.name == SERVO and one.part is None for one in self.free)
         this = moved(self.parts[part], own, asked=asked)
         begun = this.begun(changed(self.problem, first, not_begun))
         if this.loading is None and own.get(SERVO, 0.0) > 0.0:
             begun = replace(begun, pull_rate=approached(begun.pull_rate, own[SERVO]))
-        return changed(begun, {name: v for name, v in own.items() if name in (LOAD, STATE)})
+        return changed(begun, {name: v for name, v in own.items() if name in (LOAD, INITIAL_STATE)})
 
     def solve(self, searched: Floats, part: int, rtol: float | None = None) -> Solution | None:
         """Return the run of a part, or None if it failed. Raises KeyboardInterrupt after Ctrl-C."""
@@ -127,7 +127,7 @@ class Model:
 
     def jumps(self, run: Solution, part: int, name: str) -> Jumps:
         """Return the jumps of a quantity in a run that move as its numbers change: those of slip events."""
-        this, least = self.parts[part], SEEN * self.sizes.get(name, 0.0)
+        this, least = self.parts[part], SMALLEST_JUMP_SPREAD * self.sizes.get(name, 0.0)
         step = self.every * this.record.clock[-1] / max(len(this.record) - 1, 1)
         breaks = breaks_of(run, is_at_driver(name, this.sensor))[1:-1]
         found = jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), breaks, least, step)
@@ -190,7 +190,7 @@ class Model:
                 rest = curve - data
                 rest = (rest - np.mean(rest) if name in OF_NO_ZERO else rest) / scale[known]
                 rest = averaged(rest, round(self.smooth * len(rest))) if self.smooth else rest
-                pieces.append(np.clip(np.where(np.isfinite(rest), rest, FAILED), -LARGEST, LARGEST))
+                pieces.append(np.clip(np.where(np.isfinite(rest), rest, FAILED), -LARGEST_RESIDUAL, LARGEST_RESIDUAL))
         return np.concatenate(pieces)
 
     def blocks(self, part: int) -> list[tuple[str, ResidualBlock]]:
@@ -210,7 +210,7 @@ class Model:
         """
         values = zip(self.free, self.values(searched), strict=True)
         found = [one.prior.residual(v) for one, v in values if one.prior is not None and one.prior.kind != "uniform"]
-        return np.asarray(np.clip(math.sqrt(self.inflation) * np.array(found, float), -LARGEST, LARGEST))
+        return np.asarray(np.clip(math.sqrt(self.inflation) * np.array(found, float), -LARGEST_RESIDUAL, LARGEST_RESIDUAL))
 
     def residual(self, searched: Floats) -> Floats:
         """Return all residuals, those of the priors last."""
@@ -243,7 +243,7 @@ class Model:
 
     def fine(self, searched: Floats) -> Model:
         """Return the model with steps of differences inside the uncertainty: a sharp event bends residuals within longer steps."""
-        change, steps = max(CHANGED, ABOVE_NOISE * self.noise), np.full(len(self.free), STEP)
+        change, steps = max(CHANGED, ABOVE_NOISE * self.noise), np.full(len(self.free), STEP_OF_DIFFERENCES)
         for _ in range(3):  # across a bend a long step gives too small a slope, and so too long a next step
             sizes = np.linalg.norm(self.with_(step=steps).jacobian(searched, sides=(1.0,)), axis=0)
             shorter = np.minimum(change / np.maximum(sizes, 1e-300), steps)
@@ -374,7 +374,7 @@ def averaged(rest: Floats, width: int) -> Floats:
     """Return running means of `width` residuals, times the root of that number, so that white noise keeps its size."""
     if width < 2:
         return rest
-    sums = np.append(0.0, np.cumsum(np.clip(np.nan_to_num(rest, nan=FAILED), -LARGEST, LARGEST)))
+    sums = np.append(0.0, np.cumsum(np.clip(np.nan_to_num(rest, nan=FAILED), -LARGEST_RESIDUAL, LARGEST_RESIDUAL)))
     ends = np.clip(np.arange(len(rest)) + width // 2 + 1, 0, len(rest))
     begins = np.clip(np.arange(len(rest)) - (width - 1) // 2, 0, len(rest))
     return np.asarray((sums[ends] - sums[begins]) / np.sqrt(ends - begins))

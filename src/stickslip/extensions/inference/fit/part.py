@@ -197,7 +197,7 @@ def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
 
 
 LEFT_OUT = Quantity("s", "time at the end of the record that is left out", above=0.0)
-LEAST = 8
+SAMPLES_OF_PART = 8
 """A part keeps at least this many samples."""
 
 
@@ -227,7 +227,7 @@ def shortened(parts: Sequence[Part], share: float) -> list[Part]:
         return list(parts[:count])
     (part,) = parts
     record = part.record.part(None, float(part.record.time[0] + (1.0 - share) * part.duration))
-    if len(record) < LEAST:
+    if len(record) < SAMPLES_OF_PART:
         raise InputError(f"infer: held_out leaves {len(record)} samples to be fitted")
     return [replace(part, record=record)]
 

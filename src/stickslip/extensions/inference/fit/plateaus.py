@@ -15,17 +15,17 @@ from stickslip.problem import LoadingHistory, Problem
 
 TAIL, LEAST = 0.3, 8
 """The plateau at a constant rate is the median over this last share of its samples; it needs at least so many samples."""
-SHORT = 0.1
+SHORT_PLATEAU = 0.1
 """Parts of constant rate that are shorter than this share of the usual one, in time and in motion, belong to a step of a servo."""
-SAME = 0.05
+ONE_PLATEAU = 0.05
 """Neighbouring parts whose rates differ by less than this share are one plateau."""
 CLEAR = 5.0
 """A transient counts if it is higher than this many standard deviations of the noise."""
-SETTLED, MEANS = 0.5, 6
+LAST_SHARE, MEANS = 0.5, 6
 """A drift is looked for in means over this many pieces of this last share of each plateau."""
-SEEN = 2.5
+DRIFT_WORTH_A_TRY = 2.5
 """A drift is worth a try if it is larger than this many standard errors: the fit then decides."""
-APART = 9.0
+APART_DRIFTS = 9.0
 """Slip and time explain a drift differently well if twice the log-likelihoods differ by this much."""
 
 
@@ -72,7 +72,7 @@ class PlateauDrift(NamedTuple):
     @property
     def seen(self) -> bool:
         """True if the drift is large enough to be worth a try."""
-        return abs(self.value) > SEEN * self.error
+        return abs(self.value) > DRIFT_WORTH_A_TRY * self.error
 
 
 def plateaus_of(problem: Problem, part: Part, friction: Floats) -> list[RatePlateau]:
@@ -87,7 +87,7 @@ def plateaus_of(problem: Problem, part: Part, friction: Floats) -> list[RatePlat
     found, moved, first = list[RatePlateau](), 0.0, 0.0
     least = _usual([one.lasts for one in stretches]), _usual([one.moves for one in stretches])
     for one in stretches:
-        if one.lasts < SHORT * least[0] and one.moves < SHORT * least[1]:
+        if one.lasts < SHORT_PLATEAU * least[0] and one.moves < SHORT_PLATEAU * least[1]:
             moved += one.moves
             continue
         inside = slice(*np.searchsorted(clock, [first, one.end]).tolist())
@@ -126,7 +126,7 @@ def _stretches(loading: LoadingHistory | float, duration: float) -> list[_Stretc
     found = list[_Stretch]()
     for one, end in zip(segments, ends, strict=True):
         last = one.at(end)
-        steady = abs(last - one.value) <= SAME * max(abs(last), abs(one.value)) and not loading.tone.amplitude
+        steady = abs(last - one.value) <= ONE_PLATEAU * max(abs(last), abs(one.value)) and not loading.tone.amplitude
         found.append(_Stretch(one.start, end, 0.5 * (one.value + last), steady))
     return found
 
@@ -136,7 +136,7 @@ def _joined(stretches: Sequence[_Stretch]) -> list[_Stretch]:
     found = list[_Stretch]()
     for one in stretches:
         before = found[-1] if found else None
-        alike = before is not None and abs(one.rate - before.rate) <= SAME * max(abs(one.rate), abs(before.rate))
+        alike = before is not None and abs(one.rate - before.rate) <= ONE_PLATEAU * max(abs(one.rate), abs(before.rate))
         if before is not None and alike and one.steady and before.steady:
             mean = (before.rate * before.lasts + one.rate * one.lasts) / (one.end - before.begin)
             found[-1] = _Stretch(before.begin, one.end, mean, steady=True)
@@ -190,12 +190,12 @@ def drift_of(parts: Sequence[Sequence[RatePlateau]], with_slip: bool | None = No
     with_slip = gain > -1.0 if with_slip is None else with_slip  # if they are alike, it is what rigs have more often
     slope, error, _ = by_slip if with_slip else by_time
     way = 1.0 if with_slip else plateaus[0].way  # both friction and slip are negative where the load point moves back
-    return PlateauDrift(way * slope, error, with_slip, abs(gain) > APART, level.shape[1], len(plateaus))
+    return PlateauDrift(way * slope, error, with_slip, abs(gain) > APART_DRIFTS, level.shape[1], len(plateaus))
 
 
 def _pieces(one: RatePlateau) -> Iterator[tuple[float, float, float, float]]:
     """Yield rate, displacement, time and friction of means over pieces of the settled end of a plateau."""
-    first = len(one.time) - math.ceil(SETTLED * len(one.time))
+    first = len(one.time) - math.ceil(LAST_SHARE * len(one.time))
     if len(one.time) - first < MEANS:
         return
     slip, time, samples = one.slip[first:], one.time[first:], one.samples[first:]
@@ -204,9 +204,9 @@ def _pieces(one: RatePlateau) -> Iterator[tuple[float, float, float, float]]:
 
 
 def _groups(rates: Floats) -> Floats:
-    """Return the number of the group of each rate: rates that differ by less than `SAME` are one."""
+    """Return the number of the group of each rate: rates that differ by less than `ONE_PLATEAU` are one."""
     order = np.argsort(rates)
-    apart = np.append(0, np.cumsum(np.diff(np.log(rates[order])) > SAME))
+    apart = np.append(0, np.cumsum(np.diff(np.log(rates[order])) > ONE_PLATEAU))
     found = np.empty(len(rates))
     found[order] = apart
     return found

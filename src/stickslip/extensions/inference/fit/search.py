@@ -22,7 +22,7 @@ COMPETES = 20.0
 """Another minimum competes with the best one if twice the log-likelihoods differ by less than this."""
 SCREENED = 12
 """Number of draws for each start that is kept."""
-FIRST = 8
+STEPS_BEFORE_COMPARISON = 8
 """Starts are compared again after this many steps of least squares."""
 FOLLOWED, HOPELESS = 3, 30.0
 """At most this many starts are followed to their end, those with a sum of squares below this multiple of the least."""
@@ -121,12 +121,12 @@ def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Te
     minima = []
     for i, (_, x) in enumerate(chosen):
         tell(f"search {i + 1} of {len(chosen)}")
-        minima.append(_followed(model, x, loss, best, FIRST))
+        minima.append(_followed(model, x, loss, best, STEPS_BEFORE_COMPARISON))
     minima.sort(key=lambda one: one[0])
     if starts > 1 and is_far(model, minima[0][0]) and (why := told_by(model, minima[0][1])):
         tell(f"no run can follow the record, of which {why} is left: the search ends soon")
     elif starts > 1 and is_far(model, minima[0][0]):
-        minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, FIRST))
+        minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, STEPS_BEFORE_COMPARISON))
         minima.sort(key=lambda one: one[0])
     followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
     ends = []

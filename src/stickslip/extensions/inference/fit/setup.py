@@ -12,16 +12,16 @@ import numpy as np
 from stickslip.extensions.inference.fit.asides import rounded, with_asides
 from stickslip.extensions.inference.fit.asked import FITTED_KINDS
 from stickslip.extensions.inference.fit.at_drive import is_level_at_first
-from stickslip.extensions.inference.fit.free import DELAY, DRIFT, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
+from stickslip.extensions.inference.fit.free import DELAY, DRIFT, INITIAL_STATE, LOAD, SERVO, TREND, Free, Prior, known_numbers
 from stickslip.extensions.inference.fit.model import Model
-from stickslip.extensions.inference.fit.part import Part
+from stickslip.extensions.inference.fit.part import SAMPLES_OF_PART, Part
 from stickslip.extensions.inference.record.features import arrests_in
 from stickslip.extensions.inference.record.loading import loading_of, normal_of
 from stickslip.extensions.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, SHEAR_IN, Record, is_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.headings import COLUMNS
-from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
+from stickslip.foundation.headings import KNOWN_COLUMNS
+from stickslip.foundation.names import KINDS_OF_BODY, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
 from stickslip.problem import PiecewiseLinear, Problem, features
@@ -34,8 +34,6 @@ SENSORS = ("contact", "spring", "drive")
 """Where shear is measured: at the contact, behind the spring of a block, or at the driver, as the torque of a top drive."""
 UNEVEN = 0.03
 """A measured normal load that changes by more than this share (1) is told if the run takes it as constant."""
-LEAST = 8
-"""Smallest number of samples of a part."""
 LATER = 0.05
 """Share of the samples after a slip event that still belong to the part before it: noise decides which sample is the lowest."""
 
@@ -91,7 +89,7 @@ def _pressing(problem: Problem, record: Record) -> tuple[PiecewiseLinear, tuple[
     found, told = normal_of(record)
     if record.normal_name == "weight_on_bit" and (radius := getattr(problem.body, "bit_radius", None)) is not None:
         return PiecewiseLinear(found.times, [radius * weight for weight in found.values]), told
-    if COLUMNS[record.normal_name].unit != problem.load_unit:
+    if KNOWN_COLUMNS[record.normal_name].unit != problem.load_unit:
         wanted = f"{problem.body.normal_field} in {problem.load_unit}"
         raise InputError(
             f"{record.name}: normal='record' needs a column {wanted}, got {record.normal_name}: use the contact's area"
@@ -113,7 +111,7 @@ def _check_force(record: Record, name: str, problem: Problem) -> None:
     """Raise InputError if the shear force or torque is implausible as friction under the normal load of the problem."""
     size, unit = float(np.nanmedian(np.abs(record.measured[name]))) / problem.normal, problem.load_unit
     if not LOWEST < size < HIGHEST:
-        normal = f"{KINDS[unit].normal.replace('_', ' ')} of {brief(problem.normal, unit, 3)}"
+        normal = f"{KINDS_OF_BODY[unit].normal.replace('_', ' ')} of {brief(problem.normal, unit, 3)}"
         raise InputError(
             f"{record.name}: {name} is {size:.3g} times the problem's {normal}, in the median: "
             f"is its unit in the heading, as {name} (k{unit})?"
@@ -136,7 +134,7 @@ def _observed(record: Record, observe: Any, problem: Problem, sensor: str) -> tu
         if not is_of(name, problem):
             unit, given = problem.load_unit, QUANTITIES[name].unit
             loads = f"the loads of a {problem.body.noun} are in {unit}, and {name} in {given}"
-            cure = f"give {KINDS[given].normal} beside it, so that it becomes friction, or {SHEAR_IN[unit]}"
+            cure = f"give {KINDS_OF_BODY[given].normal} beside it, so that it becomes friction, or {SHEAR_IN[unit]}"
             raise InputError(f"{record.name}: {loads}: {cure}")
         if name in SHEAR and QUANTITIES[name].unit in ("N", TURNS):
             _check_force(record, name, problem)
@@ -155,7 +153,7 @@ def hints_of(problem: Problem, part: Part) -> dict[str, float]:
     law, rate = begun.friction, begun.first_pull_rate
     if law.states:
         given = begun.given_states or np.ravel(_steady_state(law, rate)).tolist()
-        found |= {STATE: float(given[0])} if given else {}
+        found |= {INITIAL_STATE: float(given[0])} if given else {}
     return found
 
 
@@ -190,7 +188,7 @@ def at_rests(part: Part) -> list[Part]:
         raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
     later = (LATER * np.diff(np.append(arrests, len(record)))).astype(int)
     ends = [0, *(arrests + 1 + later).tolist(), len(record)]
-    cuts = [(first, last) for first, last in pairwise(ends) if last - first >= LEAST]
+    cuts = [(first, last) for first, last in pairwise(ends) if last - first >= SAMPLES_OF_PART]
     found = []
     for first, last in cuts:
         piece = record.part(float(record.time[first]), float(record.time[last - 1]))
@@ -219,14 +217,16 @@ def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None
     names = (
         list(wanted)
         if wanted is not None
-        else [LOAD, *([STATE] if problem.friction.states and not problem.friction.sticks else [])]
+        else [LOAD, *([INITIAL_STATE] if problem.friction.states and not problem.friction.sticks else [])]
     )
     found = []
     for i, part in enumerate(parts):
         declared = known_numbers(problem, hints_of(problem, part))
         for name in names:
-            if name not in (LOAD, STATE) or name not in declared:
-                raise InputError(f"infer: each: {ascii(name)[:40]} cannot differ from part to part; allowed: {LOAD}, {STATE}")
+            if name not in (LOAD, INITIAL_STATE) or name not in declared:
+                raise InputError(
+                    f"infer: each: {ascii(name)[:40]} cannot differ from part to part; allowed: {LOAD}, {INITIAL_STATE}"
+                )
             quantity, value = declared[name]
             if name == LOAD:
                 load, error = part.first_load(part.pressed(problem).normal)
@@ -234,7 +234,7 @@ def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None
                 wide = 50.0 * error
                 found.append(Free(LOAD, quantity, load, load - wide, load + wide, False, Prior("normal", load, error), i, error))
             elif np.isfinite(value) and value > 0.0:
-                found.append(Free(STATE, quantity, value, value / 1e12, value * 1e12, True, None, i))
+                found.append(Free(INITIAL_STATE, quantity, value, value / 1e12, value * 1e12, True, None, i))
             else:
                 raise InputError(
                     "infer: parts='rests': the problem needs an initial_state, where the search for that of each part begins"

@@ -21,7 +21,7 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.show import brief
 from stickslip.problem import LoadingHistory, Problem
 
-FALLING = 0.2
+FALLS_IN_EVENTS = 0.2
 """Shear falls in slip events if it falls during less than this share of the time."""
 
 
@@ -98,7 +98,7 @@ def has_events(friction: Floats) -> bool:
     known = friction[np.isfinite(friction)]
     bottoms = [0, *arrests_in(known).tolist()]
     falling = sum(last - first - int(np.argmax(np.abs(known[first : last + 1]))) for first, last in pairwise(bottoms))
-    return bool(0 < falling < FALLING * bottoms[-1])
+    return bool(0 < falling < FALLS_IN_EVENTS * bottoms[-1])
 
 
 def shown_drift(problem: Problem, parts: Sequence[Part], *, with_slip: bool | None = None) -> PlateauDrift | None:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.inference.fit.memory import (
-    LONGEST,
+    LONGEST_MEMORY,
     Memory,
     ResidualBlock,
     independent,
@@ -31,14 +31,14 @@ from stickslip.foundation.show import brief
 
 CHANCE = 1e-5
 """Largest probability that noise alone looks like this, for each kind of look."""
-LEAST = 0.08
+SHARE_TOLD = 0.08
 """A look is told if it makes up at least this share of the sum of squares that is left."""
 LARGE, FORGETS, PLAIN = 3.0, 0.9, 0.3
 """Residuals are no noise if they exceed LARGE times the noise of neighbouring samples and remember themselves for more than FORGETS
 of the longest time that is considered: looks with a share above PLAIN are then told without asking for chance."""
-MOST = 3
+LOOKS_TOLD = 3
 """Largest number of looks that are told."""
-BESIDE = 2
+SAMPLES_BESIDE_CHANGE = 2
 """Samples on each side of a change of the pull rate that are unsure if the samples do not resolve the change."""
 AFTER = 0.25
 """What follows a change is told of this share of the time to the next one."""
@@ -46,7 +46,7 @@ LARGER = 2.0
 """Residuals near changes must be so many times larger than elsewhere, in the root of the mean square, to be told."""
 ALIKE = 0.7
 """The more special of two looks is told if it explains at least this share of what the other one does."""
-APART = 10.0
+APART_DRIFTS_TOLD = 10.0
 """A drift is told to be with slip, or with time, if twice the log-likelihoods differ by this much: a chance of one in 150."""
 PERIODS, FEWEST = 3.0, 32
 """An oscillation has at least so many periods in a record, and a record that is looked at at least so many samples."""
@@ -116,7 +116,7 @@ def what_is_left(found: Residuals) -> list[ResidualLook]:
     total, looks = float(found.values @ found.values), list[ResidualLook]()
     bare = found.without(np.zeros((len(found.values), 0)))
     least = PLAIN if len(bare.values) >= FEWEST and _is_no_noise(bare) else math.inf
-    while len(looks) < MOST and len(bare.values) >= FEWEST and total > 0.0:
+    while len(looks) < LOOKS_TOLD and len(bare.values) >= FEWEST and total > 0.0:
         look, rest = _next(bare, total, {one.kind.partition(" ")[0] for one in looks}, least)
         if look is None or rest is None:
             break
@@ -126,7 +126,7 @@ def what_is_left(found: Residuals) -> list[ResidualLook]:
 
 
 def _is_no_noise(found: Residuals) -> bool:
-    longest = LONGEST * max(float(np.ptp(time)) for _, time in found.blocks)
+    longest = LONGEST_MEMORY * max(float(np.ptp(time)) for _, time in found.blocks)
     size, noise = math.sqrt(float(np.mean(found.values**2))), max(noise_of(found.values[rows]) for rows, _ in found.blocks)
     return size > LARGE * noise and _memory(found).time > FORGETS * longest
 
@@ -141,7 +141,7 @@ class _Try(NamedTuple):
 
 def _next(found: Residuals, total: float, known: set[str], least: float) -> tuple[ResidualLook | None, Residuals | None]:
     """Return the look that explains most of what is left, if it is no chance or above `least`, and the residuals without it."""
-    tries = [one for one in _tries(found, total) if one.look.kind.partition(" ")[0] not in known and one.look.share >= LEAST]
+    tries = [one for one in _tries(found, total) if one.look.kind.partition(" ")[0] not in known and one.look.share >= SHARE_TOLD]
     tries.sort(key=lambda one: -one.look.share)
     special = [one for one in tries if one.look.kind == "steps" and one.look.share > ALIKE * tries[0].look.share]
     plain = [one for one in tries if one.look.kind not in ("steps", "transients") and one.look.share > ALIKE * tries[0].look.share]
@@ -175,10 +175,10 @@ def _drift(found: Residuals, total: float, time: Floats) -> _Try:
     kept = {name: found.without(one) for name, one in ways.items()}
     left = {name: max(float(one.values @ one.values), 1e-300) for name, one in kept.items()}
     kind = min(left, key=lambda name: left[name])
-    if float(found.values @ found.values) - left[kind] < LEAST * total:
+    if float(found.values @ found.values) - left[kind] < SHARE_TOLD * total:
         return _regressed(found, total, kind, ways[kind], lambda c: float(c[0]))  # too small to be told
     gain = _count(found, _memory(kept[kind])) * math.log(max(left.values()) / left[kind])
-    if gain >= APART:
+    if gain >= APART_DRIFTS_TOLD:
         return _regressed(found, total, kind, ways[kind], lambda c: float(c[0]), tried=2)
     per_second = _regressed(found, total, "drift", ways["drift with time"], lambda c: float(c[0])).look.size
     return _regressed(found, total, "drift", ways[kind], lambda _: per_second, tried=2)
@@ -263,7 +263,7 @@ def near_changes(time: Floats, changes: Floats) -> tuple[NDArray[np.bool_], NDAr
     near, after = np.zeros(len(time), bool), np.zeros(len(time), bool)
     for at, end in pairwise([*changes.tolist(), float(time[-1])]):
         k = int(np.searchsorted(time, at))
-        near[max(k - 1, 0) : k + BESIDE] = True
+        near[max(k - 1, 0) : k + SAMPLES_BESIDE_CHANGE] = True
         after |= (time >= at) & (time <= at + AFTER * (end - at))
     return near, after
 

@@ -11,25 +11,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.extensions.inference.points.fit_search import WHOLE, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
+from stickslip.extensions.inference.points.fit_search import EXPONENTS, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import in_units
-from stickslip.foundation.show import html_table, text_table, with_uncertainty
+from stickslip.foundation.show import ShownAsTable, with_uncertainty
 from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw
 
-EXACT = 1e-9
+EXACT_POINTS = 1e-9
 """With a residual below this (no unit), points lie on a law up to the errors of calculation."""
 AT_LIMIT = 1e-9
 """A parameter is at its limit if it is closer than this share of the change that the points would notice."""
 
 
-@dataclass(frozen=True, eq=False)
-class Fit(NamesAttributes):
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(NamesAttributes, ShownAsTable):
     """The result of `fit`: the law that fits best, and how well the points determine it.
 
     `points` have the variables of the law, and `residual` is their standard deviation about the law (no unit), corrected for the
@@ -78,11 +78,14 @@ class Fit(NamesAttributes):
             found.append((name, with_uncertainty(value, sizes.get(name)), f"{unit} {how}".strip()))
         return [*found, ("residual", f"{self.residual:.3g}", "standard deviation of the points about the law")]
 
-    def __repr__(self) -> str:
-        return text_table(self.title, self.rows, self.notes)
+    @property
+    def _caption(self) -> str:
+        """The title."""
+        return self.title
 
-    def _repr_html_(self) -> str:
-        return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
+    def _lines(self) -> list[tuple[str, ...]]:
+        """Return rows and notes."""
+        return [*self.rows, *(("note", note) for note in self.notes)]
 
 
 @for_users
@@ -123,7 +126,7 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     if len(chosen) <= len(free) + len(whole):
         raise InputError(f"fit: {len(chosen)} points cannot determine {len(free) + len(whole)} parameters of {wanted.kind}")
     found = []
-    for exponents in product(*([begun[name]] if name in begun else WHOLE for name in whole)):
+    for exponents in product(*([begun[name]] if name in begun else EXPONENTS for name in whole)):
         tried = held | dict(zip(whole, exponents, strict=True))
         total, values = search(rebuilt(wanted, tried, checked=False), free, chosen, begun)
         found.append((total, tried | values))
@@ -183,10 +186,12 @@ def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: f
     notes = [f"{name} is at its limit, {values[name]:g}: no other value that is allowed fits better" for name in limits]
     notes += undetermined(values, uncertainty, correlation, open_sets)
     order = np.lexsort(variables)
-    if math.sqrt(total / n) > EXACT and misses_trend((made.coefficient(*variables) - points.friction)[order]):
+    if math.sqrt(total / n) > EXACT_POINTS and misses_trend((made.coefficient(*variables) - points.friction)[order]):
         notes.append("the law misses a trend of the points: the uncertainties are too small, see a figure of the fit")
-    bic = n * math.log(max(total / n, EXACT**2)) + (len(inner) + len(whole) + 1) * math.log(n)
-    how = {name: "fixed" for name in values if name not in free} | dict.fromkeys(whole, f"tried {WHOLE[0]:g} to {WHOLE[-1]:g}")
+    bic = n * math.log(max(total / n, EXACT_POINTS**2)) + (len(inner) + len(whole) + 1) * math.log(n)
+    how = {name: "fixed" for name in values if name not in free} | dict.fromkeys(
+        whole, f"tried {EXPONENTS[0]:g} to {EXPONENTS[-1]:g}"
+    )
     how |= dict.fromkeys(limits, "at its limit") | {name: "not determined" for part in open_sets for name in part}
     return Fit(made, points, math.sqrt(variance), values, uncertainty, correlation, bic, notes, covariance, how)
 

@@ -162,9 +162,9 @@ FARTHEST = 1e6
 """A slip or a slip rate of the law may be beyond all starts by this factor; farther out it has no effect on the points."""
 FOLLOWED = 4
 """The search is carried to its end from this many of the best starts."""
-FEW = 2000
+POINTS_OF_STARTS = 2000
 """Starts are compared on this many points."""
-WHOLE = (1.0, 2.0, 3.0, 4.0)
+EXPONENTS = (1.0, 2.0, 3.0, 4.0)
 """Exponents to try."""
 
 
@@ -213,7 +213,7 @@ def search(law: FrictionLaw, free: list[str], points: Points, start: Mapping[str
     `start` has the starting values of some free parameters for all searches; those of the others follow from the points.
     Raises InputError if the law is not finite at any start.
     """
-    every = slice(None, None, -(-len(points) // FEW))
+    every = slice(None, None, -(-len(points) // POINTS_OF_STARTS))
     slip, rate = (None if one is None else one[every] for one in (points.slip, points.slip_rate))
     thin = _Model(law, free, Points(points.friction[every], slip, rate, points.name, points.slips_in))
     model = _Model(law, free, points)

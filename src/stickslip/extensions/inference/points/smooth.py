@@ -12,17 +12,17 @@ from stickslip.extensions.inference.points.penalised_spline import PenalisedSpli
 from stickslip.foundation.arguments import NamesAttributes, for_users, is_number, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, gathered, nearest
-from stickslip.foundation.show import html_table, text_table
+from stickslip.foundation.show import ShownAsTable
 from stickslip.friction.custom.points import FromTable, Points
-from stickslip.friction.piecewise import SMALLEST, reversals
+from stickslip.friction.piecewise import IGNORED_NOISE, reversals
 
 SCALES = ("auto", "linear", "log")
 """Scales of slip or slip rate for smoothing."""
-LARGEST = 1e6
+LARGEST_STRENGTH = 1e6
 """Largest strength: it makes a straight line of any points."""
-CLOSE = 0.3
+CLOSE_CURVE = 0.3
 """A curve follows almost every point if its degrees of freedom exceed this share of the number of points."""
-DIGITS = 12
+DECIMALS_OF_LAW = 12
 """Number of decimals of the law, so that rounding makes no reversals."""
 FINEST = 1025
 """The law follows the smooth curve with at most this many points."""
@@ -32,8 +32,8 @@ FOLLOWS = 0.01
 """Largest distance between the law and the smooth curve, as a share of the residual."""
 
 
-@dataclass(frozen=True, eq=False)
-class Smooth(NamesAttributes):
+@dataclass(frozen=True, eq=False, repr=False)
+class Smooth(NamesAttributes, ShownAsTable):
     """The result of `smooth`: a law through the smooth curve, constant outside the range of the points, and what was smoothed away.
 
     `residual` is the standard deviation of the points about the curve (no unit), with the degrees of freedom taken into account;
@@ -75,15 +75,18 @@ class Smooth(NamesAttributes):
     def notes(self) -> list[str]:
         """Sentences on the limits of the result."""
         found = ["a reversal that survives depends on the strength: try a stronger and a weaker one"] if self.reversals[1] else []
-        if self.freedom > CLOSE * len(self.points) and self.residual > SMALLEST:
+        if self.freedom > CLOSE_CURVE * len(self.points) and self.residual > IGNORED_NOISE:
             found.append("the curve follows almost every point: the noise of neighbouring points may not be independent")
         return found
 
-    def __repr__(self) -> str:
-        return text_table(self.title, self.rows, self.notes)
+    @property
+    def _caption(self) -> str:
+        """The title."""
+        return self.title
 
-    def _repr_html_(self) -> str:
-        return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
+    def _lines(self) -> list[tuple[str, ...]]:
+        """Return rows and notes."""
+        return [*self.rows, *(("note", note) for note in self.notes)]
 
 
 @dataclass(frozen=True)
@@ -161,7 +164,7 @@ def smooth(
         tried.append((axis, spline, spline.cross_validated() if given is None else given))
     axis, spline, chosen = min(tried, key=lambda one: one[1].score(one[2]))
     x, fine = axis.forward(read.places), np.linspace(0.0, 1.0, FINE)
-    curve = np.maximum(spline.curve(chosen)(fine), 0.0).round(DIGITS)
+    curve = np.maximum(spline.curve(chosen)(fine), 0.0).round(DECIMALS_OF_LAW)
     if monotone:
         from scipy.optimize import isotonic_regression
 
@@ -179,7 +182,7 @@ def _checked(strength: Any) -> float | None:
     """Return a given strength as a number, or None for "auto". Raises InputError."""
     if isinstance(strength, str) and strength == "auto":
         return None
-    if not is_number(strength) or not 0.0 < float(strength) <= LARGEST:
+    if not is_number(strength) or not 0.0 < float(strength) <= LARGEST_STRENGTH:
         raise InputError(f"smooth: strength must be 'auto' or a number above 0, up to 1e6, got {shown(strength)}")
     return float(strength)
 

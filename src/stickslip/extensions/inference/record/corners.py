@@ -10,15 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.extensions.inference.record.loading import ROUNDING
+from stickslip.extensions.inference.record.loading import NOISE_OF_BEST_SENSOR
 from stickslip.extensions.inference.record.noise import noise_of, rounding_of
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import LoadingHistory, PiecewiseLinear, Steps
 
-SHORT = 8
+SHORT_CORNER = 8
 """A part of a load point with at most this many samples belongs to the change of rate between the parts beside it."""
-SHARE = 0.1
+SHARE_OF_NEIGHBOURS = 0.1
 """So does a longer one of at most this share of the parts beside it."""
 NEARLY = 0.25
 """A part counts as shorter by this factor if its rate is nearly that of a part beside it."""
@@ -34,12 +34,12 @@ TRIED = 100
 """Number of times of a servo that are tried before the best of them is improved."""
 FITS = 1.5
 """A servo is taken if it follows the load point to within this many standard deviations of its noise, on average."""
-WIDE = 8.0
+SAMPLES_COMPARED = 8.0
 """A change is compared with the load point over this many samples on both sides, and over more if the servo takes longer."""
 SHARP = 0.25
 """A corner is sharp if a servo of more than this share of the time between samples would be seen."""
 STEEP = 0.5
-"""A normal load jumps if it changes by more than this share of its range, or of SHARE of itself, between two samples."""
+"""A normal load jumps if it changes between two samples by this share of its range, or by SHARE_OF_NEIGHBOURS of itself."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class _Change(NamedTuple):
 
 def corners_of(record: Record, rate: LoadingHistory | float) -> Corners | None:
     """Return the corners of a load point whose rate follows a record; None without any, or if a servo does not round them."""
-    if not isinstance(rate, Steps) or len(record) < 4 * SHORT:
+    if not isinstance(rate, Steps) or len(record) < 4 * SHORT_CORNER:
         return None
     steps = _collapsed(rate, record.clock)
     if len(steps) == 0 or not any(_is_clear(one, steps) for one in steps):
@@ -114,14 +114,14 @@ def _plateaus(count: NDArray[np.intp], lasts: Floats, values: Floats) -> list[in
     nearly the same rate is on no way from one rate to another: it is a step there and back, however short it is beside them.
     """
     least = CLEAR * float(np.max(np.abs(values)))
-    kept = [i for i in range(len(lasts)) if count[i] > SHORT or i in (0, len(lasts) - 1)]
+    kept = [i for i in range(len(lasts)) if count[i] > SHORT_CORNER or i in (0, len(lasts) - 1)]
     while len(kept) > 2:
         beside = [max(lasts[i], lasts[j]) for i, j in zip(kept[:-2], kept[2:], strict=True)]
         change = np.abs(np.diff(values[kept]))
         share = lasts[kept[1:-1]] / beside * np.where(np.minimum(change[1:], change[:-1]) > least, 1.0, NEARLY)
         there_and_back = np.abs(values[kept[2:]] - values[kept[:-2]]) <= least
         share[there_and_back & (np.minimum(change[1:], change[:-1]) > least)] = np.inf
-        if share.min() > SHARE:
+        if share.min() > SHARE_OF_NEIGHBOURS:
             break
         del kept[1 + int(np.argmin(share))]
     return kept
@@ -143,11 +143,11 @@ def _rounded(record: Record, sharp: Steps, changes: list[_Change], spacing: floa
     assert record.load_point is not None
     known = np.isfinite(record.load_point)
     time, moved = record.clock[known], record.load_point[known]
-    noise = max(noise_of(moved), rounding_of(moved), ROUNDING * float(np.ptp(moved)))
+    noise = max(noise_of(moved), rounding_of(moved), NOISE_OF_BEST_SENSOR * float(np.ptp(moved)))
     rest, edges = moved - _displacement(sharp, time), [0.0, *(one.at for one in changes), float(time[-1])]
     rooms = [0.4 * min(one.at - a, b - one.at) for one, a, b in zip(changes, edges[:-2], edges[2:], strict=True)]
     chosen = [(one, room) for one, room in zip(changes, rooms, strict=True) if _is_clear(one, changes)]
-    reach, widest = WIDE * spacing, max(room for _, room in chosen)
+    reach, widest = SAMPLES_COMPARED * spacing, max(room for _, room in chosen)
     while True:
         near = [_Near.of(one, min(reach, room), time, rest) for one, room in chosen]
         fit = _best_servo([one for one in near if len(one.since)], noise, 0.25 * reach, spacing)
@@ -239,5 +239,5 @@ def jumps_of(normal: PiecewiseLinear, clock: Floats) -> tuple[int, ...]:
     change, lasts = np.abs(np.diff(values)), np.diff(times)
     k = np.clip(np.searchsorted(clock, times[:-1], side="right"), 1, len(clock) - 1)
     spacing = clock[k] - clock[k - 1]
-    high = change > np.minimum(STEEP * max(float(np.ptp(values)), 1e-300), SHARE * np.abs(values[:-1]))
+    high = change > np.minimum(STEEP * max(float(np.ptp(values)), 1e-300), SHARE_OF_NEIGHBOURS * np.abs(values[:-1]))
     return tuple(np.flatnonzero(high & (lasts < 1.5 * spacing)).tolist())

@@ -20,7 +20,7 @@ FALLING = 0.7
 """A load point is taken for slip if shear drops in more than this share of its fast samples."""
 CONTRARY = {"slip": 3.0, "slip_rate": 10.0}
 """Slip and load point contradict each other if they differ by more than this factor; a rate may miss motion between samples."""
-FEWEST = 30
+SAMPLES_OF_MOTION = 30
 """Motions are compared only in records with at least this many samples."""
 LATEST = 0.1
 """Motions are compared only after this first share of the record."""
@@ -88,7 +88,7 @@ def _check_load_point(record: Record) -> None:
         return
     if "slip" in record.measured and np.array_equal(moved, record.measured["slip"], equal_nan=True):
         raise InputError(f"{record.name}: load_point and slip are the same numbers: leave the column out that is wrong")
-    if shear is None or len(record) < FEWEST:
+    if shear is None or len(record) < SAMPLES_OF_MOTION:
         return
     change, step = np.diff(record.measured[shear]), np.diff(moved)
     known = np.isfinite(change) & np.isfinite(step)
@@ -115,7 +115,7 @@ def _contradictions(record: Record) -> Iterator[str]:
     if driven is None and len(moved) == 2:  # slip and its rate can still be compared
         yield from _contrary(record, {"slip_rate": moved["slip_rate"]}, moved["slip"], ("slip", -1, -1))
     shear = record.measured.get(record.shear or "")
-    if driven is None or shear is None or not moved or len(record) < FEWEST:
+    if driven is None or shear is None or not moved or len(record) < SAMPLES_OF_MOTION:
         return
     known = np.flatnonzero(np.isfinite(shear))
     if not len(known):

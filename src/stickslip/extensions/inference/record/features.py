@@ -17,21 +17,21 @@ from numpy.typing import NDArray
 from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
 
-LEVELS = ("peak", "rest", "drop")
+LEVELS_OF_SHEAR = ("peak", "rest", "drop")
 """Features of shear, appended to its name as in "friction_peak": shear before the fall, after it, and the difference."""
 FEATURES = ("recurrence", "duration", "event_slip", "peak_rate")
 """Other features of events."""
 DROP, OF_RANGE, ABOVE_NOISE = 0.25, 0.25, 8.0
 """Least fall of shear in a slip event: as a share of the usual fall, of the range of shear, and in standard deviations of noise."""
-BESIDE = 0.15
+BESIDE_EVENT = 0.15
 """Length of the straight lines before and after an event, as a share of the time to the event on that side."""
 BEGUN, ENDED = 0.1, 0.9
 """A first estimate of a fall extends between these shares of the drop."""
 SMOOTHED = 0.2
 """The peak slip rate is the largest mean over this share of the duration of the fall."""
-SMALLEST = 1e-3
+SMALLEST_DROP = 1e-3
 """Smallest drop of a record without noise, as a share of its range."""
-GRID = 64
+NUMBER_OF_MEANS = 64
 """Number of such means."""
 
 Between = Callable[[float, float], "Samples"]
@@ -115,7 +115,7 @@ def _measured(fall: Fall, between: Between, shear: str) -> dict[str, float] | No
     times this duration.
     """
     begin, end = fall.at - fall.lasts, fall.at + 2.0 * fall.lasts
-    before, after = (begin - BESIDE * (fall.at - fall.after), begin), (end, end + BESIDE * (fall.before - fall.at))
+    before, after = (begin - BESIDE_EVENT * (fall.at - fall.after), begin), (end, end + BESIDE_EVENT * (fall.before - fall.at))
     if before[0] < fall.after or after[1] > fall.before or fall.lasts <= 0.0:
         return None
     beside = [between(*window) for window in (before, after)]
@@ -172,7 +172,7 @@ def _peak(samples: Samples, over: float) -> float:
     if len(time) < 3 or not over > 0.0:
         return math.nan
     slipped = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time)))
-    middle = np.linspace(time[0] + 0.5 * over, time[-1] - 0.5 * over, GRID)
+    middle = np.linspace(time[0] + 0.5 * over, time[-1] - 0.5 * over, NUMBER_OF_MEANS)
     return float(np.max(np.interp(middle + 0.5 * over, time, slipped) - np.interp(middle - 0.5 * over, time, slipped)) / over)
 
 
@@ -187,7 +187,7 @@ def arrests_in(values: Floats) -> NDArray[np.intp]:
         return np.zeros(0, np.intp)
     shear = _without_lone(direction_of(values) * values[known])
     noise = ABOVE_NOISE * noise_of(shear)
-    heights = np.array([height for _, height in _drops(shear, max(noise, SMALLEST * float(np.ptp(shear))))])
+    heights = np.array([height for _, height in _drops(shear, max(noise, SMALLEST_DROP * float(np.ptp(shear))))])
     if not len(heights):
         return np.zeros(0, np.intp)
     sizes = np.sort(heights)[::-1]

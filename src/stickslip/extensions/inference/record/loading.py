@@ -12,7 +12,7 @@ from stickslip.extensions.inference.record.noise import GAUSSIAN, noise_of, roun
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import COLUMNS
+from stickslip.foundation.headings import KNOWN_COLUMNS
 from stickslip.foundation.show import brief
 from stickslip.problem import LoadingHistory, PiecewiseLinear, Steps
 
@@ -20,7 +20,7 @@ MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""
 SURE = 5.0
 """The mean of some samples may differ from a straight part by this many standard deviations."""
-ROUNDING = 1e-7
+NOISE_OF_BEST_SENSOR = 1e-7
 """Smallest noise, as a share of the range of the displacement: no sensor and no clock is better."""
 BLOCKS = 16
 """The noise of means over some width is measured if there are at least this many; beyond that it falls as that of white noise."""
@@ -60,7 +60,7 @@ def loading_of(record: Record) -> Loading | None:
             f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out"
         )
     least = max(float(np.max(np.abs(values - values[0]))), 1e-3 * float(np.max(np.abs(values))))
-    floor = max(rounding_of(values), ROUNDING * least, 1e-300)
+    floor = max(rounding_of(values), NOISE_OF_BEST_SENSOR * least, 1e-300)
     allowed = _allowed(time, values, max(noise_of(values), floor), floor)
     noise = float(allowed[0]) / SURE
     cuts, coarser = straight_parts(time, values, allowed, 0 if is_rate else 1)
@@ -96,14 +96,14 @@ def normal_of(record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:
         raise InputError(f"{record.name}: normal='record' needs a column normal_stress or normal_force")
     known = np.isfinite(record.normal)
     time, values = record.clock[known], record.normal[known]
-    unit = COLUMNS[record.normal_name].unit
+    unit = KNOWN_COLUMNS[record.normal_name].unit
     if len(time) < 2:
         raise InputError(f"{record.name}: {record.normal_name} has fewer than two numbers: leave normal='record' out")
     if not (values > 0.0).all():
         lowest = int(np.argmin(values))
         least = f"{brief(float(values[lowest]), unit)} at {record.time[known][lowest]:.6g} s"
         raise InputError(f"{record.name}: {record.normal_name} must stay above 0 {unit}, got {least}: the contact would be open")
-    floor = max(rounding_of(values), ROUNDING * float(np.ptp(values)), ROUNDING * float(values.max()))
+    floor = max(rounding_of(values), NOISE_OF_BEST_SENSOR * float(np.ptp(values)), NOISE_OF_BEST_SENSOR * float(values.max()))
     allowed = _allowed(time, values, max(noise_of(values), floor), floor)
     noise = float(allowed[0]) / SURE
     cuts, coarser = straight_parts(time, values, allowed)

@@ -85,7 +85,7 @@ FEW, DIGITS_OF_NOISE = 3, 10.0
 """In noise above DIGITS_OF_NOISE steps of the digitiser, a run of FEW equal samples is unlikely enough."""
 LEAST_NOISE = 1e-4
 """The noise must also be above this share of the range: a record without noise may rest at one value."""
-BEYOND = 10.0
+FACTOR_OF_SPIKE = 10.0
 """A spike is larger than nine of ten samples by this factor: a disturbance, or a mark of a missing number such as -999."""
 MOMENT = 3
 """Largest number of consecutive samples in a spike."""
@@ -116,7 +116,7 @@ def spikes(values: Floats) -> NDArray[np.bool_]:
     """Return True for samples far beyond the rest that stand alone, or with one or two neighbours."""
     sizes = np.abs(values)
     usual = float(np.nanquantile(sizes, 0.9))
-    far = sizes > BEYOND * usual if usual > 0.0 else np.zeros(len(values), bool)
+    far = sizes > FACTOR_OF_SPIKE * usual if usual > 0.0 else np.zeros(len(values), bool)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], far, [False]])))
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         if end - begin > MOMENT:

@@ -31,12 +31,12 @@ NORMAL = ("normal_stress", "normal_force", "normal_torque", "weight_on_bit")
 """Columns of the normal load: they make friction of shear, and may say how the contact is pressed."""
 BY_ANGLE = {TURNED[name]: name for name in ("slip", "slip_rate", *LOADING)}
 """Columns of angles and their rates, with what they are of a contact that turns."""
-BESIDE = (*NORMAL, *reversed(BY_ANGLE), "radius")
+SERVING_COLUMNS = (*NORMAL, *reversed(BY_ANGLE), "radius")
 """Columns that serve to compute others."""
-WANTED = ("time", *LOADING, *MEASURED, *BESIDE, *(f"{name}_deviation" for name in MEASURED))
+WANTED = ("time", *LOADING, *MEASURED, *SERVING_COLUMNS, *(f"{name}_deviation" for name in MEASURED))
 """All known columns."""
 LATER = Quantity("s", "time by which the second clock begins later")
-FEW = 6
+HEADINGS_NAMED = 6
 """A message names at most this many headings."""
 
 
@@ -131,8 +131,8 @@ def _there(passed: tuple[str, ...]) -> str:
 
 
 def _listed(unknown: tuple[str, ...]) -> str:
-    more = f" and {len(unknown) - FEW} more" if len(unknown) > FEW else ""
-    return ", ".join(quoted(one) for one in unknown[:FEW]) + more
+    more = f" and {len(unknown) - HEADINGS_NAMED} more" if len(unknown) > HEADINGS_NAMED else ""
+    return ", ".join(quoted(one) for one in unknown[:HEADINGS_NAMED]) + more
 
 
 def _passed_over(read: _Columns) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.extensions.inference.record.features import FEATURES, LEVELS
+from stickslip.extensions.inference.record.features import FEATURES, LEVELS_OF_SHEAR
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -23,7 +23,7 @@ SHEAR_IN = {QUANTITIES[name].unit: name for name in SHEAR[1:4]}
 MEASURED = (*SHEAR, "slip", "slip_rate", "drive_rate")
 """All quantities that can be fitted."""
 LOADING = ("load_point", "load_rate")
-OF_EVENTS = (*(f"{name}_{level}" for name in SHEAR for level in LEVELS), *FEATURES)
+OF_EVENTS = (*(f"{name}_{level}" for name in SHEAR for level in LEVELS_OF_SHEAR), *FEATURES)
 """What may be known of each slip event."""
 HIGHEST, LOWEST = 3.0, 1e-2
 """A record with a friction coefficient above HIGHEST is refused, one below LOWEST raises a doubt."""

@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 from stickslip.extensions.inference.record.record import LOADING, MEASURED
 from stickslip.foundation.arrays import Floats
 
-FEWEST, SHARE = 6, 0.01
+FEWEST, SHARE_OF_REPEATS = 6, 0.01
 """At least so many runs of equal samples, and this share of all samples, are called repeats of a logger."""
-LEVELS = 0.02
+SHARE_OF_VALUES = 0.02
 """A quantity with fewer distinct values in turn than this share of its samples has levels, and its samples are no repeats."""
 CHANCE = 0.3
 """White noise of standard deviation s repeats itself with the probability q/(2 sqrt(pi) s) in steps q of a digitiser: 0.3 times q
 over the usual change from sample to sample."""
 COARSE = 0.1
 """Nothing can be said where chance repeats more than this share of the samples."""
-SURE = 6.0
+SURE_REPEATS = 6.0
 """Repeats are more than chance makes, by this many standard deviations."""
 TURNS = 0.35
 """Noise bends up and down in turn in at least this share of its samples: in about 2/3 of them if it is white or a random walk."""
@@ -25,7 +25,7 @@ LONG, EVEN = 2.0, 0.9
 """A logger repeats a sample this often at most, in the median; or new values come at one distance, in this share of them."""
 MOVES = (0.8, 1.25)
 """A steady motion goes on after a repeat as if it had not stopped: by this factor, in the median, on the way missed."""
-STEPS = 1.5
+STEPS_OF_DIGITISER = 1.5
 """After a repeat it moves by more than this many steps of its digitiser."""
 NORMAL = ("normal_stress", "normal_force", "normal_torque")
 MOVING = (*LOADING, "rotation", "rotation_rate")
@@ -36,7 +36,7 @@ def repeats_in(values: Floats) -> NDArray[np.bool_]:
     equal = np.append(False, values[1:] == values[:-1])
     begins = np.flatnonzero(equal & ~np.append(False, equal[:-1]))
     fresh = values[~equal & np.isfinite(values)]
-    if len(begins) < max(FEWEST, SHARE * len(values)) or len(fresh) < max(4, LEVELS * len(values)):
+    if len(begins) < max(FEWEST, SHARE_OF_REPEATS * len(values)) or len(fresh) < max(4, SHARE_OF_VALUES * len(values)):
         return np.zeros(len(values), bool)
     if not _is_regular(equal, begins):
         return np.zeros(len(values), bool)
@@ -48,7 +48,7 @@ def repeats_in(values: Floats) -> NDArray[np.bool_]:
     noisy = len(bends) > 0.5 * len(fresh) and float(np.mean(bends[1:] * bends[:-1] < 0.0)) > TURNS
     if noisy and by_chance < COARSE:
         expected = by_chance * len(values)
-        return equal if equal.sum() > expected + SURE * np.sqrt(expected) + FEWEST else np.zeros(len(values), bool)
+        return equal if equal.sum() > expected + SURE_REPEATS * np.sqrt(expected) + FEWEST else np.zeros(len(values), bool)
     return _missed_way(values, equal, begins, digit)
 
 
@@ -76,7 +76,7 @@ def _missed_way(values: Floats, equal: NDArray[np.bool_], begins: NDArray[np.int
         if first < 2 or last + 2 >= len(values):
             continue
         before, jump, after = (float(values[k + 1] - values[k]) for k in (first - 2, last, last + 1))
-        if before * after > 0.0 and abs(jump) > STEPS * digit:
+        if before * after > 0.0 and abs(jump) > STEPS_OF_DIGITISER * digit:
             shares.append(jump / ((length + 1) * 0.5 * (before + after)))
             counted.append(length)
     if len(shares) < FEWEST or not MOVES[0] < float(np.median(shares)) < MOVES[1]:

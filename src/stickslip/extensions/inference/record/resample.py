@@ -26,7 +26,7 @@ the two samples determine x to 1/sqrt(12), the standard deviation of a time that
 """
 STEEP = 0.5
 """A steep part counts as a jump if it changes by more than this share of the curve's range in the time between two samples."""
-REACH = 3
+SAMPLES_AROUND_JUMP = 3
 """The jump of the data is searched among this many samples on each side of the jump of the run."""
 
 
@@ -77,8 +77,8 @@ def unsure(time: Floats, data: Floats, jumps: Jumps) -> Floats:
     for at, height in zip(jumps.time.tolist(), jumps.height.tolist(), strict=True):
         k = int(np.searchsorted(time, at)) - 1
         if 0 <= k < len(change):
-            first = max(k - REACH, 0)
-            k = first + int(np.argmax(change[first : k + REACH + 1] * height))
+            first = max(k - SAMPLES_AROUND_JUMP, 0)
+            k = first + int(np.argmax(change[first : k + SAMPLES_AROUND_JUMP + 1] * height))
             added[k : k + 2] += (UNSURE * height) ** 2
     return np.sqrt(added)
 

@@ -15,7 +15,7 @@ from stickslip.problem import Problem
 from stickslip.problem.bodies import as_block, as_slab
 from stickslip.solution import Solution
 
-LONG = YEAR
+LONG_REST = YEAR
 """A rest of at least this time (s) counts as long: one year, against events of seconds."""
 MASS_FACTORS = (1.0, 1e-2, 1e-4, 1e-6)
 """Factors on the mass of the block."""
@@ -109,7 +109,7 @@ def block_stays_put(runs: Runs) -> ClaimVerdict:
         "seconds. As printed there is no event worth the name: under the slip law the block settles by millimetres, under the "
         "rate law it follows the driver in steps of nanometres."
     )
-    return verdict(judge(printed > LONG, other > LONG), "K = G × 10³ m, or ω = 50 /m", why, *numbers)
+    return verdict(judge(printed > LONG_REST, other > LONG_REST), "K = G × 10³ m, or ω = 50 /m", why, *numbers)
 
 
 def rest_after_event(runs: Runs, name: str) -> tuple[float, float, float]:

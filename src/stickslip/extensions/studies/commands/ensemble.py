@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.studies.ensemble import Ensemble
     from stickslip.problem.scenarios import Scenario
 
-SIZE = "Largest disturbance of the initial load, as a share of the strength."
+DISTURBANCE = "Largest disturbance of the initial load, as a share of the strength."
 SEED = "Seed of the random disturbances; the same seed gives the same members."
 
 
@@ -23,7 +23,7 @@ def ensemble(
     *,
     changes: Changes = None,
     members: Annotated[int, typer.Option("--members", "-m", help="How many disturbed runs.")] = 8,
-    size: Annotated[float, typer.Option(help=SIZE)] = 1e-12,
+    size: Annotated[float, typer.Option(help=DISTURBANCE)] = 1e-12,
     duration: Duration = None,
     events: Annotated[int | None, option("Stop each run after this number of slip events.")] = None,
     seed: Annotated[int, typer.Option(help=SEED)] = 0,

@@ -27,13 +27,13 @@ EACH = 6
 """Number of marks on a line."""
 WIDEST, THINNEST = 2.6, 1.1
 """Widths (points) of the first line and of the last, which lies on it: the edges of the wider one are seen."""
-APART = 20.0
+APART_DURATIONS = 20.0
 """If the durations differ by more than this factor, each run is drawn against time divided by its own duration."""
 FAR_APART = 300.0
 """If the largest slips or slip rates of the runs differ by more than this factor, the axis is logarithmic."""
-MARGIN = 1.25
+MARGIN_OF_REST = 1.25
 """A run is drawn up to this multiple of the end of its last event, so that the rest after it is seen."""
-ROWS = ("slip", "slip_rate", "traction")
+COMPARED_PANELS = ("slip", "slip_rate", "traction")
 """Panels, from above."""
 
 
@@ -54,14 +54,14 @@ def drawn(study: Comparison) -> RunLines:
 
     All runs cover the same time, except those that end earlier. The comparison says which event is drawn, if any. Slip counts from
     the start of the run or of the event. If slabs (Pa) and blocks (N) are drawn together, tractions are divided by the normal
-    stress or force. If the durations differ by more than the factor `APART`, times are divided by the duration drawn.
+    stress or force. If the durations differ by more than the factor `APART_DURATIONS`, times are divided by the duration drawn.
     """
     runs, event = study.runs, study.event
     views, spans = _whole(runs) if event is None else _windows(runs, event)
     lengths = [end - start for start, end in spans.values()]
-    shares = max(lengths) > APART * min(lengths)
+    shares = max(lengths) > APART_DURATIONS * min(lengths)
     mixed = len({run.problem.load_unit for run in runs.values()}) > 1
-    lines = {row: [_line(views[name], row, spans[name], shares=shares, mixed=mixed) for name in runs] for row in ROWS}
+    lines = {row: [_line(views[name], row, spans[name], shares=shares, mixed=mixed) for name in runs] for row in COMPARED_PANELS}
     return RunLines(spans, shares, mixed, lines)
 
 
@@ -72,9 +72,9 @@ def _whole(runs: dict[str, Solution]) -> tuple[dict[str, Readings], dict[str, tu
     """
     ends = {name: float(run.history.span[1]) for name, run in runs.items()}
     over = {name: _last_end(run) for name, run in runs.items()}
-    needed = {name: min(ends[name], MARGIN * over[name]) for name in runs}
+    needed = {name: min(ends[name], MARGIN_OF_REST * over[name]) for name in runs}
     longest = max(needed.values())
-    if longest <= APART * min(needed.values()):
+    if longest <= APART_DURATIONS * min(needed.values()):
         # Up to the earliest end of a run, if that leaves out no event.
         common = min(longest, max(min(ends.values()), *over.values()))
         needed = {name: min(common, end) for name, end in ends.items()}
@@ -94,7 +94,7 @@ def _windows(runs: dict[str, Solution], event: int) -> tuple[dict[str, Readings]
     """
     views = {name: run.window(event) for name, run in runs.items()}
     longest, shortest = (of(views.values(), key=lambda view: view.after) for of in (max, min))
-    if longest.after <= APART * shortest.after:
+    if longest.after <= APART_DURATIONS * shortest.after:
         views = {name: run.window(event, longest.before, longest.after) for name, run in runs.items()}
     return dict(views), {name: view.shown for name, view in views.items()}
 
@@ -115,12 +115,12 @@ def _line(view: Readings, row: str, span: tuple[float, float], *, shares: bool, 
 
 
 @styled
-def draw(study: Comparison, **place: Unpack[Place]) -> Figure:
+def draw_compared(study: Comparison, **place: Unpack[Place]) -> Figure:
     """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
-    figure, grid = panels(len(ROWS), 1, (6.4, 6.2), place, sharex=True)
+    figure, grid = panels(len(COMPARED_PANELS), 1, (6.4, 6.2), place, sharex=True)
     found = drawn(study)
     unit, size = ("1", 1.0) if found.shares else time_unit(max(float(np.ptp(time)) for time, _ in found.lines["slip"]))
-    for axes, row in zip(grid[:, 0], ROWS, strict=True):
+    for axes, row in zip(grid[:, 0], COMPARED_PANELS, strict=True):
         _draw_row(axes, study, found, row, size)
     marks = grid[0, 0].get_lines()[: len(study.runs)]
     for mark, name in zip(marks, found.spans, strict=True):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @styled
-def draw(study: Ensemble, **place: Unpack[Place]) -> Figure:
+def draw_ensemble(study: Ensemble, **place: Unpack[Place]) -> Figure:
     """Draw the members' time lines, and below them the growth of the disturbance."""
     figure, grid = panels(2, 1, (6.4, 5.8), place, sharex=True)
     lines, growth = grid[:, 0]

@@ -29,7 +29,7 @@ LARGEST_SHARE = 0.75
 In a storm of events each piece that is discarded leaves less room than the one before. Near LARGEST_HISTORY the run would discard,
 which takes a second, for every few pieces.
 """
-FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
+COLUMNS_OF_FIRST_EVENT = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
 """Columns of an event table that are kept of the first event, as fields `first_...` of `reduction.Reduced`."""
 
 
@@ -95,7 +95,7 @@ class Folding:
         """Add events, in order of time."""
         out = self.out
         if len(rows) and out.events == 0:
-            for name in FIRST:
+            for name in COLUMNS_OF_FIRST_EVENT:
                 setattr(out, f"first_{name}", rows[name].iloc[0])
         out.events += len(rows)
         out.pulses += rows.pulses.sum()

@@ -12,9 +12,9 @@ import numpy as np
 
 from stickslip.engine import Floats, Integers, lend_part
 from stickslip.engine.lanes import (
-    COLUMNS,
     LARGEST_CAPACITY,
     OF_EVENTS,
+    REDUCED_COLUMNS,
     Alike,
     Group,
     LaneStage,
@@ -33,7 +33,7 @@ from stickslip.engine.lanes import (
 )
 from stickslip.extensions.sweeps.batch.long_member import run_alone
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 from stickslip.problem import BAD_PARAMETERS, INTERRUPTED, Stop
 from stickslip.problem.scenarios import Scenario
 
@@ -169,7 +169,7 @@ class _Batch:
         if kind not in self.alike:
             self.alike[kind] = alike(self.scenario, values)
         setups = set_up(self.scenario, values, self.alike[kind])
-        codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
+        codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(REDUCED_COLUMNS)), np.nan)
         reduced = Reduced.of(out)
         reduced.irregular, reduced.branches = setups.irregular, setups.branches
         members = Group(self.engine, setups, self.wants_events, self.stop, codes, out)
@@ -177,7 +177,7 @@ class _Batch:
         while True:
             base, stride = table_of(setups, work)
             lane = run_group(members, base, stride, work)
-            if lane == WIDTH or self.stop[0] != 0:
+            if lane == SIMD_WIDTH or self.stop[0] != 0:
                 break
             if work.stage[lane] == LaneStage.AT_END:
                 work = work.with_turns(2 * len(work.turns))
@@ -198,7 +198,7 @@ class _Batch:
         out[codes == BAD_PARAMETERS] = np.nan
         self.status[places] = codes
         for name, column in self.results.items():
-            column[places] = out[:, COLUMNS.index(name)]
+            column[places] = out[:, REDUCED_COLUMNS.index(name)]
 
     def member(self, n: int) -> Scenario:
         """Return the scenario of one member. Raises InputError if its parameters are invalid."""

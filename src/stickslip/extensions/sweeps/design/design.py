@@ -17,7 +17,7 @@ from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.scenarios import ParameterPath, Scenario, find_parameter
 
-GRID, RANDOM, LATIN_HYPERCUBE = KINDS = ("grid", "random", "lhs")
+GRID, RANDOM, LATIN_HYPERCUBE = KINDS_OF_DESIGN = ("grid", "random", "lhs")
 """Designs made from axes: every combination, independent random samples, or a Latin hypercube."""
 LIST = "list"
 """The design that consists of members given one by one."""
@@ -106,8 +106,8 @@ def read_design(
     if isinstance(vary, Path) or hasattr(vary, "columns"):
         return listed(scenario, vary, where)
     axes = axes_of(scenario, vary, where, sampled=kind != GRID)
-    if kind not in KINDS:
-        raise InputError(f"sweep: design '{kind}' is unknown; {nearest(kind, KINDS)}")
+    if kind not in KINDS_OF_DESIGN:
+        raise InputError(f"sweep: design '{kind}' is unknown; {nearest(kind, KINDS_OF_DESIGN)}")
     if kind != GRID:
         return sampled(axes, kind, members, seed, where)
     if members is not None:

@@ -26,7 +26,7 @@ LARGEST_TABLE = 1_000_000_000
 """Largest size (bytes) of a CSV file of members; a larger one is refused before it fills the memory."""
 FORMS = "an array, a DataFrame, a mapping of columns, a list of records, or a CSV file"
 """All that can hold members."""
-NUMBERS = "iuf"
+KINDS_OF_NUMBERS = "iuf"
 """Kinds of arrays that hold plain numbers."""
 Columns = list[tuple[str, Any]]
 """The name and the cells of each column."""
@@ -77,7 +77,7 @@ def _cells(column: Any, where: str) -> Any:
     if isinstance(column, np.ndarray) or has_unit(column):  # a subclass of the array stays one: it may carry a unit or a mask
         return column
     dtype = getattr(column, "dtype", None)
-    return np.asarray(column) if isinstance(dtype, np.dtype) and dtype.kind in NUMBERS else list(column)
+    return np.asarray(column) if isinstance(dtype, np.dtype) and dtype.kind in KINDS_OF_NUMBERS else list(column)
 
 
 def _names_in(records: Sequence[Mapping[Any, Any]], where: str) -> list[Any]:
@@ -143,7 +143,7 @@ def read_csv(path: Path, where: str) -> pd.DataFrame:
 
 def values_of(parameter: ParameterPath, cells: Any, where: str) -> Values:
     """Return the values of a parameter in SI. Raises InputError, which names the first member that cannot have its value."""
-    is_array = has_unit(cells) or (isinstance(cells, np.ndarray) and cells.dtype.kind in NUMBERS)
+    is_array = has_unit(cells) or (isinstance(cells, np.ndarray) and cells.dtype.kind in KINDS_OF_NUMBERS)
     plain = cells if is_array else [typed_value(parameter, cell) for cell in cells]
     try:
         return read_values(parameter, plain, where, math.inf)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from stickslip.contact import Uniqueness
     from stickslip.solution import Solution
 
-LISTED = "`stickslip sweep --help` lists all"
+QUANTITIES_LISTED = "`stickslip sweep --help` lists all"
 """Where all quantities are."""
 Of = Callable[["Solution"], Any]
 """A function of a solution that returns a number."""
@@ -162,7 +162,7 @@ DEFAULT = ("events", "pulses", "slip", "peak_rate", "first_duration", "recurrenc
 
 TAKEN = ("status", "reason", "time", "member")
 """Names in the dataset of a sweep that a user's quantity cannot have."""
-_NAME = re.compile(r"(?!series_)[A-Za-z][A-Za-z0-9_ ]{0,59}")
+_NAME_OF_QUANTITY = re.compile(r"(?!series_)[A-Za-z][A-Za-z0-9_ ]{0,59}")
 
 Wanted = str | tuple[str, str, Of] | Summary
 """A quantity that a user asks for: the name of a built-in one, (name, unit, function of a solution), or a `Summary`."""
@@ -176,7 +176,7 @@ def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
         if names.count(name) > 1:
             raise InputError(f"sweep: the quantity '{name}' is given twice")
     if not found:
-        raise InputError(f"sweep: no quantity is given; allowed: {some_of(QUANTITIES, listed=LISTED)}")
+        raise InputError(f"sweep: no quantity is given; allowed: {some_of(QUANTITIES, listed=QUANTITIES_LISTED)}")
     return found
 
 
@@ -185,11 +185,13 @@ def _one(item: Wanted) -> Summary:
         return item
     if isinstance(item, str):
         if item not in QUANTITIES:
-            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES, listed=LISTED)}")
+            raise InputError(
+                f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES, listed=QUANTITIES_LISTED)}"
+            )
         return QUANTITIES[item]
     if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")
     name, unit, of = item
-    if name in QUANTITIES or name in TAKEN or not _NAME.fullmatch(name):
+    if name in QUANTITIES or name in TAKEN or not _NAME_OF_QUANTITY.fullmatch(name):
         raise InputError(f"sweep: quantity {ascii(name)[:60]}: choose another name, made of letters, digits, spaces and _")
     return Summary(name, unit, name, of)

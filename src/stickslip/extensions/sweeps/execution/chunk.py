@@ -23,7 +23,7 @@ from stickslip.problem.scenarios import ParameterPath, Scenario, Source, documen
 from stickslip.run.simulate import simulate
 from stickslip.solution import Solution
 
-DECIDE = ("extensions/sweeps/batch", "extensions/sweeps/execution/chunk.py")
+MEMBER_CODE = ("extensions/sweeps/batch", "extensions/sweeps/execution/chunk.py")
 """Folders and files of the package whose code decides the results of a member, beside that of its run."""
 END = "end_time"
 """The quantity that the message on a failed member needs: the time (s) at the end of its run."""
@@ -59,7 +59,7 @@ CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
 PREFIX = "series_"
 """Prefix of a curve's name among the results. It tells slip over time from the quantity `slip`, that of the whole run."""
-TIME = "time"
+SAMPLE_TIME = "time"
 """Name of the dimension of the samples."""
 
 

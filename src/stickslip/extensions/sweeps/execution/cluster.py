@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from stickslip.engine import engine_key
-from stickslip.extensions.sweeps.execution.chunk import DECIDE, Runner, run_chunk
+from stickslip.extensions.sweeps.execution.chunk import MEMBER_CODE, Runner, run_chunk
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 
@@ -36,13 +36,13 @@ Result = TypeVar("Result")
 
 LOOPBACK = "127.0.0.1"
 """Address of a local cluster; no other machine can reach it."""
-PATIENCE = 10.0
+TIME_TO_ANSWER = 10.0
 """Time (s) within which a scheduler must answer."""
 LARGEST_FILE = 1_000_000
 """Largest size (bytes) of a scheduler file; a larger one is refused before it fills the memory."""
 AHEAD = 2
 """Chunks in flight for each thread of the cluster: the one that it works on, and the next."""
-LEAST = 8
+CHUNKS_IN_FLIGHT = 8
 """Smallest number of chunks in flight: a cluster that starts workers on demand does so only when chunks are waiting."""
 RETRIES = 2
 """Number of times that dask repeats a chunk that failed."""
@@ -142,7 +142,7 @@ def _connected(scheduler: str) -> Client:
     try:
         path = Path(scheduler)
         address = str(json.loads(read_bounded(path, LARGEST_FILE))["address"]) if path.is_file() else scheduler
-        return Client(address, timeout=PATIENCE, set_as_default=False)
+        return Client(address, timeout=TIME_TO_ANSWER, set_as_default=False)
     except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError means tls:// without a key in dask's configuration
         missed = str(error)
     # A client that failed stops its loop when it is thrown away. In the thread of the next client it would wait for itself.
@@ -170,9 +170,9 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
     lost: list[str] = []
 
     def send() -> list[Future]:
-        room = max(LEAST, AHEAD * sum(client.nthreads().values())) - len(numbers)
+        room = max(CHUNKS_IN_FLIGHT, AHEAD * sum(client.nthreads().values())) - len(numbers)
         more = list(islice(waiting, max(room, 0)))
-        sent = [client.submit(_run_checked, run, chunk, engine_key(*DECIDE), pure=False, retries=RETRIES) for _, chunk in more]
+        sent = [client.submit(_run_checked, run, chunk, engine_key(*MEMBER_CODE), pure=False, retries=RETRIES) for _, chunk in more]
         numbers.update(zip(sent, (number for number, _ in more), strict=True))
         return sent
 
@@ -201,7 +201,7 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
 
 def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, expected: str) -> Result:
     """Run a chunk on the worker, after checking that it has the expected version of the engine. Raises InputError."""
-    if engine_key(*DECIDE) != expected:
+    if engine_key(*MEMBER_CODE) != expected:
         raise InputError("sweep: a worker of the cluster has another version of stickslip: install the same everywhere")
     return run(chunk)
 

@@ -29,7 +29,7 @@ CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
 The upper limit is LARGEST_CHUNK if members run one by one, and LARGEST_BATCH in the compiled batch. The chunks in progress are
 lost when a sweep is killed.
 """
-SAMPLES = 200
+SAMPLES_OF_CURVES = 200
 """Default number of times for samples of curves."""
 MOST_SAMPLES = 1_000_000
 """Largest number of samples of a curve, which limits its size to 8 MB for each member."""
@@ -80,7 +80,7 @@ def make_plan(
     seed: int = 0,
     quantities: Iterable[Wanted] = DEFAULT,
     series: Sequence[str] = (),
-    samples: int = SAMPLES,
+    samples: int = SAMPLES_OF_CURVES,
     chunk: int | None = None,
     where: str = "sweep: vary",
 ) -> Plan:

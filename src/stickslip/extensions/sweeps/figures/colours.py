@@ -20,9 +20,9 @@ from stickslip.figures.panels import add_legend, set_log_ticks
 from stickslip.figures.style import GREY, PALE, ROOM, TWO, folded
 from stickslip.foundation.arrays import Floats
 
-FEW = 10
+COLOURS_IN_KEY = 10
 """Up to this number of different whole numbers, each has its own colour in a key; more are drawn with a scale."""
-STEPS = 40
+STEPS_OF_SCALE = 40
 """Up to this range, each whole number has its own step in the scale."""
 WARM = LinearSegmentedColormap.from_list("warm", ("#FFF4B2", "#FBD150", "#EBAF2F", "#D88D06", "#C06F05", "#A75203", "#8E3501"))
 COOL = LinearSegmentedColormap.from_list("cool", ("#DCF7FF", "#97E2FF", "#5AC8FE", "#31A9F4", "#3389DC", "#346AC2", "#344BA7"))
@@ -74,10 +74,10 @@ def colours_of(quantity: ShownQuantity) -> Colours:
     if quantity.ends:
         return _share(known, quantity.ends)
     different = np.unique(known)
-    if known.size and quantity.is_whole and different.size <= FEW:
+    if known.size and quantity.is_whole and different.size <= COLOURS_IN_KEY:
         return _key(different, [f"{value:.0f}" for value in different])
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    if known.size and quantity.is_whole and high - low <= STEPS:
+    if known.size and quantity.is_whole and high - low <= STEPS_OF_SCALE:
         return _steps(int(low), int(high))
     if low == high:
         low, high = low - abs(low or 1.0), high + abs(high or 1.0)

@@ -31,11 +31,11 @@ ALL, BESIDE = "members; no line where the result jumps", "members beside a jump,
 """Explanations of dots and gaps of one curve: of few members, and of many."""
 ENDS = "; lines end where the result jumps"
 """The explanation of the gaps of several curves, in the heading of their key."""
-NEAR = 3
+STEPS_BESIDE = 3
 """Number of steps on each side with which a step is compared."""
 STEEP = 6.0
 """A jump is larger than this multiple of the median of the steps near it ..."""
-SHARE = 0.05
+SHARE_OF_RANGE = 0.05
 """... and larger than this share of the whole range, so that small steps of a nearly constant quantity are no jumps."""
 
 
@@ -140,10 +140,10 @@ def jumps(values: Floats, *, whole: bool = False) -> NDArray[np.bool_]:
     known = np.isfinite(steps)
     if whole or not known.any():
         return known & (steps > 0.0)
-    least = SHARE * np.ptp(values[np.isfinite(values)])
+    least = SHARE_OF_RANGE * np.ptp(values[np.isfinite(values)])
     found = np.zeros(steps.shape, bool)
     for place in np.flatnonzero(known & (steps > least)):
-        near = np.concatenate([steps[max(place - NEAR, 0) : place], steps[place + 1 : place + 1 + NEAR]])
+        near = np.concatenate([steps[max(place - STEPS_BESIDE, 0) : place], steps[place + 1 : place + 1 + STEPS_BESIDE]])
         near = near[np.isfinite(near)]
         # Without neighbours nothing says that the quantity is smooth, and nothing says that it is not.
         found[place] = near.size > 0 and steps[place] > STEEP * np.median(near)

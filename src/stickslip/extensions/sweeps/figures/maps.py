@@ -24,11 +24,11 @@ from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, INK, PALE, ROOM, VERMILLION
 from stickslip.foundation.place import Place
 
-PANELS = 9
+MAPS_SIDE_BY_SIDE = 9
 """Largest number of maps side by side; more would be too small to read."""
 Draw = Callable[[Axes, int], None]
 """A function that draws a map; it receives its axes and the index of the value of the third key."""
-LINE: dict[str, Any] = {"colors": VERMILLION, "linewidths": 1.6}
+STYLE_OF_LINE: dict[str, Any] = {"colors": VERMILLION, "linewidths": 1.6}
 """The line at a number of a quantity."""
 SIZE = 16.0
 """Area of a point (in square points, as `scatter` takes it)."""
@@ -54,7 +54,7 @@ def _draw_all(
     title, marks = str(dataset.attrs.get("title", "")), failed_area(quantity)
     inner = [str(name) for name in quantity.values.dims if third is None or name != third.name]
     if quantity.line is not None and _has_line(quantity, *(scaled(dataset[name]) for name in inner)):
-        marks.append(Line2D([], [], color=LINE["colors"], linewidth=LINE["linewidths"], label=quantity.line[1]))
+        marks.append(Line2D([], [], color=STYLE_OF_LINE["colors"], linewidth=STYLE_OF_LINE["linewidths"], label=quantity.line[1]))
     if third is not None:
         names = names_of(third)
         grid = _side_by_side(names, draw_one, place)
@@ -70,9 +70,9 @@ def _draw_all(
 
 
 def _side_by_side(names: Names, draw_one: Draw, place: Place) -> list[Axes]:
-    """Draw a panel for each value of a key, or for `PANELS` of them evenly chosen, and return the panels."""
+    """Draw a panel for each value of a key, or for `MAPS_SIDE_BY_SIDE` of them evenly chosen, and return the panels."""
     count = len(names.values)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, PANELS)).round().astype(int))
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MAPS_SIDE_BY_SIDE)).round().astype(int))
     columns = len(chosen) if len(chosen) <= 3 else 2 if len(chosen) == 4 else 3
     rows = -(-len(chosen) // columns)
     _, grid = panels(rows, columns, (2.0 * columns + 1.4, 2.1 * rows + 1.0), place, sharex=True, sharey=True)
@@ -101,7 +101,7 @@ def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: ShownQuantity, colours:
     axes.pcolormesh(*edges, np.ma.masked_invalid(values), rasterized=True, **colours.options)
     if quantity.line is not None and _has_line(quantity, x, y):
         at = [quantity.line[0]]
-        axes.contour(x.values[columns], y.values[rows], np.ma.masked_invalid(values), levels=at, **LINE)
+        axes.contour(x.values[columns], y.values[rows], np.ma.masked_invalid(values), levels=at, **STYLE_OF_LINE)
     x.show(axes, "x")
     y.show(axes, "y")
 

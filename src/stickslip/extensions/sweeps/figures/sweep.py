@@ -58,7 +58,7 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         the other keys first.
     """
     with shown_in(_units_of(dataset)):
-        drawn = draw(data(dataset, quantity), **place)
+        drawn = draw_sweep(sweep_data(dataset, quantity), **place)
     return shown_or_saved(drawn, path, place)
 
 
@@ -69,7 +69,7 @@ def _units_of(dataset: xr.Dataset) -> Units:
     return {}
 
 
-def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
+def sweep_data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     """Return the dataset that is drawn: the quantity (NaN without a number), its `state` and the varied keys.
 
     The state of a member is 0 if it has a number, 1 if its run has no such number, 2 if it failed, 3 if it was not run. Keys with a
@@ -105,7 +105,7 @@ def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
+def draw_sweep(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw the kind of figure that suits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import cell_edges, set_log_ticks
-from stickslip.figures.style import ROOM, axis_text, folded, readable
+from stickslip.figures.style import ROOM, axis_text, folded, readable, spans_decades
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import readable_unit
 
@@ -18,8 +18,6 @@ SPREAD = 3.0
 """Values that span less than this factor are drawn on a linear axis: the two spreads could not be told apart."""
 LITTLE = 26
 """The same for one of several panels side by side."""
-WIDE = 100.0
-"""Positive numbers of a quantity that span more than this factor are drawn on a logarithmic axis or scale of colours."""
 CROWDED = 34
 """If the words along a horizontal axis have more letters than this together, they are slanted."""
 
@@ -135,7 +133,7 @@ class ShownQuantity:
     def is_wide(self) -> bool:
         """True if the numbers are to be drawn on a logarithmic scale."""
         known = self.known
-        return known.size > 0 and known.min() > 0.0 and known.max() > WIDE * known.min()
+        return known.size > 0 and spans_decades(known)
 
     def has(self, state: int) -> bool:
         """Return True if some member is in this state."""
@@ -150,7 +148,7 @@ def shown(dataset: xr.Dataset) -> ShownQuantity:
     """Return the quantity of a figure's dataset in a readable unit."""
     values = dataset[dataset.attrs["quantity"]]
     known = values.values[np.isfinite(values.values)]
-    wide = bool(known.size and known.min() > 0.0 and known.max() > WIDE * known.min())
+    wide = known.size > 0 and spans_decades(known)
     unit, size = readable_unit(values.attrs.get("units", "1"), known, log=wide)
     title = axis_text(values.attrs.get("long_name", str(values.name)), "", unit)
     about = values.attrs

@@ -20,7 +20,7 @@ from zarr.storage import MemoryStore
 import stickslip
 from stickslip.engine import engine_key
 from stickslip.extensions.sweeps.design.design import GRID, IN_WORDS
-from stickslip.extensions.sweeps.execution.chunk import DECIDE, MEANINGS, NOT_RUN, PREFIX, TIME
+from stickslip.extensions.sweeps.execution.chunk import MEANINGS, MEMBER_CODE, NOT_RUN, PREFIX, SAMPLE_TIME
 from stickslip.extensions.sweeps.execution.plan import Plan
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
@@ -30,7 +30,7 @@ from stickslip.foundation.names import for_readers, in_files
 from stickslip.foundation.show import clean
 from stickslip.solution.files import FolderFormat, about_curves, check_layout
 
-FORMAT = FolderFormat("stickslip_sweep", 2)
+SWEEP_FORMAT = FolderFormat("stickslip_sweep", 2)
 STATUS, REASON = "status", "reason"
 """Names of the variables that say how a member ended, and why it failed."""
 NUMBERS, WORDS, CODES = "float64", "string", "int8"
@@ -50,7 +50,9 @@ def lay_out(plan: Plan, place: Any) -> None:
         about |= {"shown_in": one.shown_in} if one.shown_in else {}
         _coordinate(group, one.name, column, (one.name,) if design.is_grid else design.dims, about)
     if series is not None:
-        _coordinate(group, TIME, series.times, (TIME,), {"long_name": "time since the start of the run", "units": "s"})
+        _coordinate(
+            group, SAMPLE_TIME, series.times, (SAMPLE_TIME,), {"long_name": "time since the start of the run", "units": "s"}
+        )
     for name, about in results(plan).items():
         _variable(group, plan, name, NUMBERS, about)
     _variable(group, plan, REASON, WORDS, {"long_name": "why a member failed"})
@@ -66,7 +68,7 @@ def _coordinate(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims
 def _variable(group: zarr.Group, plan: Plan, name: str, kind: str, about: dict[str, Any]) -> None:
     """Create an empty variable over the members; that of a curve has a further dimension of time."""
     design, series = plan.design, plan.work.series
-    samples = {TIME: len(series.times)} if series and name.startswith(PREFIX) else {}
+    samples = {SAMPLE_TIME: len(series.times)} if series and name.startswith(PREFIX) else {}
     _array(
         group,
         name,
@@ -114,14 +116,14 @@ def attributes(plan: Plan) -> dict[str, Any]:
         "Conventions": "CF-1.11",
         "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
-        "engine": engine_key(*DECIDE),
+        "engine": engine_key(*MEMBER_CODE),
         "references": PAPER,
         "scenario": plan.work.text,
         "selection_rule": scenario.problem.rule,
         "rtol": scenario.rtol,
         "design": json.dumps(about if design.seed is None else about | {"seed": design.seed}),
     }
-    return FORMAT.attributes(found)
+    return SWEEP_FORMAT.attributes(found)
 
 
 # ---- reading what somebody else may have written -----------------------------------------------------------------------------
@@ -149,7 +151,7 @@ def table_of(found: xr.Dataset) -> pd.DataFrame:
 
     Curves over time, which have more than one number for a member, are left out.
     """
-    kept = found.drop_vars([name for name, one in found.variables.items() if TIME in one.dims])
+    kept = found.drop_vars([name for name, one in found.variables.items() if SAMPLE_TIME in one.dims])
     table = kept.to_dataframe().reset_index()
     table[STATUS] = table[STATUS].map(lambda code: MEANINGS.get(code, str(code)))
     units = {name: for_readers(str(one.attrs.get("units", "1"))) for name, one in kept.variables.items()}
@@ -217,10 +219,10 @@ def _design_differs(plan: Plan, group: zarr.Group) -> str:
     for name, column in zip(design.names, design.columns, strict=True):
         if array_of(group, name).shape != column.shape or not np.array_equal(array_of(group, name)[...], column):
             return f"with other values of {name}"
-    others = {*design.names, TIME, STATUS, REASON}
+    others = {*design.names, SAMPLE_TIME, STATUS, REASON}
     units = {name: array.attrs.get("units") for name, array in group.arrays() if name not in others}
     if units != {name: about["units"] for name, about in results(plan).items()}:
         return f"for other quantities ({clean(', '.join(sorted(units)))})"
-    if series is not None and not np.array_equal(array_of(group, TIME)[...], series.times):
+    if series is not None and not np.array_equal(array_of(group, SAMPLE_TIME)[...], series.times):
         return "with other samples of time"
     return ""

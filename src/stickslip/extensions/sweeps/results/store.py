@@ -21,12 +21,12 @@ import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
 
-from stickslip.extensions.sweeps.execution.chunk import NOT_RUN, TIME, ChunkResult
+from stickslip.extensions.sweeps.execution.chunk import NOT_RUN, SAMPLE_TIME, ChunkResult
 from stickslip.extensions.sweeps.execution.plan import Plan
 from stickslip.extensions.sweeps.results.layout import (
-    FORMAT,
     REASON,
     STATUS,
+    SWEEP_FORMAT,
     array_of,
     as_begun,
     check_contents,
@@ -73,7 +73,7 @@ class ResultStore:
         if not path.exists():
             with writing(path):
                 create(path, lambda draft: lay_out(plan, draft))
-        with FORMAT.reading(path):
+        with SWEEP_FORMAT.reading(path):
             store = cls(as_begun(plan, path, check_store(path)), path)
         store._lock.enter_context(held(path, f"{path}: another sweep is writing into it"))
         with writing(path):
@@ -96,7 +96,7 @@ class ResultStore:
     @property
     def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
         """The status codes of all members (`outcome.MEANINGS`), in the shape of the design."""
-        with FORMAT.reading(self.place):
+        with SWEEP_FORMAT.reading(self.place):
             return np.array(self.arrays[STATUS][...])
 
     def write(self, chunk: int, result: ChunkResult) -> None:
@@ -117,7 +117,7 @@ class ResultStore:
         return self._opened() if self.loaded is None else self.loaded
 
     def _opened(self) -> xr.Dataset:
-        with FORMAT.reading(self.place):
+        with SWEEP_FORMAT.reading(self.place):
             place = zarr_folder.Folder(self.place) if isinstance(self.place, Path) else self.place
             found: xr.Dataset = xr.open_zarr(place, chunks=None, consolidated=isinstance(self.place, Path))
             return found[list(self.names)]
@@ -125,19 +125,19 @@ class ResultStore:
 
 def writing(place: Path | MemoryStore) -> AbstractContextManager[None]:
     """Turn an error of the file system in the `with` block into an InputError with a message of one line."""
-    begun = isinstance(place, Path) and FORMAT.is_in(place)
+    begun = isinstance(place, Path) and SWEEP_FORMAT.is_in(place)
     kept = "the members so far are kept, and the same command continues when there is room" if begun else "nothing was kept"
     return zarr_folder.writing(place, kept)
 
 
 def check_store(path: Path) -> zarr.Group:
     """Check every file of a store, and return its group. Raises InputError for a damaged file, and for what is no such store."""
-    if not FORMAT.is_in(path):
+    if not SWEEP_FORMAT.is_in(path):
         raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
-    group = FORMAT.opened(path)
+    group = SWEEP_FORMAT.opened(path)
     check_metadata(path, group)
     arrays = dict(group.arrays())
-    others = {*read_design(group.attrs)[1], TIME} & set(arrays)
+    others = {*read_design(group.attrs)[1], SAMPLE_TIME} & set(arrays)
     for name in sorted(others):
         _check_file(path, first_file_of(arrays.pop(name)), "copy it from elsewhere, or choose another name")
     ends = {name: ".0" * (array.ndim - array_of(group, STATUS).ndim) for name, array in arrays.items()}
@@ -169,7 +169,7 @@ def open_store(path: str | Path) -> xr.Dataset:
     if not path.exists():
         raise InputError(f"{path}: no such store")
     never_show("Duplicate dimension names present", category=UserWarning)  # they are refused
-    with FORMAT.reading(path):
+    with SWEEP_FORMAT.reading(path):
         check_store(path)
         found: xr.Dataset = xr.open_zarr(zarr_folder.Folder(path), chunks=None)
         check_contents(found)

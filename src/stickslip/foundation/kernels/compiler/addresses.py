@@ -14,7 +14,7 @@ from numba.extending import lower_builtin, type_callable
 from stickslip.foundation.kernels.memory.addresses import CallAt, ahead, bits_of, float_of, floats, integers, room_for
 
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
-WHOLE = ir.IntType(64)
+INTEGER = ir.IntType(64)
 OF_KINDS = {"p": FLOATS, "d": types.float64, "i": types.int64, "": types.void}
 """What numba makes of the letters of a `CallAt`; memory is taken as it comes, and handed on as an address."""
 
@@ -54,7 +54,7 @@ def _register(one: CallAt) -> None:
 
     @rule(one, typed, len(kinds) + 1)
     def write(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        given = [builder.ptrtoint(x, WHOLE) if kind == "m" else x for kind, x in zip(kinds, arguments[1:], strict=True)]
+        given = [builder.ptrtoint(x, INTEGER) if kind == "m" else x for kind, x in zip(kinds, arguments[1:], strict=True)]
         returned = context.get_value_type(result) if one.result else ir.VoidType()
         kind = ir.FunctionType(returned, [x.type for x in given])
         found = builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), given)
@@ -75,8 +75,8 @@ def array_at(address: Any, shape: Any) -> Any:
 def _array_at(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     (pointer, shape), kind = arguments, signature.return_type
     array, lengths = context.make_array(kind)(context, builder), builder.extract_value
-    size = ir.Constant(WHOLE, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
-    strides, count = [size], ir.Constant(WHOLE, 1)
+    size = ir.Constant(INTEGER, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
+    strides, count = [size], ir.Constant(INTEGER, 1)
     for n in reversed(range(kind.ndim)):
         count = builder.mul(count, lengths(shape, n))
         strides.insert(0, builder.mul(strides[0], lengths(shape, n)))
@@ -95,12 +95,12 @@ def _ahead(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
 
 @rule(room_for, lambda n: FLOATS(n) if isinstance(n, types.Literal) else None, 1)
 def _room_for(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    return alloca_once(builder, ir.DoubleType(), size=ir.Constant(WHOLE, signature.args[0].literal_value))
+    return alloca_once(builder, ir.DoubleType(), size=ir.Constant(INTEGER, signature.args[0].literal_value))
 
 
 @rule(bits_of, lambda number: types.int64(types.float64), 1)
 def _bits_of(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    return builder.bitcast(arguments[0], WHOLE)
+    return builder.bitcast(arguments[0], INTEGER)
 
 
 @rule(float_of, lambda bits: types.float64(types.int64), 1)

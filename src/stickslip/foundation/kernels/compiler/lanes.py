@@ -12,10 +12,10 @@ import numpy as np
 from numba import types
 from numba.extending import lower_builtin, lower_cast, models, register_model
 
-from stickslip.foundation.kernels.compiler.addresses import WHOLE, rule, typed_as
+from stickslip.foundation.kernels.compiler.addresses import INTEGER, rule, typed_as
 from stickslip.foundation.kernels.memory.simd import (
     ALIGNED,
-    WIDTH,
+    SIMD_WIDTH,
     bits_as_number,
     chosen,
     first_of,
@@ -27,13 +27,13 @@ from stickslip.foundation.kernels.memory.simd import (
 Writer = Callable[[Any, Any, list[Any]], Any]
 """Type of a function that writes the code of an operation, from the compiler's context and builder and the arguments."""
 
-VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
-WHOLES = ir.VectorType(WHOLE, WIDTH)
+VECTOR = ir.VectorType(ir.DoubleType(), SIMD_WIDTH)
+WHOLES = ir.VectorType(INTEGER, SIMD_WIDTH)
 INDEX = ir.IntType(32)
 
 
 class Lanes(types.Type):  # type: ignore[misc] # numba
-    """The type of `WIDTH` floats side by side."""
+    """The type of `SIMD_WIDTH` floats side by side."""
 
     def __init__(self) -> None:
         super().__init__("Lanes")
@@ -54,7 +54,7 @@ class LanesModel(models.PrimitiveModel):  # type: ignore[misc] # numba
 def _in_every_lane(builder: Any, number: Any) -> Any:
     """Write the conversion of a float to lanes that all hold it."""
     first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), number, ir.Constant(INDEX, 0))
-    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(INDEX, WIDTH), [0] * WIDTH))
+    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(INDEX, SIMD_WIDTH), [0] * SIMD_WIDTH))
 
 
 @lower_cast(types.Float, LANES)
@@ -92,7 +92,7 @@ def _of_the_processor(name: str) -> Writer:
     kind = ir.FunctionType(VECTOR, [VECTOR])
 
     def write(context: Any, builder: Any, args: list[Any]) -> Any:
-        return builder.call(builder.module.declare_intrinsic(f"llvm.{name}.v{WIDTH}f64", (), kind), args)
+        return builder.call(builder.module.declare_intrinsic(f"llvm.{name}.v{SIMD_WIDTH}f64", (), kind), args)
 
     return write
 
@@ -111,7 +111,7 @@ def _comparison(sign: str) -> Writer:
     """Return the writer of a comparison. Its result is a whole number with one bit for each lane, the lowest for lane 0."""
 
     def write(context: Any, builder: Any, args: list[Any]) -> Any:
-        return builder.zext(builder.bitcast(builder.fcmp_ordered(sign, *args), ir.IntType(WIDTH)), WHOLE)
+        return builder.zext(builder.bitcast(builder.fcmp_ordered(sign, *args), ir.IntType(SIMD_WIDTH)), INTEGER)
 
     return write
 
@@ -144,13 +144,13 @@ def _fused(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     wide = LANES in sig.args
     numbers = [_in_every_lane(builder, x) if wide and of != LANES else x for x, of in zip(args, sig.args, strict=True)]
     made = numbers[0].type
-    name = f"llvm.fmuladd.v{WIDTH}f64" if wide else "llvm.fmuladd.f64"
+    name = f"llvm.fmuladd.v{SIMD_WIDTH}f64" if wide else "llvm.fmuladd.f64"
     return builder.call(builder.module.declare_intrinsic(name, (), ir.FunctionType(made, [made] * 3)), numbers)
 
 
 @rule(chosen, lambda which, yes, no: LANES(types.int64, yes, no), 3)
 def _chosen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    mask = builder.bitcast(builder.trunc(args[0], ir.IntType(WIDTH)), ir.VectorType(ir.IntType(1), WIDTH))
+    mask = builder.bitcast(builder.trunc(args[0], ir.IntType(SIMD_WIDTH)), ir.VectorType(ir.IntType(1), SIMD_WIDTH))
     lanes = [x if kind == LANES else _in_every_lane(builder, x) for x, kind in zip(args[1:], sig.args[1:], strict=True)]
     return builder.select(mask, *lanes)
 
@@ -162,11 +162,11 @@ def _first_of(context: Any, builder: Any, sig: Any, args: Any) -> Any:
 
 @rule(store_across, lambda rows, targets, first: types.void(POINTER, types.CPointer(types.int64), types.int64), 3)
 def _store_across(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    lines = [builder.load(builder.gep(args[0], [builder.add(args[2], _constant(WHOLE, n))])) for n in range(WIDTH)]
-    for apart in (2**n for n in range(WIDTH.bit_length() - 1)):
-        lines = [_exchanged(builder, lines[n & ~apart], lines[n | apart], apart, bool(n & apart)) for n in range(WIDTH)]
+    lines = [builder.load(builder.gep(args[0], [builder.add(args[2], _constant(INTEGER, n))])) for n in range(SIMD_WIDTH)]
+    for apart in (2**n for n in range(SIMD_WIDTH.bit_length() - 1)):
+        lines = [_exchanged(builder, lines[n & ~apart], lines[n | apart], apart, bool(n & apart)) for n in range(SIMD_WIDTH)]
     for n, line in enumerate(lines):
-        address = builder.load(builder.gep(args[1], [_constant(WHOLE, n)]))
+        address = builder.load(builder.gep(args[1], [_constant(INTEGER, n)]))
         target = builder.gep(builder.inttoptr(address, ir.DoubleType().as_pointer()), [args[2]])
         builder.store(line, builder.bitcast(target, VECTOR.as_pointer()), align=8)
     return context.get_dummy_value()
@@ -174,8 +174,8 @@ def _store_across(context: Any, builder: Any, sig: Any, args: Any) -> Any:
 
 def _exchanged(builder: Any, low: Any, high: Any, apart: int, upper: bool) -> Any:
     """Write one of two vectors whose numbers `apart` places from each other are exchanged: a step of turning rows into columns."""
-    places = [n + upper * apart if not n & apart else WIDTH + n - apart + upper * apart for n in range(WIDTH)]
-    return builder.shuffle_vector(low, high, ir.Constant(ir.VectorType(INDEX, WIDTH), places))
+    places = [n + upper * apart if not n & apart else SIMD_WIDTH + n - apart + upper * apart for n in range(SIMD_WIDTH)]
+    return builder.shuffle_vector(low, high, ir.Constant(ir.VectorType(INDEX, SIMD_WIDTH), places))
 
 
 @rule(bits_as_number, lambda x: x(x), 1)
@@ -183,21 +183,21 @@ def _bits_as_number(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     """Lanes are read as integers without a sign: only these are converted side by side without registers of 512 bits."""
     if sig.args[0] == LANES:
         return builder.uitofp(builder.bitcast(args[0], WHOLES), VECTOR)
-    return builder.sitofp(builder.bitcast(args[0], WHOLE), args[0].type)
+    return builder.sitofp(builder.bitcast(args[0], INTEGER), args[0].type)
 
 
 @rule(power_of_two, lambda n: n(n), 1)
 def _power_of_two(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    kind = WHOLES if sig.args[0] == LANES else WHOLE
+    kind = WHOLES if sig.args[0] == LANES else INTEGER
     moved = builder.fadd(args[0], _number(args[0].type, ALIGNED + 1023.0))
     return builder.bitcast(builder.shl(builder.bitcast(moved, kind), _constant(kind, 52)), args[0].type)
 
 
 def _number(kind: Any, number: float) -> Any:
     """Return a constant of the type of floats or of lanes, in every lane if the type has lanes."""
-    return ir.Constant(kind, [number] * WIDTH if kind == VECTOR else number)
+    return ir.Constant(kind, [number] * SIMD_WIDTH if kind == VECTOR else number)
 
 
 def _constant(kind: Any, number: int) -> Any:
     """Return an integer constant of the given type, in every lane if the type has lanes."""
-    return ir.Constant(kind, [number] * WIDTH if kind == WHOLES else number)
+    return ir.Constant(kind, [number] * SIMD_WIDTH if kind == WHOLES else number)

@@ -10,12 +10,12 @@ from numba import types
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, lower_builtin, lower_getattr_generic, lower_setattr_generic, models, register_model
 
-from stickslip.foundation.kernels.compiler.addresses import FLOATS, INTEGERS, WHOLE, rule, typed_as
+from stickslip.foundation.kernels.compiler.addresses import FLOATS, INTEGER, INTEGERS, rule, typed_as
 from stickslip.foundation.kernels.compiler.lanes import LANES
 from stickslip.foundation.kernels.memory import pointers, records
 from stickslip.foundation.kernels.memory.pointers import SeenAs, SeenIn
 from stickslip.foundation.kernels.memory.records import MemoryRecord, Slot
-from stickslip.foundation.kernels.memory.simd import WIDTH
+from stickslip.foundation.kernels.memory.simd import SIMD_WIDTH
 
 
 class LaneRow(types.Type):  # type: ignore[misc] # numba is untyped
@@ -25,8 +25,8 @@ class LaneRow(types.Type):  # type: ignore[misc] # numba is untyped
 LANE_ROW, LANE_ROWS = LaneRow("LaneRow"), types.CPointer(LANES)
 OF_VIEWS = {
     SeenIn.PLAIN: (types.float64, FLOATS, 1),
-    SeenIn.ALL_LANES: (LANES, LANE_ROWS, WIDTH),
-    SeenIn.ONE_LANE: (types.float64, LANE_ROW, WIDTH),
+    SeenIn.ALL_LANES: (LANES, LANE_ROWS, SIMD_WIDTH),
+    SeenIn.ONE_LANE: (types.float64, LANE_ROW, SIMD_WIDTH),
 }
 """The types of floats and of rows of floats in each view, and the distance of a record's places in memory."""
 OF_ADDRESSES = {records.FLOATS: FLOATS, records.INTEGERS: INTEGERS, pointers.LANES: LANE_ROWS}
@@ -50,7 +50,7 @@ class RecordPointer(types.Type):  # type: ignore[misc]
 
     def address(self, builder: Any, pointer: Any, place: Slot) -> Any:
         """Write the calculation of a field's address from that of its record."""
-        return builder.gep(pointer, [ir.Constant(WHOLE, self.stride * place.first)], inbounds=True)
+        return builder.gep(pointer, [ir.Constant(INTEGER, self.stride * place.first)], inbounds=True)
 
 
 @register_model(RecordPointer)
@@ -59,7 +59,7 @@ class _PointerModel(models.PrimitiveModel):  # type: ignore[misc] # numba
     """The representation of such a pointer in machine code: the address of a 64-bit place."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, WHOLE.as_pointer())
+        super().__init__(manager, kind, INTEGER.as_pointer())
 
 
 @infer_getattr
@@ -112,12 +112,12 @@ typed_as(operator.setitem, _assigned_typed, 3)
 def _nth(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
     """Write the calculation of the address of a record in a row of records, or of a lane of a record."""
     apart = called.args[0].record.total if called.args[0].view is SeenIn.PLAIN else 1
-    return builder.gep(arguments[0], [builder.mul(arguments[1], ir.Constant(WHOLE, apart))])
+    return builder.gep(arguments[0], [builder.mul(arguments[1], ir.Constant(INTEGER, apart))])
 
 
 def _in_row(builder: Any, row: Any, k: Any) -> Any:
     """Write the calculation of the address of number k in a row of a lane."""
-    address = builder.gep(row, [builder.mul(k, ir.Constant(WHOLE, WIDTH))])
+    address = builder.gep(row, [builder.mul(k, ir.Constant(INTEGER, SIMD_WIDTH))])
     return builder.bitcast(address, ir.DoubleType().as_pointer())
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from stickslip.foundation.kernels.processor import PROCESSOR
 
-WIDTH = PROCESSOR.lanes
+SIMD_WIDTH = PROCESSOR.lanes
 """Number of lanes."""
 
 ALIGNED = 1.5 * 2.0**52
@@ -46,5 +46,5 @@ def first_of(bits: int) -> Any:
 
 
 def store_across(rows: Any, targets: Any, first: int) -> Any:
-    """Store the places from `first` to `first` + WIDTH - 1 of rows in lanes: for lane n at the address targets[n] + 8 `first`."""
+    """Store places `first` to `first` + SIMD_WIDTH - 1 of rows in lanes: for lane n at the address targets[n] + 8 `first`."""
     raise NotImplementedError("plain Python has no lanes")

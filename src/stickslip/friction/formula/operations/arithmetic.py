@@ -13,7 +13,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import (
     difference_of_series,
     product_of_series,
@@ -21,8 +20,12 @@ from stickslip.friction.formula.operations.enclosures import (
     sum_of_series,
 )
 from stickslip.friction.formula.operations.operation import (
+    FORMULA_UNITS,
+    REFERENCE,
+    SLOPE,
+    STEP,
     TINIEST,
-    UNITS,
+    VALUE,
     BallsWriter,
     Dimension,
     Levels,
@@ -47,7 +50,7 @@ def _same(node: Expression, a: Dimension, b: Dimension) -> Dimension:
     zero = Expression("constant", value=0.0)
     if a != b and zero not in node.arguments:
         one, other = (unit_text(x) or "a pure number" for x in (a, b))
-        raise InputError(f"{one} and {other} cannot be added or subtracted; {UNITS}")
+        raise InputError(f"{one} and {other} cannot be added or subtracted; {FORMULA_UNITS}")
     return b if node.arguments[0] == zero else a
 
 

@@ -26,7 +26,7 @@ ONE_STEP = 2.3e-16
 """Relative rounding error (1) of a sum, product or quotient, with room to spare: it is 1.2e-16 at most."""
 LIBRARY = 1.8e-15
 """Relative error (1) assumed for functions of the library of mathematics: eight units in the last place."""
-SMALLEST = 1e-307
+SMALLEST_RESULT = 1e-307
 """Absolute error assumed for all operations but sums: smaller results may lose digits or become 0."""
 _HUGE = 1.7e308
 """A number that is smaller than what overflows."""
@@ -54,7 +54,7 @@ def rounded(low: float, high: float, error: float) -> Ends:
 
 @exact
 def outward(low: float, high: float, error: float) -> Ends:
-    """Move ends outwards by a relative error and by SMALLEST; a low end stays at least 0 if it was."""
+    """Move ends outwards by a relative error and by SMALLEST_RESULT; a low end stays at least 0 if it was."""
     low, high = known(low, high)
     return outward_from(low, high, error, low >= 0.0)
 
@@ -63,7 +63,7 @@ def outward(low: float, high: float, error: float) -> Ends:
 def outward_from(low: float, high: float, error: float, positive: bool) -> Ends:
     """Do the same; low ends stay at least 0 where the values are `positive`."""
     low, high = known(low, high)
-    low, high = low - (abs(low) * error + SMALLEST), high + (abs(high) * error + SMALLEST)
+    low, high = low - (abs(low) * error + SMALLEST_RESULT), high + (abs(high) * error + SMALLEST_RESULT)
     return (max(low, 0.0) if positive else low), high
 
 

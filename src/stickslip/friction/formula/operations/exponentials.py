@@ -9,11 +9,14 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, outward
 from stickslip.friction.formula.operations.operation import (
     LARGEST_EXPONENT,
+    REFERENCE,
+    SLOPE,
+    STEP,
     TINIEST,
+    VALUE,
     BallsWriter,
     Levels,
     Operation,

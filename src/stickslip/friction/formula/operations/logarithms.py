@@ -9,9 +9,18 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, of_positive, outward, rounded, square
-from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
+from stickslip.friction.formula.operations.operation import (
+    REFERENCE,
+    SLOPE,
+    STEP,
+    VALUE,
+    Levels,
+    Operation,
+    Radius,
+    Recurrence,
+    SeriesWriter,
+)
 from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
 
 

@@ -13,9 +13,12 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import RATE, Expression, depends_on
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, multiply, of_positive, outward, rounded
 from stickslip.friction.formula.operations.operation import (
+    REFERENCE,
+    SLOPE,
+    STEP,
+    VALUE,
     BallsWriter,
     Dimension,
     Levels,

@@ -51,9 +51,9 @@ def squared(a: float, b: float) -> tuple[float, float]:
     return 0.0 if a * b <= 0.0 else min(first, last), max(first, last)
 
 
-ROUNDING = 1.2e-16
+ROUNDING_OF_OPERATION = 1.2e-16
 """Relative rounding (1) of a sum, product or quotient."""
-OF_FUNCTION = 8.0 * ROUNDING
+OF_FUNCTION = 8.0 * ROUNDING_OF_OPERATION
 """The same of a function of the mathematical library: four units in the last place."""
 
 
@@ -83,7 +83,7 @@ class Disc(NamedTuple):
         """An upper bound of |log(value / centre)|, which is not a number where the disc reaches zero."""
         return -np.log1p(-self.radius / np.abs(self.centre))
 
-    def rounded(self, by: ArrayLike = ROUNDING, least: ArrayLike = 0.0) -> Disc:
+    def rounded(self, by: ArrayLike = ROUNDING_OF_OPERATION, least: ArrayLike = 0.0) -> Disc:
         """Return the disc with a radius that contains a relative rounding of its centre, and with a better lower bound."""
         size = np.abs(self.centre)
         radius = self.radius + by * size

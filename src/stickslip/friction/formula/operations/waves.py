@@ -10,9 +10,12 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.formula.operations.changes import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain
 from stickslip.friction.formula.operations.operation import (
+    REFERENCE,
+    SLOPE,
+    STEP,
+    VALUE,
     BallsWriter,
     Levels,
     Operation,

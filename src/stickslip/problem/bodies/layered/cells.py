@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 
 MOST_CELLS = 4096
 """Largest number of cells (1) that layers are cut into."""
-ROUNDING = 1e-13
+ROUNDING_OF_DIVISION = 1e-13
 """Errors (1) up to this size are those of the division, and count as none."""
 
 
@@ -51,7 +51,7 @@ def _cut(given: Floats, allowed: float, longest: float, most: int) -> CellCut:
         time = total / float(counts.sum())
         error = float(np.max(np.abs(counts * time / given - 1.0)))
         if error < best.error and counts.sum() <= most and time <= longest:
-            best = CellCut(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING else 0.0)
+            best = CellCut(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING_OF_DIVISION else 0.0)
         if best.error <= allowed:
             return best
     if len(given) > most:

@@ -31,7 +31,7 @@ from stickslip.problem.bodies.uniform.slab import CONTACT_DAMPING, DRIVER_INERTI
 
 APART, JOINED = "apart", "joined"
 """What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
-TOGETHER: dict[str, Sides] = {APART: Apart(), JOINED: Joined()}
+TIES_OF_SIDES: dict[str, Sides] = {APART: Apart(), JOINED: Joined()}
 OTHER = " on the other side"
 LISTS = ("thickness", "density", "wave_speed", "drag")
 """The lists of one side of a slab that have a number for each layer."""
@@ -157,7 +157,7 @@ class TwoSlabs(Declared, OfSlabs):
     @property
     def sides_together(self) -> Sides:
         """How the sides go together."""
-        return TOGETHER[self.sides]
+        return TIES_OF_SIDES[self.sides]
 
     @property
     def is_joined(self) -> bool:

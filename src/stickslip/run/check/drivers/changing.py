@@ -8,7 +8,7 @@ from typing import ClassVar
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import Fact
 from stickslip.run.check.far_side import GivesWay, infinite_mass
 
 MOST_DRIVERS = 8

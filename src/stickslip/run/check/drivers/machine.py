@@ -9,7 +9,7 @@ from typing import ClassVar
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies.soft_torque import sent_back, tuned_period
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import Fact
 from stickslip.run.check.far_side import GivesWay
 
 

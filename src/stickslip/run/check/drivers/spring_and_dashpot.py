@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_on_spring
-from stickslip.run.check.asked import CheckOfDriver
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CheckOfDriver, Fact
 
 
 class _CheckOfDashpot(CheckOfDriver):

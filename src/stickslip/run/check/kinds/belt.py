@@ -8,7 +8,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Ground, Problem
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import Fact
 from stickslip.run.check.kinds.rigid import CheckOfRigid
 
 

@@ -12,8 +12,7 @@ from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
 from stickslip.problem.bodies.layered.layers import Layers
 from stickslip.problem.scenarios import Scenario
-from stickslip.run.check.asked import CHECK_DRIVERS
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_DRIVERS, Fact
 from stickslip.run.check.with_waves import CheckOfWaves
 
 MANY_PIECES = 100_000

@@ -8,8 +8,7 @@ import math
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem, loading_rate
 from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
-from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind, Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 
 

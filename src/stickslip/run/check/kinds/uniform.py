@@ -5,8 +5,7 @@ from __future__ import annotations
 from stickslip.contact import Uniqueness
 from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyOnCharacteristics, as_waves
-from stickslip.run.check.asked import CHECK_DRIVERS
-from stickslip.run.check.facts import Fact
+from stickslip.run.check.asked import CHECK_DRIVERS, Fact
 from stickslip.run.check.with_waves import CheckOfWaves
 from stickslip.run.reference.slab import growth_rate
 

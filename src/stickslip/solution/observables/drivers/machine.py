@@ -19,7 +19,7 @@ from stickslip.problem.bodies import BodyWithWaves, OfLayers
 from stickslip.solution.observables.driver_of_waves import BehindLayers, BehindSlab, DriverBehind, FromMachine, SumOfPower
 from stickslip.solution.observables.given_load import far_excess_at, pulled, value_at
 
-BEYOND = 1.0 + 1e-9
+BEYOND_TRIP = 1.0 + 1e-9
 """Factor (1) that keeps a phase at the end of a round trip below that of the start of the next one."""
 
 
@@ -77,7 +77,7 @@ class MachineBehindLayers(BehindLayers):
         trip = np.array(self.store.trip, np.int64)
         self._trips, rank = np.unique(trip, return_inverse=True)
         self._starts = np.append(np.flatnonzero(np.diff(rank, prepend=-1)), len(trip))
-        self._order = rank + np.array(self.store.phase_from, float) / (BEYOND * self.round)
+        self._order = rank + np.array(self.store.phase_from, float) / (BEYOND_TRIP * self.round)
         whole = np.append(0.0, np.cumsum(way.sum(axis=1)))
         self.before = whole[:-1] - whole[self._starts[rank]]
         """Way (m) in the round trip of each piece, up to its start."""
@@ -127,7 +127,7 @@ class MachineBehindLayers(BehindLayers):
         rank = np.minimum(np.searchsorted(self._trips, trips), len(self._trips) - 1)
         known = self._trips[rank] == trips
         first, last = self._starts[rank], self._starts[rank + 1] - 1
-        piece = np.clip(np.searchsorted(self._order, rank + phases / (BEYOND * self.round), side="right") - 1, first, last)
+        piece = np.clip(np.searchsorted(self._order, rank + phases / (BEYOND_TRIP * self.round), side="right") - 1, first, last)
         piece = np.where((piece > first) & (phases < self.store.phase_from[piece]), piece - 1, piece)  # if rounding missed it
         after = np.minimum(piece + 1, last)
         piece = np.where(phases >= self.store.phase_from[after], after, piece)

@@ -15,7 +15,7 @@ from stickslip.engine import Epoch, Floats, History
 from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
-from stickslip.solution.observables.layers import MOST, LayerWaves
+from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
 from stickslip.solution.observables.quadrature import NODES, WEIGHTS
 
 CURVED = NODES**2 * (3.0 - 2.0 * NODES), 6.0 * NODES * (1.0 - NODES) * WEIGHTS
@@ -132,7 +132,7 @@ class LayerEnergy:
         edges = np.unique(np.concatenate([[0.0, waves.time, waves.round], fronts, fronts + waves.time, phase]))
         places, weights = self._places(edges)
         sums = np.zeros((moments, SUMS))
-        together = max(MOST // (SUMS * moments), 1)
+        together = max(NUMBERS_TOGETHER // (SUMS * moments), 1)
         for low in range(0, len(places), together):
             here = places[low : low + together]
             trips = trip[:, None] - (here > phase[:, None])

@@ -17,7 +17,7 @@ from stickslip.solution.observables.energy.layers import LayerEnergy
 from stickslip.solution.observables.field import check_side
 from stickslip.solution.observables.inside_layers import beside, field_of_layers
 from stickslip.solution.observables.layer_records import VALUE
-from stickslip.solution.observables.layers import MOST, LayerWaves
+from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
 from stickslip.solution.observables.layers_found_again import loads_of_layers
 
 MOST_REPLAYED = 300_000
@@ -77,7 +77,7 @@ class ObservablesOfLayered(ObservablesOfKind):
         waves = LayerWaves(history, of_layers(history.problem))
         last = int(waves.last[0])
         found = np.empty((2, len(time)))
-        together = max(MOST // (2 * len(waves.is_away)), 1)
+        together = max(NUMBERS_TOGETHER // (2 * len(waves.is_away)), 1)
         for low in range(0, len(time), together):
             part = time[low : low + together]
             away, back = (waves.placed(beside(waves, part - ago, part, side)) for ago in (waves.time, 0.0))

@@ -7,8 +7,7 @@ from dataclasses import fields, replace
 from typing import Any, ClassVar, cast
 
 from stickslip.extensions.explorer.model.answer import SlabPicture
-from stickslip.extensions.explorer.model.asked import ShownKind
-from stickslip.extensions.explorer.model.pairs import slab_of_figure
+from stickslip.extensions.explorer.model.asked import ShownKind, slab_of_figure
 from stickslip.extensions.explorer.model.pictures import exact_energies
 from stickslip.extensions.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats

@@ -13,7 +13,7 @@ const CARD = `
 
 /** The card in an element. `steps` are objects of title, text, look, question and panel; `go(step)` asks for another one. */
 class TourCard {
-  constructor(root, steps, go, canClose = true) {
+  constructor(root, steps, go) {
     this.root = root; this.steps = steps; this.go = go; this.step = 0;
     root.innerHTML = CARD;
     const find = (name) => root.querySelector(name);
@@ -22,7 +22,6 @@ class TourCard {
     this.back.addEventListener("click", () => this.ask(this.step - 1));
     this.next.addEventListener("click", () => this.ask(this.step + 1));
     find(".close").addEventListener("click", () => this.ask(0));
-    find(".close").hidden = !canClose;
     this.dots.replaceChildren(...steps.map((step, i) => {
       const item = document.createElement("li"), button = document.createElement("button");
       button.type = "button"; button.textContent = String(i + 1); button.title = step.title;
@@ -60,5 +59,3 @@ export function render({ model }) {
   card.show(model.step);
   return root;
 }
-
-export { TourCard };

@@ -8,15 +8,15 @@ from stickslip.extensions.explorer.model.answer import Answer
 from stickslip.extensions.explorer.model.fault import FaultAnswer
 from stickslip.extensions.explorer.page.panels import contact, energy, fault, field, law, loading, motion, shape
 from stickslip.extensions.explorer.page.panels.law import place, unit_along
-from stickslip.extensions.explorer.page.panels.motion import COLUMNS, CURVE_OF, DRAWN, columns_of
+from stickslip.extensions.explorer.page.panels.motion import COLUMNS_OF_MOTION, CURVE_OF, DRAWN, columns_of
 from stickslip.extensions.explorer.page.panels.units import share_axis, units_of
 from stickslip.extensions.explorer.page.stage import Stage
 from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, limits
 from stickslip.foundation.given import shown_in
 from stickslip.problem import units_given
 
-NOTHING: dict[str, Columns] = {
-    "pinned": {name: [] for name in COLUMNS},
+NO_PINNED_RUN: dict[str, Columns] = {
+    "pinned": {name: [] for name in COLUMNS_OF_MOTION},
     "pinned_law": {"x": [], "y": []},
     "pinned_contact": {"rate": [], "load": []},
 }
@@ -26,7 +26,7 @@ KEY = LegendKey("pinned", "pin")
 
 def add_pinned(view: View, kept: Answer | None, answer: Answer, units: Units) -> None:
     """Add a kept run to the view of another one, in the units of that one; its axes are widened to hold both."""
-    view.columns |= {name: dict(columns) for name, columns in NOTHING.items()}
+    view.columns |= {name: dict(columns) for name, columns in NO_PINNED_RUN.items()}
     if kept is None:
         return
     curves = columns_of(kept.motions[0], units)
@@ -56,7 +56,7 @@ def _widen(view: View, axis: str, values: object) -> None:
 
 __all__ = ["plots", "view_of"]
 
-PANELS = (law, contact, motion, loading, field, energy, shape)
+MODULES_OF_PANELS = (law, contact, motion, loading, field, energy, shape)
 
 
 def view_of(answer: Answer | FaultAnswer, kept: Any = None) -> View:
@@ -68,7 +68,7 @@ def view_of(answer: Answer | FaultAnswer, kept: Any = None) -> View:
 def _view_of(answer: Answer, kept: Answer | None) -> View:
     """Return the view of a contact that is a single place."""
     units, view = units_of(answer, kept), View()
-    for panel in PANELS:
+    for panel in MODULES_OF_PANELS:
         view.add(panel.data_of(answer, units))
     add_pinned(view, kept, answer, units)
     view.facts["hidden"] = sorted(view.hidden)

@@ -13,8 +13,8 @@ from stickslip.extensions.explorer.page.stage import Stage
 from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.foundation.names import name_of, plain_symbol
 
-TEXT = "Contact equation: load against slip rate, with stick, stable and unstable slip, folds, and the path of the run"
-KINDS = {1: "stable", -1: "unstable", 0: "continuum"}
+TEXT_OF_CONTACT = "Contact equation: load against slip rate, with stick, stable and unstable slip, folds, and the path of the run"
+KINDS_OF_SOLUTION = {1: "stable", -1: "unstable", 0: "continuum"}
 KEYS = {
     "stable": LegendKey("stable", "stable"),
     "unstable": LegendKey("unstable", "unstable", "dash"),
@@ -26,12 +26,12 @@ def data_of(answer: Answer, units: Units) -> View:
     """Return the parts of the curve, folds, jumps and the path, in the units of slip rate and load."""
     contact = answer.contact
     empty: Columns = {"rate": [], "load": []}
-    sources = ("stick", *KINDS.values(), "folds", "path")
+    sources = ("stick", *KINDS_OF_SOLUTION.values(), "folds", "path")
     if contact is None:
         hidden = {name: dict(empty) for name in sources} | {"jumps": {"x0": [], "y0": [], "x1": [], "y1": []}}
         return View(columns=hidden, hidden={"contact"}, facts={"contact": None})
     metre, pascal = units.on_curve[1], units.load[1]
-    columns: dict[str, Columns] = {kind: _part(contact, number, metre, pascal) for number, kind in KINDS.items()}
+    columns: dict[str, Columns] = {kind: _part(contact, number, metre, pascal) for number, kind in KINDS_OF_SOLUTION.items()}
     columns["stick"] = {"rate": [0.0, 0.0], "load": [0.0, contact.strength / pascal]}
     folds, jumps = np.reshape(contact.folds, (-1, 2)), np.reshape(contact.jumps, (-1, 4))
     columns["folds"] = {"rate": folds[:, 0] / metre, "load": folds[:, 1] / pascal}
@@ -39,7 +39,7 @@ def data_of(answer: Answer, units: Units) -> View:
     columns["jumps"] = ends
     path = {"time": contact.path_time / units.time[1], "rate": contact.path_rate / metre, "load": contact.path_load / pascal}
     columns["path"] = path
-    found = [kind for kind in KINDS.values() if np.isfinite(columns[kind]["load"]).any()]
+    found = [kind for kind in KINDS_OF_SOLUTION.values() if np.isfinite(columns[kind]["load"]).any()]
     keys = [LegendKey("stick", "stick"), *(KEYS[kind] for kind in found), LegendKey("path", "path")]
     keys += [LegendKey("fold", "ink", "ring")] if len(folds) else []
     keys += [LegendKey("jump", "muted", "dot")] if len(jumps) else []
@@ -70,9 +70,9 @@ def _part(contact: ContactPicture, number: int, metre: float, pascal: float) -> 
 
 def plot(stage: Stage) -> Any:
     """Return the plot of the contact equation."""
-    drawn = stage.plot("contact", "contact_rate", "contact_load", TEXT)
+    drawn = stage.plot("contact", "contact_rate", "contact_load", TEXT_OF_CONTACT)
     paint(drawn.line("rate", "load", source=stage.source("stick", "rate", "load"), line_width=4.5).glyph, line_color="stick")
-    for kind in KINDS.values():
+    for kind in KINDS_OF_SOLUTION.values():
         dash = "dashed" if kind == "unstable" else "solid"
         line = drawn.line("rate", "load", source=stage.source(kind, "rate", "load"), line_width=3, line_dash=dash)
         paint(line.glyph, line_color=kind)

@@ -12,18 +12,18 @@ from stickslip.extensions.explorer.page.stage import NARROW, Stage
 from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.foundation.names import name_of, readable_unit
 
-TEXT = "Energy against time: elastic, kinetic, radiated, damped, and friction heat, stacked"
-PARTS = ("elastic", "kinetic", "radiated", "damped", "heat")
+TEXT_OF_ENERGY = "Energy against time: elastic, kinetic, radiated, damped, and friction heat, stacked"
+STACKED_ENERGIES = ("elastic", "kinetic", "radiated", "damped", "heat")
 """The parts that are stacked, from below, as in the figures of the package; each name is also the role of its colour."""
 
 
 def data_of(answer: Answer, units: Units) -> View:
     """Return the upper edge of each part of the stack, without parts that are zero throughout, and the total."""
     energy = answer.energy
-    drawn = [name for name in PARTS if name in energy.parts and np.any(energy.parts[name])]
+    drawn = [name for name in STACKED_ENERGIES if name in energy.parts and np.any(energy.parts[name])]
     top = np.zeros(energy.time.size)
     edges: Columns = {"time": units.nearby(energy.time), "base": top}
-    for name in PARTS:
+    for name in STACKED_ENERGIES:
         top = top + energy.parts[name] if name in drawn else top
         edges[name] = top
     total = energy.parts.get("total", top)
@@ -38,7 +38,7 @@ def data_of(answer: Answer, units: Units) -> View:
         clock = f"time since t = {units.begin / units.time[1]:.6g} {units.time[0]}"
     return View(
         columns={"energy": columns},
-        limits={"near": ends, "energy": limits(columns["total"], columns[PARTS[-1]], floor=0.0)},
+        limits={"near": ends, "energy": limits(columns["total"], columns[STACKED_ENERGIES[-1]], floor=0.0)},
         labels={"axis:near@energy": axis_label(clock, "t" if units.whole else "", units.near[0])},
         titles={"energy": axis_label("Energy", "", unit)},
         facts={"near": {"size": units.near[1], "begin": units.begin, "whole": units.whole, "from": ends[0], "to": ends[1]}},
@@ -48,9 +48,9 @@ def data_of(answer: Answer, units: Units) -> View:
 
 def plot(stage: Stage) -> Any:
     """Return the plot of the stacked energies."""
-    drawn = stage.plot("energy", "near", "energy", TEXT, left=NARROW)
-    source = stage.source("energy", "time", "base", *PARTS, "total")
-    for below, name in zip(("base", *PARTS), PARTS, strict=False):
+    drawn = stage.plot("energy", "near", "energy", TEXT_OF_ENERGY, left=NARROW)
+    source = stage.source("energy", "time", "base", *STACKED_ENERGIES, "total")
+    for below, name in zip(("base", *STACKED_ENERGIES), STACKED_ENERGIES, strict=False):
         paint(drawn.varea("time", below, name, source=source, fill_alpha=0.75).glyph, fill_color=name)
     paint(drawn.line("time", "total", source=source, line_width=1.4, line_dash="dashed").glyph, line_color="ink")
     stage.cursor("energy")

@@ -16,12 +16,12 @@ from stickslip.figures.style import nearly_flat
 from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import name_of, readable_unit
 
-TITLES = {
+TITLES_OF_FAULT = {
     "profile_rate": "Slip rate along the contact now", "profile_slip": "Slip along the contact now", "slip": "Slip",
     "rate": "Slip rate", "traction": "Traction", "field": "Contact in space and time", "energy": "Energy",
 }  # fmt: skip
 """Titles of the panels before the first answer."""
-TEXTS = {
+TEXTS_OF_FAULT = {
     "profile_rate": "Slip rate against place along the contact, at the time of the cursor",
     "profile_slip": "Slip against place along the contact, at the time of the cursor",
 }
@@ -59,8 +59,8 @@ def _units(answer: FaultAnswer, kept: FaultAnswer | None) -> Units:
 def _motion(answer: FaultAnswer, kept: FaultAnswer | None, units: Units) -> View:
     """Return the motion of the node in the middle, and that of the kept run."""
     curves = motion.columns_of(answer.motions[0], units)
-    beside = {name: [] for name in motion.COLUMNS} if kept is None else motion.columns_of(kept.motions[0], units)
-    nothing: dict[str, Any] = {name: [] for name in motion.COLUMNS}
+    beside = {name: [] for name in motion.COLUMNS_OF_MOTION} if kept is None else motion.columns_of(kept.motions[0], units)
+    nothing: dict[str, Any] = {name: [] for name in motion.COLUMNS_OF_MOTION}
     further = () if kept is None else (LegendKey("pinned", "pin"),)
     names = {"slip": ("slip",), "rate": ("rate_at",), "traction": ("traction", "load")}
     marks = [{"time": one.time / units.time[1], "kind": one.kind, "text": one.text} for one in answer.marks]
@@ -116,7 +116,7 @@ def _map(answer: FaultAnswer, units: Units) -> View:
             "place": ends, "along": ends,
             "profile_rate": limits(images["velocity"]), "profile_slip": limits(images["displacement"]),
         },
-        labels={f"axis:along@{name}": axis_label("along the contact", "y", units.place[0]) for name in TEXTS},
+        labels={f"axis:along@{name}": axis_label("along the contact", "y", units.place[0]) for name in TEXTS_OF_FAULT},
         fastest=fields["velocity"]["most"],
         titles={
             "field": axis_label("Along the contact:", "y", units.place[0]),
@@ -139,8 +139,8 @@ def _even(times: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.i
 def plots(stage: Stage) -> dict[str, Any]:
     """Return all plots of a fault by name, without data."""
     profiles = {}
-    for name in TEXTS:
-        drawn = profiles[name] = stage.plot(name, "along", name, TEXTS[name], left=NARROW)
+    for name in TEXTS_OF_FAULT:
+        drawn = profiles[name] = stage.plot(name, "along", name, TEXTS_OF_FAULT[name], left=NARROW)
         column = name.removeprefix("profile_")
         paint(drawn.line("y", column, source=stage.source("profile", "y", "rate", "slip"), line_width=2).glyph, line_color=column)
     return profiles | motion.plots(stage) | {"field": field.plot(stage, MAP), "energy": energy.plot(stage)}

@@ -15,7 +15,7 @@ from stickslip.extensions.explorer.page.stage import NARROW, Stage, signed_scale
 from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
 from stickslip.foundation.names import readable_unit, si_unit
 
-TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
+TEXT_OF_FIELD = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
 LINES: Columns = {"time": [], "place": []}
 EMPTY: Columns = {"velocity": [], "displacement": [], "stress": [], "x": [], "y": [], "dw": [], "dh": []}
 
@@ -74,7 +74,7 @@ def ends_of(values: Any, unit: str) -> dict[str, Any]:
     return {"most": most, "text": f"±{most:.3g} {unit}"}
 
 
-def plot(stage: Stage, text: str = TEXT) -> Any:
+def plot(stage: Stage, text: str = TEXT_OF_FIELD) -> Any:
     """Return the plot of the chosen quantity in the slab, over time and place."""
     drawn = stage.plot("field", "near", "place", text, left=NARROW, bare=True)
     picture, colours = stage.source("picture", "image", "x", "y", "dw", "dh"), signed_scale("colour:field")

@@ -12,7 +12,7 @@ from stickslip.extensions.explorer.page.stage import Stage
 from stickslip.extensions.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.foundation.names import name_of, plain_symbol, readable_unit
 
-TEXT = "Friction law: friction coefficient against slip or slip rate"
+TEXT_OF_LAW = "Friction law: friction coefficient against slip or slip rate"
 
 
 def data_of(answer: Answer, units: Units) -> View:
@@ -65,7 +65,7 @@ def place(law: LawPicture, values: Any, unit: tuple[str, float]) -> Any:
 
 def plot(stage: Stage) -> Any:
     """Return the plot of the friction law."""
-    drawn = stage.plot("law", "law_x", "law_y", TEXT)
+    drawn = stage.plot("law", "law_x", "law_y", TEXT_OF_LAW)
     stage.powers(drawn, "law_powers", "below")
     pinned = drawn.line("x", "y", source=stage.source("pinned_law", "x", "y"), line_width=2, line_alpha=0.8)
     paint(pinned.glyph, line_color="pin")

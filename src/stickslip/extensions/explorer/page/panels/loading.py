@@ -14,9 +14,9 @@ from stickslip.figures.runs.given import curve_of, varying
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import for_readers, readable_unit
 
-TEXTS = {"given": "Loading against time", "also_given": "Further loading against time"}
+TEXTS_OF_LOADING = {"given": "Loading against time", "also_given": "Further loading against time"}
 """The panels, each with what it shows: most problems have one such history, few two."""
-FIRST = ("ground_acceleration", "ground_velocity")
+SHAKING_PANELS = ("ground_acceleration", "ground_velocity")
 """What shakes comes first."""
 BINS = 1000
 """A curve of more points than twice this number is drawn by its lowest and highest value in each of so many intervals."""
@@ -26,8 +26,8 @@ def data_of(answer: Answer, units: Units) -> View:
     """Return the loading histories of a problem over the time of its run, each in a panel."""
     view, problem, time = View(), answer.solution.problem, answer.motions[0].time
     found = varying(problem)
-    names = sorted(found, key=lambda name: name not in FIRST)[: len(TEXTS)]
-    for panel, name in zip(TEXTS, [*names, None, None], strict=False):
+    names = sorted(found, key=lambda name: name not in SHAKING_PANELS)[: len(TEXTS_OF_LOADING)]
+    for panel, name in zip(TEXTS_OF_LOADING, [*names, None, None], strict=False):
         if name is None:
             view.add(View(columns={panel: {"time": [], panel: [], "low": [], "high": []}}, hidden={panel}))
             continue
@@ -61,7 +61,7 @@ def thinned(time: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 def plots(stage: Stage) -> dict[str, Any]:
     """Return the plots, over the same axis of time as the motion."""
-    found = {name: stage.plot(name, "time", name, text, left=NARROW, bare=True) for name, text in TEXTS.items()}
+    found = {name: stage.plot(name, "time", name, text, left=NARROW, bare=True) for name, text in TEXTS_OF_LOADING.items()}
     for name, drawn in found.items():
         source = stage.source(name, "time", name, "low", "high")
         drawn.yaxis[0].ticker.desired_num_ticks = 3  # what shakes goes to and fro: of two ticks, zero would be one

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import Span
 
-from stickslip.extensions.explorer.model.answer import Answer, BodyCurves
-from stickslip.extensions.explorer.model.words import short
+from stickslip.extensions.explorer.model.answer import Answer, BodyCurves, short
 from stickslip.extensions.explorer.page.components import paint
 from stickslip.extensions.explorer.page.panels.units import Curve, held, share_axis
 from stickslip.extensions.explorer.page.stage import NARROW, Stage
@@ -17,7 +16,7 @@ from stickslip.extensions.explorer.page.view import Columns, LegendKey, LineStyl
 from stickslip.figures.runs.curves import after_start
 from stickslip.foundation.names import QUANTITIES, name_of, plain_symbol, readable_unit, si_unit
 
-TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
+TEXTS_OF_MOTION = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
 FURTHER = {
     "state": "States of friction against time",
     "residual": "What was measured minus the run, against time",
@@ -31,7 +30,7 @@ DRAWN = {"slip": "slip", "rate": "rate_at", "traction": "traction"}
 """The column that each panel draws: `rate_at` is the place of the slip rate on an axis that may be logarithmic."""
 CURVE_OF: dict[str, Curve] = {"slip": "slip", "rate": "slip_rate", "traction": "traction"}
 """The curve of a motion by the name of its panel."""
-COLUMNS = ("time", "slip", "rate", "rate_at", "traction", "load")
+COLUMNS_OF_MOTION = ("time", "slip", "rate", "rate_at", "traction", "load")
 """What is known of a body at each time."""
 LOADS = ("traction", "load")
 
@@ -162,7 +161,7 @@ def _misfits(answer: Answer) -> dict[str, LegendKey]:
 def _beside(main: BodyCurves, other: Sequence[BodyCurves], units: Units) -> Columns:
     """Return the curves of the companion, if there is one; without loads that cannot share an axis with those of the body."""
     if not other:
-        return {name: [] for name in COLUMNS}
+        return {name: [] for name in COLUMNS_OF_MOTION}
     found = columns_of(other[0], units)
     return (
         found if share_axis(main, other[0], "traction") else found | {name: np.full(other[0].time.size, np.nan) for name in LOADS}
@@ -204,7 +203,7 @@ def columns_of(motion: BodyCurves, units: Units) -> Columns:
 
 def plots(stage: Stage) -> dict[str, Any]:
     """Return the three plots, which share the axis of time; the last one has its texts."""
-    return {name: _plot(stage, name, bare=name != "traction") for name in TEXTS}
+    return {name: _plot(stage, name, bare=name != "traction") for name in TEXTS_OF_MOTION}
 
 
 def further_plots(stage: Stage) -> dict[str, Any]:
@@ -223,11 +222,11 @@ def further_plots(stage: Stage) -> dict[str, Any]:
 
 
 def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
-    drawn = stage.plot(name, "time", name, TEXTS[name], left=NARROW, bare=bare)
+    drawn = stage.plot(name, "time", name, TEXTS_OF_MOTION[name], left=NARROW, bare=bare)
     if name == "rate":
         stage.powers(drawn, "rate_powers", "left")
-    column, main, other = DRAWN[name], stage.source("motion", *COLUMNS), stage.source("companion", *COLUMNS)
-    pinned = drawn.line("time", column, source=stage.source("pinned", *COLUMNS), line_width=2, line_alpha=0.8)
+    column, main, other = DRAWN[name], stage.source("motion", *COLUMNS_OF_MOTION), stage.source("companion", *COLUMNS_OF_MOTION)
+    pinned = drawn.line("time", column, source=stage.source("pinned", *COLUMNS_OF_MOTION), line_width=2, line_alpha=0.8)
     paint(pinned.glyph, line_color="pin")
     marks = drawn.vspan(x="time", source=stage.source("marks", "time"), line_width=1, line_dash="dotted")
     paint(marks.glyph, line_color="faint")

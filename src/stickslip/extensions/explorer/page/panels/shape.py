@@ -16,10 +16,10 @@ from stickslip.extensions.explorer.page.stage import Stage
 from stickslip.extensions.explorer.page.view import LegendKey, Units, View, axis_label, round_step
 from stickslip.foundation.names import readable_unit
 
-TEXT = "Shape of the body at the time of the cursor: displacements, drawn many times larger"
-WIDTH = 10.0
+TEXT_OF_SHAPE = "Shape of the body at the time of the cursor: displacements, drawn many times larger"
+WIDTH_OF_PICTURE = 10.0
 """Width of the picture, in its own units."""
-REACH = 0.3
+LARGEST_DISPLACEMENT = 0.3
 """Largest displacement, as a share of the width."""
 
 
@@ -28,19 +28,19 @@ def data_of(answer: Answer, units: Units) -> View:
     slab, slip = answer.slab, answer.motions[0].slip
     largest = float(np.abs(slab.displacement if slab is not None else slip - slip[0]).max()) or 1.0
     unit, size = readable_unit(units.slip_unit, largest)
-    scale, bar = REACH * WIDTH / largest * units.slip[1], round_step(largest / size)
+    scale, bar = LARGEST_DISPLACEMENT * WIDTH_OF_PICTURE / largest * units.slip[1], round_step(largest / size)
     keys = [LegendKey("velocity of particles", "signed", "scale")] if slab is not None else []
     low, height = (answer.slab.place[[0, -1]] / units.place[1]).tolist() if answer.slab is not None else (0.0, 1.0)
     tall = height - low
     return View(
-        limits={"shape_x": (0.0, WIDTH), "shape_y": (low - 0.16 * tall, height + 0.17 * tall)},
+        limits={"shape_x": (0.0, WIDTH_OF_PICTURE), "shape_y": (low - 0.16 * tall, height + 0.17 * tall)},
         labels={"axis:shape_y@shape": axis_label("distance", "x", units.place[0])},
         keys={"shape": tuple(keys)},
         hidden={"axis:shape_x@shape"} | (set() if slab is not None else {"axis:shape_y@shape"}),
         facts={
             "shape": {
                 "kind": "slab" if slab is not None else "block",
-                "scale": scale, "bar": bar * size / units.slip[1] * scale, "width": WIDTH, "height": height, "low": low,
+                "scale": scale, "bar": bar * size / units.slip[1] * scale, "width": WIDTH_OF_PICTURE, "height": height, "low": low,
                 "boundaries": [one / units.place[1] for one in slab.boundaries] if slab is not None else [],
                 "text": f"{bar:g} {unit}",
             }
@@ -50,7 +50,7 @@ def data_of(answer: Answer, units: Units) -> View:
 
 def plot(stage: Stage) -> Any:
     """Return the plot of the body's shape."""
-    drawn = stage.plot("shape", "shape_x", "shape_y", TEXT)
+    drawn = stage.plot("shape", "shape_x", "shape_y", TEXT_OF_SHAPE)
     drawn.grid.visible = False
     ground = stage.source("ground", "x0", "x1", "y0", "y1")
     paint(

@@ -13,9 +13,9 @@ from stickslip.foundation.given import PLACE
 from stickslip.foundation.names import readable_unit, si_unit
 
 Curve = Literal["slip", "slip_rate", "traction"]
-REACH = 4.0
+REACH_OF_COMPANION = 4.0
 """A companion whose curve is more than so many times as large does not widen the axis; the legend says how far it reaches."""
-WHOLE = 0.2
+SHARE_OF_RUN = 0.2
 """The panels of slab and energy share the axis of time of the others if they show at least this share of the run."""
 
 
@@ -30,7 +30,7 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
     rates = [motion.slip_rate for motion in (*held(answer, "slip_rate"), *further)]
     log = answer.solution.problem.friction.creeps  # slip rates are then never zero, and differ widely
     rate, span, window = si_unit("slip_rate", main.load_unit), np.ptp(main.time), np.ptp(answer.energy.time)
-    whole = window >= WHOLE * span
+    whole = window >= SHARE_OF_RUN * span
     return Units(
         time=readable_unit("s", span),
         near=readable_unit("s", span if whole else window),
@@ -57,7 +57,7 @@ def share_axis(main: BodyCurves, other: BodyCurves, curve: Curve) -> bool:
 def held(answer: Answer, curve: Curve) -> tuple[BodyCurves, ...]:
     """Return the bodies that an axis is made to hold: the body itself, and its companion unless that would make it look flat."""
     main, other = answer.motions[0], answer.motions[1:2]
-    fits = all(extent(one, curve) <= REACH * extent(main, curve) for one in other)
+    fits = all(extent(one, curve) <= REACH_OF_COMPANION * extent(main, curve) for one in other)
     return (main, *other) if fits and all(share_axis(main, one, curve) for one in other) else (main,)
 
 
