@@ -1,18 +1,22 @@
 """Options that several functions take by name: their names, their types and what is said of them stand once.
 
 A function `f(problem, **options: Unpack[Given])` takes the options of a TypedDict, for type checkers. `takes` says the same to
-people: `help(f)` lists them in its signature and under Parameters, where the docstring has a line "{options}".
+people: `help(f)` lists them in its signature and under Parameters, where the docstring has a line "{options}". A function of a
+record, a dataclass, is called with the arguments of the record: `takes_fields`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from inspect import Parameter, signature
 from textwrap import fill
-from typing import Any, NamedTuple, TypeVar, cast
+from typing import Any, NamedTuple, ParamSpec, TypeVar, cast
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+Fields = ParamSpec("Fields")
+Record = TypeVar("Record")
+Result = TypeVar("Result")
 WIDTH = 128
 """Width of a line of a docstring, in characters."""
 
@@ -51,10 +55,33 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
             return function(*args, **by_name)
 
         call.__signature__ = signature(function).replace(parameters=full)  # type: ignore[attr-defined] # `inspect` reads it
-        if function.__doc__:
-            entries = [_entry(name, said[name]) for name in (*more, *names)]
-            call.__doc__ = function.__doc__.replace("    {options}\n", "".join(entries))
+        call.__doc__ = _said_in(function, said, (*more, *names))
         return cast(Function, call)
+
+    return decorate
+
+
+def takes_fields(
+    said: Mapping[str, Said], record: Callable[Fields, Record]
+) -> Callable[[Callable[[Record], Result]], Callable[Fields, Result]]:
+    """Decorate a function of a record: it is called with the arguments of the record, which type checkers see, too.
+
+    `said` has what is said of each.
+    """
+
+    def decorate(function: Callable[[Record], Result]) -> Callable[Fields, Result]:
+        from stickslip.foundation.arguments import check_names  # which needs numpy; what is said of options does not
+
+        full = list(signature(record).parameters.values())
+
+        @wraps(function)
+        def call(*args: Fields.args, **by_name: Fields.kwargs) -> Result:
+            check_names(function.__name__, full, args, by_name)
+            return function(record(*args, **by_name))
+
+        call.__signature__ = signature(function).replace(parameters=full)  # type: ignore[attr-defined] # `inspect` reads it
+        call.__doc__ = _said_in(function, said, [one.name for one in full])
+        return call
 
     return decorate
 
@@ -62,6 +89,12 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
 def _parameter(name: str, kind: Any, default: Any) -> Parameter:
     """Return an option as the signature shows it."""
     return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=getattr(kind, "__forward_arg__", kind))
+
+
+def _said_in(function: Callable[..., Any], said: Mapping[str, Said], names: Iterable[str]) -> str:
+    """Return the docstring of a function, with the entries of these arguments."""
+    entries = "".join(_entry(name, said[name]) for name in names)
+    return (function.__doc__ or "").replace("    {options}\n", entries)
 
 
 def _entry(name: str, said: Said) -> str:

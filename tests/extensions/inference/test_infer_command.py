@@ -11,6 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.app import COMMANDS
+from stickslip.cli.expand import expanded
 from stickslip.extensions.inference.summary import as_options
 from tests.extensions.inference.laboratory import RateAndStateBlock, correlated, load_point
 
@@ -112,7 +113,7 @@ def test_arguments_of_python_are_spelt_as_options():
 
 
 def test_each_option_of_python_is_one_of_the_command_line_with_the_same_default():
-    typed, renamed = signature(COMMANDS["infer"]).parameters, {"by": "by_what", "bounds": "bound", "priors": "prior"}
+    typed = signature(expanded(COMMANDS["infer"])).parameters
     for name, parameter in signature(ss.studies.infer).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY and name != "progress":
-            assert typed[renamed.get(name, name)].default == parameter.default, name
+            assert typed[name].default == parameter.default, name

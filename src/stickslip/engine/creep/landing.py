@@ -75,7 +75,7 @@ def write_piece(run: LeapingRun, n: int, when: tuple[int, float, float], motion:
     kept.phase_from, kept.phase_to, kept.speed, kept.bend = begin, end, end - begin, 0.0
     kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
     kept.amplified, kept.gain, kept.residual = np.nan, np.nan, 0.0  # a leap has an error bound of its own
-    of_states = zip(store.state[n], motion.states, strict=False)  # behind those of friction may be the rate of a machine
+    of_states = [(store.state[n, k], terms) for k, terms in enumerate(motion.states)]
     for row, terms in ((store.load[n], motion.load), (store.rate[n], motion.rate), *of_states):
         row[: len(terms)], row[len(terms) :] = terms, 0.0
 

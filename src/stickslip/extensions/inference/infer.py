@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -49,23 +48,23 @@ from stickslip.extensions.inference.inference import Inference
 from stickslip.extensions.inference.record.noise import LOSSES
 from stickslip.extensions.inference.record.record import Record
 from stickslip.extensions.inference.record.resample import MOST_FITTED, resampled
-from stickslip.foundation.arguments import as_path, check_whole, for_users, shown
+from stickslip.extensions.inference.words import WORDS, Wishes
+from stickslip.foundation.arguments import as_path, check_whole, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.takes import takes_fields
 from stickslip.problem import PRESSING, Problem, read_option
 from stickslip.problem.scenarios import read_problem
-from stickslip.run import TextProgress, telling
-
-if TYPE_CHECKING:
-    from stickslip.problem.scenarios import Scenario
+from stickslip.run import telling
 
 WAYS = ("samples", "features")
 """Data to fit: each sample of a record, or features of its slip events."""
 NORMALS = ("problem", "record")
 """Where the normal load of the runs comes from."""
+TOLD_APART = {"problem", "record", "free", "progress"}
+"""Arguments that are not among the options that a result names: it tells them in other ways."""
 MOST_PARTS, MOST_SEARCHED = 24, 8
 """Largest number of parts between rests to fit, and of those in the first search."""
 LEAST_FITTED = 2000
@@ -75,182 +74,62 @@ WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the 
 LIMIT = Quantity("s", "processor time after which the search ends", above=0.0)
 TIME_OF_SEARCH = 600.0
 """Default processor time (s) of a search."""
-RTOL_OF_FITS = 1e-8
-"""Default relative tolerance of the runs: far below the noise of a laboratory."""
 
 
-@dataclass(frozen=True)
-class Wishes:
-    """The options of `infer`; see there."""
-
-    by: str
-    observe: Sequence[str] | str | None
-    start: str | None
-    sensor: str
-    parts: str | None
-    each: Sequence[str] | None
-    held_out: float | str | WithUnit | None
-    profiles: bool
-    samples: int
-    bounds: Mapping[str, Any] | None
-    priors: Mapping[str, Any] | None
-    begin_at: Mapping[str, Any] | None
-    loss: str
-    weight: float
-    windows: bool
-    starts: int
-    seed: int
-    rtol: float
-    normal: str
-    checkpoint: Path | None
-    trend: str
-    max_time: float | str | WithUnit | None
-
-    def check(self) -> None:
-        """Raise InputError for options that are out of range."""
-        if self.loss not in LOSSES:
-            raise InputError(f"infer: loss {ascii(self.loss)[:40]} is unknown; {nearest(str(self.loss), LOSSES)}")
-        if self.by not in WAYS:
-            raise InputError(f"infer: by {ascii(self.by)[:40]} is unknown; {nearest(str(self.by), WAYS)}")
-        if self.by == "features" and self.parts is not None:
-            raise InputError("infer: by='features' and parts='rests' are two ways to fit stick-slip: choose one")
-        if self.parts not in (None, "rests"):
-            raise InputError(f"infer: parts must be 'rests' or left out, got {shown(self.parts)}")
-        if self.windows and (self.parts is not None or self.by == "features"):
-            raise InputError("infer: windows are of records that are fitted as a whole: leave out parts='rests' and by='features'")
-        if self.normal not in NORMALS:
-            raise InputError(f"infer: normal {ascii(self.normal)[:40]} is unknown; {nearest(str(self.normal), NORMALS)}")
-        if self.trend not in TRENDS:
-            raise InputError(f"infer: trend {ascii(self.trend)[:40]} is unknown; {nearest(str(self.trend), TRENDS)}")
-        WEIGHT.check("infer", "weight", self.weight)
-        self.progress(lambda text: None)
-        for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
-            check_whole(f"infer: {name}", getattr(self, name), least, most)
-        if self.samples:
-            emcee()  # a fit is not thrown away because a library is missing
-        elif self.checkpoint is not None:
-            raise InputError("infer: checkpoint is of the samples that are drawn: ask for some with samples=, or leave it out")
-        KeptWalk(self.checkpoint).check()
-        read_option("rtol", self.rtol, "infer")
-
-    def progress(self, tell: Tell) -> SearchProgress:
-        """Return the progress of the search, which ends when its time is over. Raises InputError for a time that is none."""
-        return SearchProgress(tell, TIME_OF_SEARCH if self.max_time is None else LIMIT.check("infer", "max_time", self.max_time))
-
-    def alone(self) -> AbstractContextManager[None]:
-        """Reserve the file of the samples against other processes. Raises InputError if another one writes into it."""
-        if self.checkpoint is None:
-            return nullcontext()
-        return held(self.checkpoint, f"infer: checkpoint {self.checkpoint}: another inference is writing into it")
+def check(wishes: Wishes) -> None:
+    """Raise InputError for options of `infer` that are out of range."""
+    for name, allowed in (("loss", LOSSES), ("by", WAYS)):
+        _check_word(wishes, name, allowed)
+    if wishes.by == "features" and wishes.parts is not None:
+        raise InputError("infer: by='features' and parts='rests' are two ways to fit stick-slip: choose one")
+    if wishes.parts not in (None, "rests"):
+        raise InputError(f"infer: parts must be 'rests' or left out, got {shown(wishes.parts)}")
+    if wishes.windows and (wishes.parts is not None or wishes.by == "features"):
+        raise InputError("infer: windows are of records that are fitted as a whole: leave out parts='rests' and by='features'")
+    for name, allowed in (("normal", NORMALS), ("trend", TRENDS)):
+        _check_word(wishes, name, allowed)
+    WEIGHT.check("infer", "weight", wishes.weight)
+    _progress(wishes, lambda text: None)
+    for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
+        check_whole(f"infer: {name}", getattr(wishes, name), least, most)
+    if wishes.samples:
+        emcee()  # a fit is not thrown away because a library is missing
+    elif wishes.checkpoint is not None:
+        raise InputError("infer: checkpoint is of the samples that are drawn: ask for some with samples=, or leave it out")
+    KeptWalk(_file(wishes)).check()
+    read_option("rtol", wishes.rtol, "infer")
 
 
-@for_users
-def infer(
-    problem: Problem | Scenario | str | Path,
-    record: Any,
-    free: Sequence[str] | str,
-    *,
-    begin: float | str | WithUnit | None = None,
-    end: float | str | WithUnit | None = None,
-    progress: TextProgress | bool | None = None,
-    by: str = "samples",
-    observe: Sequence[str] | str | None = None,
-    start: str | None = None,
-    sensor: str = "contact",
-    normal: str = "problem",
-    parts: str | None = None,
-    each: Sequence[str] | None = None,
-    bounds: Mapping[str, Any] | None = None,
-    priors: Mapping[str, Any] | None = None,
-    begin_at: Mapping[str, Any] | None = None,
-    loss: str = "linear",
-    weight: float = 0.0,
-    windows: bool = False,
-    starts: int = 4,
-    held_out: float | str | WithUnit | None = None,
-    profiles: bool = False,
-    samples: int = 0,
-    seed: int = 0,
-    rtol: float = RTOL_OF_FITS,
-    checkpoint: str | Path | None = None,
-    trend: str = "auto",
-    max_time: float | str | WithUnit | None = None,
-) -> Inference:
+def _check_word(wishes: Wishes, name: str, allowed: Collection[str]) -> None:
+    """Raise InputError unless an option is one of the words that it may be."""
+    if (word := getattr(wishes, name)) not in allowed:
+        raise InputError(f"infer: {name} {ascii(word)[:40]} is unknown; {nearest(str(word), allowed)}")
+
+
+def _progress(wishes: Wishes, tell: Tell) -> SearchProgress:
+    """Return the progress of the search, which ends when its time is over. Raises InputError for a time that is none."""
+    return SearchProgress(tell, TIME_OF_SEARCH if wishes.max_time is None else LIMIT.check("infer", "max_time", wishes.max_time))
+
+
+def _file(wishes: Wishes) -> Path | None:
+    """Return the file of the samples. Raises InputError for what names no file."""
+    return None if wishes.checkpoint is None else as_path("infer: checkpoint", wishes.checkpoint)
+
+
+def _alone(wishes: Wishes) -> AbstractContextManager[None]:
+    """Reserve the file of the samples against other processes. Raises InputError if another one writes into it."""
+    if (file := _file(wishes)) is None:
+        return nullcontext()
+    return held(file, f"infer: checkpoint {file}: another inference is writing into it")
+
+
+@takes_fields(WORDS, Wishes)
+def infer(wishes: Wishes) -> Inference:
     """Fit the numbers of a problem to a laboratory record, by full runs, and find how well the record determines them.
 
     Parameters
     ----------
-    problem : Problem, Scenario, str or Path
-        The problem, with starting values for the search: itself, its scenario, the name of a bundled scenario, or a file.
-    record : str, Path, DataFrame, mapping, Record, or list of them
-        The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
-    free : list of str
-        Names of the free numbers: those of `problem.parameters`, such as "friction.a" and "body.stiffness", and "initial.load",
-        "initial.state", "record.trend" (friction per metre of slip), "record.drift" (friction per second), "record.delay" (s, by
-        which the record is late) and "record.servo" (s: after a step the load point approaches its new rate as exp(-t/servo)).
-    begin, end : float or str, optional
-        The part of the record to use: times (s, as in the record, or texts with a unit).
-    progress : bool or callable, optional
-        True shows the progress in one line. A function is called with a line of text.
-    by : {"samples", "features"}
-        The data to fit: samples of the record, or features of its slip events (stick-slip), with their scatter from event to
-        event.
-    observe : str or list of str, optional
-        The samples to fit: friction, shear_stress, shear_force or torque, slip, slip_rate, and what is measured at the drive of a
-        string: surface_torque, drive_rate; by default shear if the record has it, or else all of them. Or the features to fit:
-        peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all that the record has except
-        the drop.
-    start : {"steady", "record", "problem"}, optional
-        How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
-        load of the first samples (default for others), or as the problem says.
-    sensor : {"contact", "spring", "drive"}
-        Where shear is measured: at the contact, by a load cell behind the spring of a block, or at the driver, as a torque at the
-        top drive of a drill string is. They differ by the inertia of the block, or by the waves in the body.
-    normal : {"problem", "record"}
-        Where the normal load of the runs comes from. "record" follows the record's normal stress (slab) or force (block) in time,
-        by the fewest straight lines that fit it within its noise; the default is that of the problem, constant or not.
-    parts : "rests", optional
-        Split the record after each slip event and begin a run at each rest, with the load that is measured there.
-    each : list of str, optional
-        Numbers that are free in each of these parts: "initial.load" within its noise (default), and "initial.state" if the law has
-        one.
-    bounds : mapping, optional
-        Lower and upper limits by name. The default for positive quantities is a factor of 1000 to both sides of the starting value,
-        or of 30 for pure numbers.
-    priors : mapping, optional
-        Prior knowledge by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)" (median and standard deviation of the logarithm), or
-        "uniform(0, 1)".
-    begin_at : mapping, optional
-        Starting values of the search, by name; by default those that the record shows, or else those of the problem.
-    loss : {"linear", "soft_l1", "huber", "cauchy"}
-        How residuals count. Choose another than linear if some samples are far off.
-    weight : float
-        Exponent p of the weight (n/j)**p of the j-th of n samples after each change of the pull rate, as in RSFit3000 (Skarbek &
-        Savage 2019, Geosphere 15, 1665). Default 0: all samples count alike.
-    windows : bool
-        If True, shorter parts of the record are fitted, too: `found.windows` has the numbers, and a note their spread.
-    starts : int
-        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4. If several starts do
-        not lead near the record, a search without derivatives follows.
-    held_out : float or str, optional
-        End of the record that is predicted instead of fitted: a share, or a time (text with a unit).
-    profiles : bool
-        If True, intervals follow from profiles of the likelihood, and not from its curvature.
-    samples : int
-        Number of samples to draw from the posterior distribution, with emcee. Default 0.
-    seed : int
-        Seed of starts and samples.
-    rtol : float
-        Relative tolerance of the runs. Default 1e-8.
-    checkpoint : str or Path, optional
-        File (.nc) in which the samples are kept while they are drawn. If the program is killed, the same call fits again and goes
-        on with them; its result is the same, bit for bit.
-    trend : {"auto", "none"}
-        "auto" frees "record.trend" or "record.drift", too, if plateaus of friction at constant rates fall or rise with slip or
-        time, and the fit needs it: a note says so. "none" does not.
-    max_time : float or str, optional
-        Processor time (s, or a text with a unit) after which the best numbers so far are the result, with what is left and what may
-        help. Default: 10 min for the search, and as long as it takes for profiles, windows and samples.
+    {options}
 
     Returns
     -------
@@ -292,19 +171,12 @@ def infer(
     friction.a  0.0099  0.0101
     friction.b  0.0129  0.0131
     """
-    wishes = Wishes(
-        by=by, observe=observe, start=start,
-        sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
-        bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, weight=weight, windows=windows,
-        starts=starts, seed=seed, rtol=rtol, normal=normal, trend=trend, max_time=max_time,
-        checkpoint=None if checkpoint is None else as_path("infer: checkpoint", checkpoint),
-    )  # fmt: skip
-    wishes.check()
-    given = read_problem("infer", problem)
-    records = _records(record, begin=begin, end=end)
-    observed = wishes.observe if by == "samples" else None
-    _check_normal(given, wishes, free)
-    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor, pressed=normal == "record")
+    check(wishes)
+    given = read_problem("infer", wishes.problem)
+    records = _records(wishes)
+    observed = wishes.observe if wishes.by == "samples" else None
+    _check_normal(given, wishes)
+    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor, pressed=wishes.normal == "record")
     whole = recorded
     if wishes.parts == "rests":
         between = [piece for part in whole for piece in at_rests(part)]
@@ -315,15 +187,15 @@ def infer(
     whole, notes = _resampled(whole, notes)
     share = share_of(wishes.held_out, whole)
     fitted = shortened(whole, share)
-    if by == "features":
+    if wishes.by == "features":
         fitted, _ = by_features(fitted, wishes.observe)
         whole, told = by_features(whole, wishes.observe)
         notes += told
-    model, offer, told = _begun(given, fitted, recorded, free, wishes)
+    model, offer, told = _begun(given, fitted, recorded, wishes)
     notes += told
     notes += FITTED_KINDS[given.body.structure].rounded_times(given.body, [one.name for one in model.free])
     doubts = [note for note in notes if note.endswith("?")]
-    with telling(progress, "infer") as tell:
+    with telling(wishes.progress, "infer") as tell:
         for doubt in doubts:
             tell(doubt)
         try:
@@ -332,12 +204,11 @@ def infer(
             raise InputError(f"infer: no run has succeeded: {stop}; give other values or bounds") from None
         except InputError as error:
             raise InputError("; ".join([str(error), *doubts])) from None  # a unit or a sign may be why no run succeeds
-    options = {"begin": begin, "end": end} | vars(wishes)
-    asked = {name: value for name, value in options.items() if value not in (None, False)}
+    asked = {name: value for name, value in vars(wishes).items() if name not in TOLD_APART and value not in (None, False)}
     return replace(found, about=(*found.about, *notes), asked=asked)
 
 
-def _check_normal(problem: Problem, wishes: Wishes, free: Sequence[str] | str) -> None:
+def _check_normal(problem: Problem, wishes: Wishes) -> None:
     """Raise InputError for options that a normal load that varies excludes."""
     from_record = wishes.normal == "record"
     if wishes.by == "features" and (from_record or problem.normal_varies):
@@ -347,7 +218,7 @@ def _check_normal(problem: Problem, wishes: Wishes, free: Sequence[str] | str) -
         raise InputError(
             f"infer: {cut} begins runs later than the problem's normal_load does: give it in the record (normal='record')"
         )
-    for name in _names(free):
+    for name in _names(wishes.free):
         if from_record and name.rpartition(".")[2] in (PRESSING, "normal_stress", "normal_force"):
             raise InputError(f"infer: {name} cannot be free where the record gives the normal load (normal='record')")
 
@@ -367,7 +238,8 @@ def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[st
     return found, notes
 
 
-def _records(source: Any, **times: Any) -> list[Record]:
+def _records(wishes: Wishes) -> list[Record]:
+    source, times = wishes.record, {"begin": wishes.begin, "end": wishes.end}
     sources = source if isinstance(source, list | tuple) else [source]
     if not sources:
         raise InputError("infer: record must be at least one record, got none")
@@ -397,15 +269,13 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     return model
 
 
-def _begun(
-    problem: Problem, parts: list[Part], recorded: list[Part], free: Sequence[str] | str, wishes: Wishes
-) -> tuple[Model, Offer | None, list[str]]:
+def _begun(problem: Problem, parts: list[Part], recorded: list[Part], wishes: Wishes) -> tuple[Model, Offer | None, list[str]]:
     """Return the model where the search begins, a free number of it that nobody asked for, and sentences on the start."""
-    model, offer, drift = _model(problem, parts, free, wishes), None, None
+    model, offer, drift = _model(problem, parts, wishes.free, wishes), None, None
     if wishes.by == "samples" and wishes.parts is None:
         offer, drift = offered(problem, parts, model.free, wishes.trend)
     if offer is not None:
-        model = _model(problem, parts, [*_names(free), offer.name], wishes)
+        model = _model(problem, parts, [*_names(wishes.free), offer.name], wishes)
     shared = [one for one in model.free if one.part is None]
     untold = "" if offer is None else offer.name
     begun, notes = with_starts(shared, problem, recorded, wishes.begin_at or (), drift, untold=untold)
@@ -417,7 +287,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
 
     `offer` is a free number that nobody asked for, which stays if the fit needs it.
     """
-    tell = progress = wishes.progress(tell)
+    tell = progress = _progress(wishes, tell)
     model = model.with_(ran=progress.run, tried=progress.tried)
     if offer is not None:
         tell(f"{offer.why}: {offer.name} is free, too")
@@ -439,8 +309,8 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, tell: Tell,
             shared = [i for i, one in enumerate(found.model.free) if one.part is None]
             profiles.extend(profile_of(found, sure, i, tell) for i in shared)
         if finished and wishes.samples:
-            with wishes.alone():
-                walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed, keep=KeptWalk(wishes.checkpoint))
+            with _alone(wishes):
+                walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed, keep=KeptWalk(_file(wishes)))
             finished = not walk.stopped
     except KeyboardInterrupt as stop:
         finished, ended = False, str(stop)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import Field, fields, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,32 +13,60 @@ import typer
 
 from stickslip.cli.options import ACCURACY, RESULTS, Changes, Columns, FigureFile, ScenarioName, complete_table, is_data, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_folder, check_targets, drawing, write_files
+from stickslip.extensions.inference.words import WORDS, Wishes
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.extensions.inference.inference import Inference
     from stickslip.problem.scenarios import Scenario
 
-FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
-BY = "What is fitted: samples, or features of slip events."
-OBSERVE = (
-    "Which samples or features: friction, shear_stress, shear_force, torque, slip, slip_rate, surface_torque, drive_rate; peak, "
-    "rest, drop, recurrence, duration, event_slip, peak_rate."
-)
-SENSOR = "Where shear is measured: contact, spring (load cell of a block), or drive (torque of a top drive)."
-START = "How the run begins: steady, record (load of the first samples) or problem."
-PRIOR = 'What you know beforehand: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
-BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
 COMPARE = "Another scenario, to compare what both predict of the part left out; may be repeated."
 COMPARE_FREE = "The free numbers of the scenarios of --compare; by default those of --free that they have."
-WEIGHT = "More weight for samples soon after a change of the pull rate: exponent p of (n/j)^p, as in RSFit3000."
-TREND = "auto: a drift with slip or time is free, too, if plateaus of friction show one; none: it is not."
-MAX_TIME = 'Processor time (s, or as "1 h") after which the best numbers so far are shown; 10 min for the search by default.'
 SEARCH = "The search"
 OUT_OF_TIME = 124
 """Exit code if the time of --max-time is over, as that of the command `timeout`."""
 TOLD_AGAIN = 60.0
 """Processor time (s) between two lines on a long search where there is no terminal to show it in one."""
+NAMES = {"begin": "--from", "end": "--to", "bounds": "--bound", "priors": "--prior"}
+"""What options are called on the command line, but for those that are called as in Python."""
+OF_SEARCH = ("bounds", "priors", "begin_at", "loss", "weight", "starts", "seed", "trend", "max_time")
+PANELS = dict.fromkeys(OF_SEARCH, SEARCH) | {"rtol": ACCURACY}
+"""Where the help lists options, but for those under its first heading."""
+MAPPING = "Mapping[str, Any] | None"
+TYPED: dict[str, Any] = {
+    "Sequence[str] | None": str | None,
+    "Sequence[str] | str | None": str | None,
+    "float | str | WithUnit | None": str | None,
+    "str | Path | None": Path | None,
+    "str | None": str | None,
+    "bool": bool,
+    "float": float,
+    "int": int,
+    "str": str,
+    MAPPING: list[str] | None,
+}
+"""What is typed of an option, by the type of its field in `Wishes`."""
+OPTIONS = {one.name: one for one in fields(Wishes) if str(one.type) in TYPED}
+"""Those options of `infer` in Python that are options here."""
+
+
+def _name(one: Field[Any]) -> str:
+    """Return what an option of `infer` in Python is called on the command line."""
+    return NAMES.get(one.name, f"--{one.name.replace('_', '-')}")
+
+
+def _declared(one: Field[Any]) -> tuple[str, Any, Any]:
+    """Return an option of `infer` in Python as one of the command line: its name, its type with its help, and its default."""
+    text, panel, is_shown = WORDS[one.name].meaning, PANELS.get(one.name), one.default is not None
+    how = typer.Option(_name(one), help=text, rich_help_panel=panel, show_default=is_shown)
+    return one.name, Annotated[TYPED[str(one.type)], how], one.default
+
+
+if TYPE_CHECKING:
+    TypedWishes = Any
+else:
+    TypedWishes = make_dataclass("TypedWishes", [_declared(one) for one in OPTIONS.values()], frozen=True)
+"""The options of `infer` in Python as they are typed."""
 
 
 def infer(
@@ -46,37 +75,12 @@ def infer(
         list[str], typer.Argument(help="CSV files with a column time, and what was measured.", autocompletion=complete_table)
     ],
     *,
-    free: Annotated[str, typer.Option(help=FREE)],
+    free: Annotated[str, typer.Option(help=WORDS["free"].meaning)],
     changes: Changes = None,
     column: Columns = None,
-    begin: Annotated[str | None, option("Take the record from this time on (s, or with a unit).", "--from")] = None,
-    end: Annotated[str | None, option("Take the record up to this time.", "--to")] = None,
-    by_what: Annotated[str, option(BY, "--by")] = "samples",
-    observe: Annotated[str | None, option(OBSERVE)] = None,
-    start: Annotated[str | None, option(START)] = None,
-    sensor: Annotated[str, typer.Option(help=SENSOR)] = "contact",
-    normal: Annotated[
-        str, typer.Option(help="Normal load of the runs: problem, or record (its column, as it varies).")
-    ] = "problem",
-    parts: Annotated[str | None, option("rests: a run of its own after each slip event of the record.")] = None,
-    each: Annotated[str | None, option("What is free for each part of --parts: initial.load, initial.state.")] = None,
-    bound: Annotated[list[str] | None, option(BOUND, panel=SEARCH)] = None,
-    prior: Annotated[list[str] | None, option(PRIOR, panel=SEARCH)] = None,
-    begin_at: Annotated[list[str] | None, option("Where the search for a number begins: NAME=VALUE.", panel=SEARCH)] = None,
-    weight: Annotated[float, typer.Option(help=WEIGHT, rich_help_panel=SEARCH)] = 0.0,
-    windows: Annotated[bool, typer.Option("--windows", help="Fit shorter parts of the record, too, and show the spread.")] = False,
-    loss: Annotated[str, typer.Option(help="linear; soft_l1, huber or cauchy for outliers.", rich_help_panel=SEARCH)] = "linear",
-    starts: Annotated[int, typer.Option(help="How many starts the search has.", rich_help_panel=SEARCH)] = 4,
-    seed: Annotated[int, typer.Option(help="Seed of starts and samples.", rich_help_panel=SEARCH)] = 0,
-    held_out: Annotated[str | None, option('Leave the end out, to be predicted: a share as 0.3, or "100 s".')] = None,
-    profiles: Annotated[bool, typer.Option("--profiles", help="Intervals from profiles of the likelihood.")] = False,
-    samples: Annotated[int, typer.Option(help="Samples of the posterior distribution to draw (needs emcee).")] = 0,
-    checkpoint: Annotated[Path | None, option("Keep the samples in this file (.nc); the same command goes on with them.")] = None,
-    trend: Annotated[str, option(TREND, panel=SEARCH)] = "auto",
-    max_time: Annotated[str | None, option(MAX_TIME, panel=SEARCH)] = None,
+    typed: TypedWishes,
     compare: Annotated[list[str] | None, option(COMPARE)] = None,
     compare_free: Annotated[str | None, option(COMPARE_FREE)] = None,
-    rtol: Annotated[float, typer.Option(help="Relative tolerance of the runs.", rich_help_panel=ACCURACY)] = 1e-8,
     out: Annotated[
         Path | None, option("Save all numbers and curves (.nc) or the table (.csv).", "--out", "-o", panel=RESULTS)
     ] = None,
@@ -124,23 +128,11 @@ def infer(
     if report is not None:
         check_folder(report, "--report")
     look.check(figure)
-    options: dict[str, Any] = {
-        "by": by_what,
-        "observe": observe,
-        "start": start,
-        "sensor": sensor,
-        "normal": normal,
-        "parts": parts,
-    }
-    options |= {"loss": loss, "starts": starts, "weight": weight, "windows": windows}
-    options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
-    options |= {"checkpoint": checkpoint, "trend": trend, "max_time": _typed(max_time)}
-    options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
-    options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
+    options = {name: _read(OPTIONS[name], value) for name, value in vars(typed).items()}
     if is_data(scenario):
         words = ["SCENARIO", scenario, *data] if is_data(data[0]) else [data[0], scenario, *data[1:]]
         raise InputError(f"infer: the scenario comes first, and then the data: `stickslip infer {' '.join(words)} --free {free}`")
-    if compare and held_out is None:
+    if compare and typed.held_out is None:
         raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
     chosen = load(scenario, "infer", changes)
     compared = [(one := load(name, "infer"), _free_of(name, one, compare_free or free)) for name in compare or ()]
@@ -217,31 +209,31 @@ def _free_of(name: str, scenario: Scenario, free: str) -> str:
     return ",".join(found)
 
 
-def _typed(text: str | None) -> Any:
-    """Return what was typed as a number if it is one."""
+def _read(one: Field[Any], typed: Any) -> Any:
+    """Return the value of an option from what was typed. Raises InputError."""
+    from stickslip.cli.overrides import typed_values
     from stickslip.problem.scenarios import typed_number
 
-    return None if text is None else typed_number(text)
+    if not typed:
+        return None if one.type == MAPPING else typed
+    if one.type == MAPPING:
+        values = typed_values(typed, f"infer: {_name(one)}", "friction.a=0.01")
+        return _bounds(values) if one.name == "bounds" else values
+    if one.type == "Sequence[str] | None":
+        return typed.split(",")
+    return typed_number(typed) if "WithUnit" in str(one.type) else typed
 
 
-def _values(texts: list[str] | None, where: str) -> dict[str, Any] | None:
-    from stickslip.cli.overrides import typed_values
-
-    return typed_values(texts, f"infer: {where}", "friction.a=0.01") if texts else None
-
-
-def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
+def _bounds(typed: Mapping[str, Any]) -> dict[str, Any]:
     """Return limits by name. Raises InputError."""
     from stickslip.foundation.arguments import shown
     from stickslip.foundation.axis import TypedRange
     from stickslip.problem.scenarios import typed_number
 
-    if not texts:
-        return None
     found = {}
-    for name, value in (_values(texts, "--bound") or {}).items():
-        typed = TypedRange.of(str(value), "infer: --bound")
-        if typed is None or typed.points is not None or typed.log:
+    for name, value in typed.items():
+        limits = TypedRange.of(str(value), "infer: --bound")
+        if limits is None or limits.points is not None or limits.log:
             raise InputError(f'infer: --bound must be NAME=LOW..HIGH, as "friction.a=0.001..0.1", got {shown(f"{name}={value}")}')
-        found[name] = (typed_number(typed.low), typed_number(typed.high))
+        found[name] = (typed_number(limits.low), typed_number(limits.high))
     return found
