@@ -47,13 +47,12 @@ def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
     assert again.read_bytes() == (tmp_path / "run.nc").read_bytes()
 
 
-def test_arrays_make_a_file_in_which_readers_find_their_dataset(tmp_path: Path) -> None:
-    """xarray writes and reads netCDF independently; solutions are written without it, because its import takes long."""
+def test_arrays_make_the_same_file_as_their_dataset(tmp_path: Path) -> None:
+    """xarray writes netCDF independently; solutions are written without it, because its import takes long."""
     variables = {
         "time": Variable(("time",), np.linspace(0.0, 1.0, 5), {"units": "s"}),
-        "slip": Variable(("time", "piece"), np.array([[np.nan, 1.5, 2.0]] * 5), {"units": "m", "long_name": "slip, µ"}),
-        "place": Variable(("place",), np.arange(3.0), {"units": "m"}),
-        "pieces": Variable(("piece",), np.arange(3), {}),
+        "slip": Variable(("time", "piece"), np.array([[np.nan, 1.5]] * 5), {"units": "m", "long_name": "slip, µ"}),
+        "pieces": Variable(("piece",), np.arange(2), {}),
         "cause": Variable(("shock",), np.array(["start", "écho", ""]), {"units": ""}),
         "none": Variable(("no_shock",), np.empty(0), {"units": "Pa"}),
         "words": Variable(("no_shock",), np.array([], dtype=str), {}),
@@ -62,11 +61,7 @@ def test_arrays_make_a_file_in_which_readers_find_their_dataset(tmp_path: Path) 
     attributes = {"title": "a run", "status_ok": 1, "rtol": 1e-10}
     ours = write_variables(variables, attributes, tmp_path / "ours.nc")
     other = write(xr.Dataset({name: tuple(one) for name, one in variables.items()}, attrs=attributes), tmp_path / "other.nc")
-    with xr.open_dataset(ours, engine="h5netcdf") as found, xr.open_dataset(other, engine="h5netcdf") as known:
-        assert found.identical(known)
-        assert list(found.variables) == list(known.variables)
-        assert [one.dtype for one in found.variables.values()] == [one.dtype for one in known.variables.values()]
-        assert [type(one) for one in found.attrs.values()] == [type(one) for one in known.attrs.values()]
+    assert ours.read_bytes() == other.read_bytes()
 
 
 def test_tables_of_a_run_are_read_as_xarray_reads_them(tmp_path: Path) -> None:
