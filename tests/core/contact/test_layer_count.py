@@ -112,6 +112,7 @@ def test_two_slabs_have_the_critical_rates_at_which_roots_cross_the_axis_and_no_
 # ---- motions drawn at random ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(6))
 def test_no_verdict_on_a_bundled_body_contradicts_its_growth_rate_or_a_root(seed: int):
     draw = np.random.default_rng(100 + seed)
@@ -159,7 +160,7 @@ def test_no_verdict_on_layers_drawn_at_random_contradicts_its_growth_rate_or_a_r
         check_motion(body, *drawn_law(draw, body), seed)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("seed", range(6))
 def test_as_many_roots_are_counted_as_are_found(seed: int):
     """On small bodies with a mass, beyond lines with few roots: all of them, each once, by the secant method from 6 000 places."""

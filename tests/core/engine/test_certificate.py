@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 # ---- the bound ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("make", RUNS)
 def test_no_step_lacks_more_than_its_bound(make: Callable[[int], ss.Problem]) -> None:
     """Less the rounding of terms; a bound a million times smaller would be exceeded somewhere."""

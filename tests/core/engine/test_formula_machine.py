@@ -76,6 +76,7 @@ def test_functions_of_a_law_do_what_their_text_says(kind: str) -> None:
         assert agreement(writer, part, rng) > 0.97, part
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(24))
 def test_random_formulas_do_what_their_text_says(seed: int) -> None:
     rng, states = random.Random(seed), seed % 3

@@ -89,6 +89,7 @@ def drawn(seed: int, turns: bool) -> tuple[ss.Problem, float]:
     return ss.Problem(body, law, pull_rate=pull, **AT_REST), duration  # type: ignore[arg-type]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("seed", "turns"), [(2, False), (6, False), (20, False), (10, True), (22, True)])
 def test_slip_under_bristles_does_not_depend_on_the_tolerance(seed: int, turns: bool) -> None:
     """Relative 1e-8 of slip, to rtol 1e-13; these five were off by 5e-7 to 5e-5."""
@@ -105,6 +106,7 @@ def test_slip_under_bristles_does_not_depend_on_the_tolerance(seed: int, turns: 
 BUNDLED = ("velocity-steps-block", "reversing-axis", "rate-and-state-block", "rate-and-state-slab", "slide-hold-slide-block")
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", BUNDLED)
 def test_no_piece_of_a_bundled_scenario_is_without_a_bound(name: str) -> None:
     run = ss.simulate(name)

@@ -106,7 +106,7 @@ def sampled(run: ss.Solution, points: int) -> list[tuple[float, float, float]]:
     return list(zip(slips.tolist(), np.abs(run.slip_rate(times)).tolist(), loads.tolist(), strict=True))
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("driver", [math.inf, 0.5 * Z])
 @pytest.mark.parametrize("law", [WAVY, WEAKENING, PRODUCT, FREE, KINKED], ids=["wavy", "weakening", "product", "free", "kinked"])
 def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.FrictionLaw, driver: float) -> None:

@@ -80,7 +80,7 @@ def time_to(u: float, w: float, jump: float) -> float:
     return float(whole)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("w", WIDTHS[::-1])
 def test_perfect_delay_follows_folds_that_move(w: float) -> None:
     """The time of the slip after 6 s to 5e-8; the slip of the jump to 1e-6."""

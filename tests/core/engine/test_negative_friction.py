@@ -33,7 +33,7 @@ def path_of(run: ss.Solution) -> float:
     return float(np.abs(np.diff(run.slip(np.append(run.history.start, run.history.duration)))).sum())
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("body", [SLAB, WITH_MASS, STIFF, BLOCK], ids=["slab", "mass", "stiff", "block"])
 @given(
     depth=st.floats(-5.0, -0.5).map(lambda power: 10.0**power),

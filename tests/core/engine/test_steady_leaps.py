@@ -51,6 +51,7 @@ CASES = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("case", CASES)
 def test_a_leap_lands_where_computing_each_round_trip_does(case: str) -> None:
     """Slip at the end within the stated bound and rounding; slip rate within 1e-6 of the driver's rate, the tolerance of leaps."""

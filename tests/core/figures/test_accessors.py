@@ -40,7 +40,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
 
 
 @pytest.mark.usefixtures("coarse")
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", DRAWN)
 def test_areas_stack_up_to_the_total(name: str) -> None:
     """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""

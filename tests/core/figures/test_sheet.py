@@ -187,7 +187,7 @@ class Notebook:
         return pictures
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("formats", [{}, {"png": b"P"}, {"png": (b"P", {"width": 3})}, {"png": None, "svg+xml": "<svg>"}])
 def test_a_notebook_shows_the_result_of_a_cell_once(formats: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     notebook = Notebook(monkeypatch, **formats)

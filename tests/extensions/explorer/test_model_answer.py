@@ -53,7 +53,7 @@ LONG = "pipe-and-collar"
 def everywhere(test):
     """Run a test for bundled scenarios."""
     names = [pytest.param(name, marks=pytest.mark.slow) if name == LONG else name for name in NAMES]
-    return pytest.mark.sampled(every=3)(pytest.mark.parametrize("name", names)(test))
+    return pytest.mark.sampled(every=7)(pytest.mark.parametrize("name", names)(test))
 
 
 @everywhere

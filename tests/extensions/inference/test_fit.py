@@ -52,6 +52,7 @@ def test_every_law_with_parameters_and_without_a_state_is_tried() -> None:
     assert fitted == {*TRUE, "coulomb"}
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", TRUE)
 def test_exact_points_give_the_parameters_back(kind: str) -> None:
     """Absolute and relative tolerance 1e-8; the residual is rounding."""

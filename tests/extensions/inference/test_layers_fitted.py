@@ -22,7 +22,7 @@ def fitted(free: list[str], seed: int, **numbers: Any) -> ss.studies.Inference:
     return ss.studies.infer(guess, record, free, start="problem", starts=1)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("free", "numbers", "exact"),
     [

@@ -56,6 +56,7 @@ def of_kind(kind: str, count: int = 1500) -> tuple[Floats, float]:
     return (shape - (np.mean(shape) if kind.startswith("drift") else 0.0)) / scale, found
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("noise", [1.5, 0.3, 0.03])
 @pytest.mark.parametrize("kind", ["drift with slip", "drift with time", "lag", "oscillation", "offset", "steps"])
 def test_each_kind_is_named_with_its_size_at_each_level_of_noise(kind: str, noise: float) -> None:

@@ -110,7 +110,7 @@ def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root
 
 
-@pytest.mark.sampled(every=len(DAMAGE) - 1)
+@pytest.mark.sampled(every=len(DAMAGE) + 3)
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: Path) -> None:

@@ -67,7 +67,7 @@ def test_the_method_of_steps_finds_the_same_motion(law: ss.friction.FrictionLaw,
     assert abs(run.slip(times) - slip).max() < 1e-9 * slip.max()
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("law", [WEAKENING, ROUGH], ids=["slip", "rate"])
 @pytest.mark.parametrize("driver", [math.inf, 0.4 * Z], ids=["rigid", "leaky"])
 def test_one_layer_and_two_slabs_that_are_one_slip_as_the_slab(law: ss.friction.FrictionLaw, driver: float) -> None:

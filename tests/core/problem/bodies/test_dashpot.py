@@ -41,7 +41,7 @@ def test_the_exact_solver_slips_at_the_stress_drop_over_the_damping() -> None:
     assert float(run.slip_rate(1.0)) == pytest.approx((DROP + 1e6) / SLAB.damping, rel=1e-13, abs=0.0)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("law", [ss.friction.HyperbolicRate(0.8, 0.6, 0.2), ss.friction.LinearSlipWeakening(0.8, 0.6, 2.0)])
 @pytest.mark.parametrize("share", [0.0, 0.4, np.inf], ids=["dead load", "leaky", "rigid"])
 def test_waves_keep_the_impedance_and_the_contact_equation_has_both(law: ss.friction.FrictionLaw, share: float) -> None:

@@ -113,6 +113,7 @@ def test_energies_balance_with_what_drag_takes(kind: str, driver: float) -> None
     assert (events.damped > 0.0).all()
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("kind", SIDES)
 def test_stress_at_rest_stays_and_layers_that_are_pulled_begin_steadily(kind: str) -> None:
     held = ss.simulate(ss.Problem(with_drag(kind), RATE_LAW, 0.0, initial_load=7e6), 1e4)

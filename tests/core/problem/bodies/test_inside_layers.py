@@ -111,6 +111,7 @@ def test_what_layers_do_not_have_inside_is_refused_in_one_line() -> None:
         run.field(-1.0, 0.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("sides", ["one", "apart", "joined"])
 def test_the_energy_of_a_layer_is_that_of_its_stress_and_velocity(sides: str) -> None:
     """Sums over 4000 places of each layer, to 2e-3 of the largest energy; together the layers hold what the run says, to 1e-12."""

@@ -70,6 +70,7 @@ def test_layers_of_equal_impedance_are_one_slab(name: str, mass: float, shares: 
         np.testing.assert_allclose(events[name], of_slab[name], rtol=1e-7, atol=size, err_msg=name)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", [name for name in MOVES if name.startswith("ground")])
 def test_two_equal_slabs_that_are_joined_are_one_of_twice_the_impedance_on_the_same_ground(name: str) -> None:
     loading = {"initial_load": 59e6, "pull_rate": 0.2} | MOVES[name]

@@ -76,7 +76,7 @@ GROUNDS: dict[str, dict[str, LoadingHistory]] = {
 }
 
 
-@pytest.mark.sampled(every=8)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("driver", [0.0, math.inf, 0.4 * IMPEDANCE])
 @pytest.mark.parametrize("ground", GROUNDS.values(), ids=GROUNDS)
 def test_a_slab_is_the_sum_of_its_echoes(ground: dict[str, LoadingHistory], driver: float) -> None:

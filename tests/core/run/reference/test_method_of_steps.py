@@ -59,7 +59,7 @@ def test_pulses_under_constant_load_have_their_closed_form():
     np.testing.assert_allclose(found.slip_rate(t), exact.slip_rate(t), rtol=1e-7, atol=0)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("driver", [0.0, 3e6, 9.8e6, 1e8, math.inf])
 def test_the_load_of_a_stuck_slab_has_its_closed_form(driver):
     slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=driver)

@@ -157,6 +157,7 @@ def test_the_field_meets_the_driver(run: ss.Solution) -> None:
         assert driver_error(run, wrong=1.01) > 1e-5
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", ["hyperbolic-rate", "linear-slip-weakening", "sinusoidal-slip", "rate-and-state", "lagged"])
 @given(data=st.data())
 @few

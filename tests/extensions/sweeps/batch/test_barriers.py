@@ -46,7 +46,7 @@ def law_of_plain_numbers(formula: str) -> ss.friction.FrictionLaw:
     return Hidden(0.0)
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("name", list(BARRIERS | STEEP))
 def test_members_of_a_batch_stop_where_single_runs_do(name: str) -> None:
     """Eight loads side by side; slip to 1e-7 of truth and to 1e-12 of the single run, with the same status."""

@@ -60,6 +60,7 @@ def test_results_do_not_depend_on_threads_order_or_other_members(name: str, monk
         assert alone.results[quantity][order].tobytes() == shuffled.results[quantity].tobytes(), quantity
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", CASES)
 def test_results_do_not_depend_on_what_a_workspace_held_before(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     case = CASES[name]
