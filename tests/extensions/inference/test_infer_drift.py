@@ -98,7 +98,7 @@ def test_from_two_plateaus_it_is_said_that_levels_cannot_tell_a_drift_from_the_e
 
 
 def test_a_drift_that_the_fit_does_not_need_is_held_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.plateaus"), "SEEN", 0.0)
+    monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.plateaus"), "DRIFT_WORTH_A_TRY", 0.0)
     said: list[str] = []
     study = ss.studies.infer(NEAR, TWO.record(), ["a", "reference"], starts=1, progress=said.append)
     assert any("record." in one and "is free, too" in one for one in said)

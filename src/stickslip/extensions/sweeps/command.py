@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.sweeps.execution.plan import Plan
     from stickslip.extensions.sweeps.sweep import SweepProgress
 
-complete_design = choices("design", names_in("extensions.sweeps.design.design", "KINDS"))
+complete_design = choices("design", names_in("extensions.sweeps.design.design", "KINDS_OF_DESIGN"))
 complete_quantity = choices("quantity", names_in("extensions.sweeps.design.quantities", "QUANTITIES"))
 
 VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key."
