@@ -7,7 +7,7 @@ record, a dataclass, is called with the arguments of the record: `takes_fields`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, signature
 from textwrap import fill
@@ -54,9 +54,7 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
             check_names(function.__name__, full, args, by_name)
             return function(*args, **by_name)
 
-        call.__signature__ = signature(function).replace(parameters=full)  # type: ignore[attr-defined] # `inspect` reads it
-        call.__doc__ = _said_in(function, said, (*more, *names))
-        return cast(Function, call)
+        return cast(Function, _told(call, full, said, (*more, *names)))
 
     return decorate
 
@@ -79,9 +77,7 @@ def takes_fields(
             check_names(function.__name__, full, args, by_name)
             return function(record(*args, **by_name))
 
-        call.__signature__ = signature(function).replace(parameters=full)  # type: ignore[attr-defined] # `inspect` reads it
-        call.__doc__ = _said_in(function, said, [one.name for one in full])
-        return call
+        return _told(call, full, said, [one.name for one in full])
 
     return decorate
 
@@ -91,10 +87,12 @@ def _parameter(name: str, kind: Any, default: Any) -> Parameter:
     return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=getattr(kind, "__forward_arg__", kind))
 
 
-def _said_in(function: Callable[..., Any], said: Mapping[str, Said], names: Iterable[str]) -> str:
-    """Return the docstring of a function, with the entries of these arguments."""
+def _told(call: Function, full: Sequence[Parameter], said: Mapping[str, Said], names: Iterable[str]) -> Function:
+    """Return a function whose signature has all parameters, and its docstring the entries of these."""
+    call.__signature__ = signature(call).replace(parameters=full)  # type: ignore[attr-defined] # `inspect` reads it
     entries = "".join(_entry(name, said[name]) for name in names)
-    return (function.__doc__ or "").replace("    {options}\n", entries)
+    call.__doc__ = (call.__doc__ or "").replace("    {options}\n", entries)
+    return call
 
 
 def _entry(name: str, said: Said) -> str:

@@ -177,6 +177,14 @@ def _series(coefficients: Floats, part: NDArray[np.intp], xi: Floats) -> Floats:
     return np.asarray(chebyshev.chebval(2.0 * xi - 1.0, coefficients[:, part], tensor=False))
 
 
+def velocity_and_stress(away: Floats, towards: Floats, impedance: Floats | float, stress: Floats | float) -> tuple[Floats, Floats]:
+    """Return velocity (m/s) and stress (Pa) where a wave away from the contact, Z v - sigma, meets one towards it, Z v + sigma.
+
+    Both (Pa) are less those of a stress at rest, and this is added.
+    """
+    return (away + towards) / (2.0 * impedance), stress + 0.5 * (towards - away)
+
+
 def rounding(time: Floats, round_trip_time: float) -> Floats:
     """Return the possible error (s) of a time that was computed from times and travel times."""
     return np.asarray(4.0 * np.spacing(np.maximum(np.abs(time), round_trip_time)))

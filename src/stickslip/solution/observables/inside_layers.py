@@ -12,6 +12,7 @@ import numpy as np
 from stickslip.engine import Floats, History, Integers, Side
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies import OfLayers
+from stickslip.solution.observables.field import rounding, velocity_and_stress
 from stickslip.solution.observables.layer_records import MOVED, MOVED_IN_TRIP
 from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
 
@@ -80,7 +81,7 @@ def _field(waves: LayerWaves, slip: Floats, t: Floats, side: Side, *, cell: Inte
 
     impedance, reference = waves.ladder.impedance[cell], waves.reference[cell]
     rise = passed[which, cell] - passed[which, first] + (0.5 * (g_total - f_total) + reference * away) / impedance
-    velocity, stress = (f + g) / (2.0 * impedance), 0.5 * (g - f) + reference
+    velocity, stress = velocity_and_stress(f, g, impedance, reference)
     if len(waves.starts) == 2 or waves.body.is_joined:
         return np.stack([slip + rise, velocity, stress])
     moved = waves.sums(trip, phase)[:, MOVED_IN_TRIP] + waves.sums(base, np.full(len(base), waves.round))[:, MOVED]
@@ -93,7 +94,7 @@ def beside(waves: LayerWaves, time: Floats, known: Floats, side: Side) -> Floats
 
     The end of the run has one side only, the left one.
     """
-    slack = 4.0 * np.spacing(np.maximum(np.abs(known), waves.round))
+    slack = rounding(known, waves.round)
     ahead = (side == "right") & (known + slack < waves.history.span[1])
     return np.asarray(time + np.where(ahead, slack, -slack))
 

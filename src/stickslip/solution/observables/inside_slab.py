@@ -26,16 +26,12 @@ from stickslip.engine import Epoch, History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.solution.observables.asked import AtContact, Field
-from stickslip.solution.observables.field import WaveInterval, check_side, rounding, slab_of
-from stickslip.solution.observables.quadrature import NODES, WEIGHTS
+from stickslip.solution.observables.field import WaveInterval, check_side, rounding, slab_of, velocity_and_stress
+from stickslip.solution.observables.quadrature import CURVED_NODES, CURVED_WEIGHTS
 from stickslip.solution.observables.waves import Waves
 
 ROUND_TRIPS_TOGETHER = 8
 """Round trips that are evaluated together."""
-CURVED_PLACES = NODES**2 * (3.0 - 2.0 * NODES)
-"""Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
-SHARES = 6.0 * NODES * (1.0 - NODES) * WEIGHTS
-"""Weights of these places: the derivative of s^2 (3 - 2 s) times the weights of the rule."""
 
 
 def field_of_slab(history: History, contact: AtContact, place: Floats, time: Floats, side: Side) -> Field:
@@ -74,7 +70,7 @@ class _InsideOfSlab:
         impedance, reference = self.waves.body.impedance, self.waves.reference
         load, leaving = self._coming(away, side), self.interval.leaving(self.time - away, side)
         rise = 2.0 * reference * away + self._load_coming(away) - self._left(self.time - away, self.time)
-        return rise / (2.0 * impedance), (load + leaving) / (2.0 * impedance), reference + 0.5 * (load - leaving)
+        return rise / (2.0 * impedance), *velocity_and_stress(leaving, load, impedance, reference)
 
     def _coming(self, away: Floats, side: Side) -> Floats:
         """Return the load minus the reference (Pa) that reaches the contact after the time `away` (s).
@@ -144,9 +140,9 @@ class _BothWaves:
         fronts = np.concatenate([-self.start, self.start + self.waves.round, [self.begun, half - self.begun], comes])
         edges = np.unique(np.concatenate([[0.0, half], fronts[(fronts > 0.0) & (fronts < half)]]))
         lengths = np.diff(edges)[:, None]
-        away = edges[:-1, None] + lengths * CURVED_PLACES
+        away = edges[:-1, None] + lengths * CURVED_NODES
         both = self._coming(away.ravel()) + self._left(-away.ravel())
-        return float((both.reshape(away.shape) ** 2 * SHARES * lengths).sum()) / (8.0 * self.waves.body.impedance)
+        return float((both.reshape(away.shape) ** 2 * CURVED_WEIGHTS * lengths).sum()) / (8.0 * self.waves.body.impedance)
 
     def _left(self, time: Floats) -> Floats:
         """Return w plus the reference (Pa) that left the contact at these times."""

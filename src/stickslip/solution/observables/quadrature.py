@@ -31,6 +31,8 @@ def _gauss(nodes: int) -> tuple[Floats, Floats]:
 
 NODES, WEIGHTS = _gauss(FULL)
 """Places and weights of the full rule on [0, 1]."""
+CURVED_NODES, CURVED_WEIGHTS = NODES**2 * (3.0 - 2.0 * NODES), 6.0 * NODES * (1.0 - NODES) * WEIGHTS
+"""Those for what may be a square root at both ends, as a wave next to folds: the rule for s, where places are s^2 (3 - 2 s)."""
 
 
 def over(

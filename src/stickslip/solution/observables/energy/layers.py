@@ -16,10 +16,7 @@ from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers
 from stickslip.solution.observables.layer_records import DRAGGED, RADIATED, SUMS, VALUE, WORK
 from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
-from stickslip.solution.observables.quadrature import NODES, WEIGHTS
-
-CURVED = NODES**2 * (3.0 - 2.0 * NODES), 6.0 * NODES * (1.0 - NODES) * WEIGHTS
-"""Places and weights in an interval of length 1 at whose ends a wave may be a square root, next to folds: see `balance`."""
+from stickslip.solution.observables.quadrature import CURVED_NODES, CURVED_WEIGHTS, NODES, WEIGHTS
 
 
 class InsideLayers(NamedTuple):
@@ -36,7 +33,7 @@ class LayerEnergy:
 
     def __init__(self, history: History, body: OfLayers) -> None:
         self.history, self.body, self.waves = history, body, LayerWaves(history, body)
-        self.rule = CURVED if history.store.bend.any() else (NODES, WEIGHTS)
+        self.rule = (CURVED_NODES, CURVED_WEIGHTS) if history.store.bend.any() else (NODES, WEIGHTS)
 
     # ---- what the waves store -----------------------------------------------------------------------------------------------
 

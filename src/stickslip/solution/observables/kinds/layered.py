@@ -14,7 +14,7 @@ from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Fi
 from stickslip.solution.observables.energy.balance import epochs, heat
 from stickslip.solution.observables.energy.ground import shaken, speed
 from stickslip.solution.observables.energy.layers import LayerEnergy
-from stickslip.solution.observables.field import check_side
+from stickslip.solution.observables.field import check_side, velocity_and_stress
 from stickslip.solution.observables.inside_layers import beside, field_of_layers
 from stickslip.solution.observables.layer_records import VALUE
 from stickslip.solution.observables.layers import NUMBERS_TOGETHER, LayerWaves
@@ -87,8 +87,7 @@ class ObservablesOfLayered(ObservablesOfKind):
             even, odd = both[: len(part), last], waves.odd(both[len(part) :, None], *before)[:, VALUE, last]
             found[:, low : low + together] = (even, odd) if waves.is_away[last] else (odd, even)
         met, sent = found
-        impedance, reference = float(waves.ladder.impedance[last]), float(waves.reference[last])
-        return AtDriver((met + sent) / (2.0 * impedance), reference + 0.5 * (sent - met))
+        return AtDriver(*velocity_and_stress(met, sent, float(waves.ladder.impedance[last]), float(waves.reference[last])))
 
     def ways(self, problem: Problem) -> list[float]:
         """Return the time through all cells of each side."""

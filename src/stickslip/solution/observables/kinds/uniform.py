@@ -13,7 +13,7 @@ from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Fi
 from stickslip.solution.observables.driver_of_waves import driver_behind
 from stickslip.solution.observables.energy.balance import epochs, heat
 from stickslip.solution.observables.energy.ground import shaken, shaking, speed
-from stickslip.solution.observables.field import rounding, slab_of
+from stickslip.solution.observables.field import rounding, slab_of, velocity_and_stress
 from stickslip.solution.observables.given_load import of_ground
 from stickslip.solution.observables.inside_slab import field_of_slab, kinetic
 from stickslip.solution.observables.proof import Places
@@ -93,8 +93,7 @@ class ObservablesOfUniform(ObservablesOfKind):
         if in_run.any():
             leaving[in_run] = waves.leaving(history.find(np.clip(left - slack, begin, end)[in_run], side))
         sent_back = waves.arriving(leaving, left - begin, slack)
-        rate = (leaving + sent_back) / (2.0 * waves.body.impedance)
-        return AtDriver(rate, waves.reference + 0.5 * (sent_back - leaving))
+        return AtDriver(*velocity_and_stress(leaving, sent_back, waves.body.impedance, waves.reference))
 
     def field(self, history: History, at_contact: AtContact, place: Floats, time: Floats, side: Side) -> Field:
         """Return it from both waves at each place."""
