@@ -15,7 +15,7 @@ from stickslip.foundation.arguments import CheckedArguments, as_path, for_users,
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import check_fields, declare
-from stickslip.foundation.show import html_table, shown_fields
+from stickslip.foundation.show import ShownAsTable, shown_fields
 from stickslip.problem.limits import check_creep_rtol, check_shortest_event
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
@@ -40,7 +40,7 @@ _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[
 
 
 @dataclass(frozen=True)
-class Scenario(CheckedArguments):
+class Scenario(ShownAsTable, CheckedArguments):
     """A problem, and how long (s, or a text with a unit) and how accurately to run it.
 
     Two scenarios are equal if they differ in `name` and `source`, the TOML text from which it was read, only. After `max_events`
@@ -69,9 +69,11 @@ class Scenario(CheckedArguments):
         others = ", ".join(f"{name}={text}" for name, text in fields_shown.items() if name not in ("name", "title", "description"))
         return f"stickslip Scenario {': '.join(head)}\n{problem}\n{others}"
 
+    def _lines(self) -> list[tuple[str, str]]:
+        return [(name, text.strip("'")) for name, text in shown_fields(self) if name != "problem"]
+
     def _repr_html_(self) -> str:
-        rows = [(name, text.strip("'")) for name, text in shown_fields(self) if name not in ("problem", "name")]
-        return html_table(f"stickslip Scenario {self.name}", rows) + self.problem._repr_html_()
+        return super()._repr_html_() + self.problem._repr_html_()
 
     @property
     def heading(self) -> str:
@@ -244,7 +246,7 @@ def _in_tables(message: str) -> str:
     return message.replace("initial_", "[initial] ")
 
 
-class BundledScenarios(Mapping[str, Scenario]):
+class BundledScenarios(ShownAsTable, Mapping[str, Scenario]):
     """The bundled scenarios by name: `ss.scenarios["fig6-slab"]` reads one, `print(ss.scenarios)` lists all.
 
     Iterating gives the names. A name that is not bundled raises InputError, which names the nearest one; a file is read with
@@ -273,9 +275,12 @@ class BundledScenarios(Mapping[str, Scenario]):
         width = max(len(name) for name in self)
         return "\n".join(f"{name:<{width}}  {entry.title}" for name, entry in library.entries().items())
 
-    def _repr_html_(self) -> str:
-        rows = ((name, entry.title, entry.description) for name, entry in library.entries().items())
-        return html_table("bundled scenarios: ss.scenarios[name], ss.simulate(name)", rows)
+    @property
+    def _caption(self) -> str:
+        return "bundled scenarios: ss.scenarios[name], ss.simulate(name)"
+
+    def _lines(self) -> list[tuple[str, str, str]]:
+        return [(name, entry.title, entry.description) for name, entry in library.entries().items()]
 
     def _ipython_key_completions_(self) -> list[str]:
         return library.names()
