@@ -210,7 +210,7 @@ def test_results_are_tables_in_notebooks() -> None:
     run = ss.simulate(SOURCES["cycles-block"])
     page = Tables(run._repr_html_())
     assert "events" in page.cells
-    assert any(cell.startswith("7, largest slip 0.164279 m, ") for cell in page.cells)
+    assert any(cell.startswith("7 slip events, the largest of 0.164279 m in one pulse, ") for cell in page.cells)
     study = ss.studies.ensemble(run.problem, run.duration, members=2)
     page = Tables(study._repr_html_())
     assert "recurrence" in page.cells

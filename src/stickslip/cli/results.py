@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
-from stickslip.cli.output.files import drawing, write_files
+from stickslip.cli.output.files import announce, drawing, write_files
 from stickslip.cli.output.show import console, say, titled
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
@@ -25,10 +25,12 @@ if TYPE_CHECKING:
     from stickslip.problem import Problem
     from stickslip.problem.scenarios import Scenario
     from stickslip.run import Catalogue
-    from stickslip.solution import Solution
+    from stickslip.solution import Account, Solution
 
 DONE = Status("finished", "the run is finished", ok=True)
 """The status of a run that has none."""
+MANY_EVENTS = 100_000
+"""A catalogue with more events than this is not read again for the summary of its run."""
 
 
 class Results(ABC):
@@ -145,7 +147,7 @@ class EventsOfRun(RunResults):
     @property
     @override
     def status(self) -> Status:
-        return self.found.status
+        return self.found.account.status
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
@@ -153,9 +155,13 @@ class EventsOfRun(RunResults):
 
     @override
     def summarise(self, *, everything: bool = False) -> None:
-        from stickslip.cli.output.summary import show_catalogue
+        from stickslip.cli.output.summary import show_run
 
-        show_catalogue(self.scenario, self.found, everything=everything)
+        count, problem = self.found.events, self.scenario.problem
+        many = f"{count} slip events: `stickslip show` on the catalogue shows them"
+        events = many if count > MANY_EVENTS else dict(self.found.read().items())
+        show_run(titled(self.scenario), self.found.account, events, problem, everything=everything)
+        announce(*self.found.files)
 
     @override
     def draw(self, pictures: Pictures) -> list[Path]:
@@ -189,15 +195,27 @@ class StoredEvents(Results):
         """The problem of the run, if that is known."""
         return None if self.scenario is None else self.scenario.problem
 
+    @property
+    def account(self) -> Account | None:
+        """What the attributes say of the run, if they do."""
+        from stickslip.solution import Account
+
+        if self.scenario is None or "status" not in self.about:
+            return None
+        status = Status(str(self.about["status"]), str(self.about["status_message"]), ok=True)
+        return Account(self.scenario, status, float(self.about["duration"]), {word: str(note) for word, note in self.about.items()})
+
     @override
     def check(self, pictures: Pictures, where: str) -> None:
         pictures.check_events(str(self.path))
 
     @override
     def summarise(self, *, everything: bool = False) -> None:
-        from stickslip.cli.output.summary import show_events
+        from stickslip.cli.output.summary import show_run
 
-        show_events(self.path.stem, dict(self.table.items()), self.about, self.scenario)
+        screen = console()
+        say(screen, clean(self.path.stem), style="bold")
+        show_run(screen, self.account, dict(self.table.items()), self.problem, everything=everything)
 
     @override
     def draw(self, pictures: Pictures) -> list[Path]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import Any
 
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.folds import Fold
@@ -11,9 +11,6 @@ from stickslip.contact.rules.loop import Jump
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, exact_range, exactly
 from stickslip.problem import Problem, Resistance
-
-if TYPE_CHECKING:
-    from stickslip.contact.uniqueness import Uniqueness
 
 Line = tuple[str, str]
 """The name of a line, and its text."""
@@ -98,13 +95,13 @@ def said_of_pressing(problem: Problem, g: Resistance) -> str:
     return f"{ranges}the contact is regular up to {brief(stress, unit, 9)} and irregular above, where the folds move with it."
 
 
-def _units(contact: Uniqueness) -> tuple[str, str]:
-    """Return the units of loads and slip rates."""
+def _units(contact: Any) -> tuple[str, str]:
+    """Return the units of loads and slip rates of a `Uniqueness`."""
     loads = "Pa" if contact.problem is None else contact.problem.load_unit
     return loads, si_unit("slip_rate", loads)
 
 
-def regime_lines(contact: Uniqueness) -> Iterator[Line]:
+def regime_lines(contact: Any) -> Iterator[Line]:
     """Yield the regime, the critical value, and the loads with several slip rates."""
     yield "regime", f"{contact.regime}, {contact.certificate}"
     if contact.critical_parameter is not None and contact.critical_value is not None:
@@ -114,7 +111,7 @@ def regime_lines(contact: Uniqueness) -> Iterator[Line]:
         yield "window", f"load minus static strength from {low} to {high}"
 
 
-def fold_lines(contact: Uniqueness, most: int | None = None) -> Iterator[Line]:
+def fold_lines(contact: Any, most: int | None = None) -> Iterator[Line]:
     """Yield the folds, what is not decided of them, and what depends on the rule: jumps, and the loop that they enclose.
 
     Of folds and of jumps `most` are shown, by default all.

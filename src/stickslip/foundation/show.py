@@ -140,7 +140,6 @@ class ShownAsTable:
 
     @property
     def _caption(self) -> str:
-        """What stands above the rows."""
         return f"stickslip {type(self).__name__}"
 
     def _lines(self) -> Sequence[Sequence[str]]:

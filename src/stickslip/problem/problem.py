@@ -14,7 +14,7 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import quantities_of
-from stickslip.foundation.show import Declared, brief, brief_repr, fields_in, html_table, shown_fields
+from stickslip.foundation.show import Declared, ShownAsTable, brief, brief_repr, fields_in, shown_fields
 from stickslip.friction.contract import one_argument
 from stickslip.problem.fields import INITIAL_STATES, STEADY, ProblemFields
 from stickslip.problem.loading import VARYING, LoadingHistory
@@ -26,7 +26,7 @@ DAY = 86_400.0
 """A day, s: what is called a round trip of a block that never sticks."""
 
 
-class Problem(ProblemFields):
+class Problem(ShownAsTable, ProblemFields):
     """Everything that a run needs except its duration and its tolerance.
 
     Parameters
@@ -159,7 +159,7 @@ class Problem(ProblemFields):
         parts = [shown.pop("body"), shown.pop("friction"), ", ".join(f"{name}={text}" for name, text in shown.items())]
         return "\n".join(["Problem(", *(f"    {part}," for part in parts), ")"])
 
-    def _repr_html_(self) -> str:
+    def _lines(self) -> list[tuple[str, str, str]]:
         shown, declared = self._shown(), quantities_of(Problem)
         rows = []
         for name, part in (("body", self.body), ("friction", self.friction)):
@@ -167,7 +167,7 @@ class Problem(ProblemFields):
             rows += [(name, type(part).__name__, ""), *fields_in(part, f"{name}.", units)]
         for name in [name for name in shown if name not in ("body", "friction")]:
             rows.append((name, shown[name].strip("'"), declared[name].meaning if name in declared else ""))
-        return html_table("stickslip Problem", rows)
+        return rows
 
     def _check_rate(self) -> None:
         """Raise InputError if the problem has an initial rate that it cannot have."""

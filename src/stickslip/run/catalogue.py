@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,13 +14,14 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.locks import held
 from stickslip.foundation.takes import takes
-from stickslip.problem import ENOUGH_EVENTS, UNDER_WAY, Problem, Status, check_event_rate
+from stickslip.problem import ENOUGH_EVENTS, UNDER_WAY, Problem, check_event_rate
 from stickslip.problem.scenarios import read_source
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CallOptions
 from stickslip.run.progress import reporting
 from stickslip.run.run_loop import run_to_end
 from stickslip.run.words import WORDS, GivenToCatalogue
+from stickslip.solution import Account
 from stickslip.solution.files import CATALOGUE, FILE_FORMAT, Rows, RowsInMemory, check_catalogue, origin, save_checkpoint
 from stickslip.solution.observables import (
     EventStream,
@@ -154,17 +154,14 @@ def alone_with(rows: Rows) -> AbstractContextManager[None]:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """The result of a run without a history: its rows, the number of events that are over, and the reason for its end.
+    """The result of a run without a history: its rows, the number of events that are over, and what is said of the run.
 
-    `notes` are those of a `Solution`, a line each where there is something to report, without what the selection rule decided.
+    What is said leaves out what the selection rule decided.
     """
 
     rows: Rows | RowsInMemory
     events: int
-    status: Status
-    reached: float
-    """Time at the end of the run, s."""
-    notes: Mapping[str, str]
+    account: Account
 
     @property
     def files(self) -> list[Path]:
@@ -174,8 +171,9 @@ class Catalogue:
     def read(self) -> pd.DataFrame:
         """Return the table, whose `attrs` hold the status and the notes."""
         table = self.rows.read()
-        table.attrs = {"status": self.status.name, "status_message": self.status.message, "duration": self.reached}
-        table.attrs.update(self.notes)
+        status = self.account.status
+        table.attrs = {"status": status.name, "status_message": status.message, "duration": self.account.reached}
+        table.attrs.update(self.account.notes)
         return table
 
 
@@ -271,7 +269,7 @@ class EventRows:
             "proven": proof.text,
         }
         said = {name: note for name, note in notes.items() if note}
-        return Catalogue(self.rows, stream.reported, solution.status, solution.duration, said)
+        return Catalogue(self.rows, stream.reported, Account(solution.scenario(), solution.status, solution.duration, said))
 
     def _reach_note(self, solution: Solution) -> str:
         return solution.reach.beyond(self.reach).text(solution.problem)

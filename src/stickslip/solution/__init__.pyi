@@ -4,8 +4,8 @@ from stickslip.solution.accessors import (
     known_to_pyplot,  # Return what was drawn; if it is a figure of its own, pyplot knows and shows it from now on.
 )
 from stickslip.solution.account import (
-    account_of,  # Return how a run went: slip, what ended it and when (s), and what the options of the run came to.
-    notes_in,  # Return what is noted of a whole run; not `everything`: in short, if `notes` has that.
+    Account,  # What is said of a run of a scenario when it is over.
+    last_large_event,  # Return the row number of the last event whose slip, in either direction, is at least 99 % of the largest.
 )
 from stickslip.solution.evaluation import (
     CURVES,  # Quantities that every run can draw against time.
@@ -16,7 +16,6 @@ from stickslip.solution.evaluation import (
 from stickslip.solution.interval import (
     choose_interval,  # Return the run or a window on it, and the start and end (s) of the interval to be drawn.
     fronts_of,  # Return for each front between two times (s) the times when it is at the contact, at the driver, and so on in turn.
-    last_large_event,  # Return the row number of the last event whose slip, in either direction, is at least 99 % of the largest.
 )
 from stickslip.solution.solution import (
     Solution,  # A finished run.
@@ -27,15 +26,14 @@ from stickslip.solution.window import (
 
 __all__ = [
     "CURVES",
+    "Account",
     "Curve",
     "Readings",
     "Solution",
     "Window",
-    "account_of",
     "choose_interval",
     "fronts_of",
     "known_to_pyplot",
     "last_large_event",
-    "notes_in",
     "times_of",
 ]

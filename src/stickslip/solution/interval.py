@@ -7,6 +7,7 @@ import numpy as np
 from stickslip.engine import shocks_table
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.solution.account import last_large_event
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.observables.asked import observables_of
 from stickslip.solution.solution import Solution
@@ -87,9 +88,3 @@ def choose_interval(readings: Readings, start: float | None, end: float | None) 
     if not start < end:
         raise InputError(f"figure: must end after it starts, at {start:g} s; got {end:g} s")
     return readings, start, end
-
-
-def last_large_event(slips: Floats) -> int:
-    """Return the row number of the last event whose slip, in either direction, is at least 99 % of the largest."""
-    sizes = np.abs(slips)
-    return int(np.flatnonzero(sizes >= 0.99 * sizes.max())[-1])

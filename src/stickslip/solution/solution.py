@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import ShownAsTable, brief, exactly, how_long
+from stickslip.foundation.show import BRIEF_DIGITS, ShownAsTable, brief, how_long
 from stickslip.problem import Problem, RunOptions, Status, check_event_rate, default_event_rate, in_given_units
 from stickslip.problem.scenarios import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
-from stickslip.solution.account import Line, account_of, notes_in
+from stickslip.solution.account import Account, Line, events_in_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +46,7 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.runs import catalogue
 
-        return known_to_pyplot(catalogue.draw_catalogue(catalogue.catalogue_data(self._run, event), **place), place)
+        return known_to_pyplot(catalogue.draw_catalogue(catalogue.catalogue_shown(self._run, event), **place), place)
 
     @in_given_units
     def path(self, **place: Unpack[Place]) -> Figure | Axes:
@@ -240,10 +240,14 @@ class Solution(Exports, ShownAsTable):
         """The time that the run reached and, if it ended early, the time that was asked for."""
         return how_long(self.duration, self.asked_duration)
 
+    def events_in_words(self, digits: int = BRIEF_DIGITS) -> str:
+        """Return the number of slip events, and what the largest did, with so many digits."""
+        return events_in_words(self.events, self.problem, digits)
+
     @property
-    def notes(self) -> dict[str, str]:
-        """What is noted of the run, a line each, by the words of files: see `stickslip.solution.account`."""
-        return {
+    def account(self) -> Account:
+        """What is said of the run: how it went, and what is noted of it."""
+        notes = {
             "reach": self.reach_note,
             "creep": self.creep_note,
             "lumping": self.lumping_note,
@@ -254,26 +258,21 @@ class Solution(Exports, ShownAsTable):
             "proven": self.proven.text,
             "rounding": self.rounding_note,
         }
+        return Account(self.scenario(), self.status, self.duration, {word: note for word, note in notes.items() if note})
 
     @in_given_units
     def _lines(self) -> list[Line]:
         """Return what is said of the run, with its body, law and loading, in lines of a name and a text."""
-        problem, events, notes = self.problem, self.events, self.notes
+        problem, account = self.problem, self.account
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
-        slip, rate = (problem.unit_of(name) for name in ("slip", "slip_rate"))
-        largest = ""
-        if len(events):
-            slips = events.slip.to_numpy(float)
-            most = float(slips[np.abs(slips).argmax()])
-            largest = f", largest slip {brief(most, slip)}, peak rate {exactly(events.peak_rate.max(), rate, 6)}"
         return [
             ("body", repr(problem.body)),
             ("friction", problem.law_text),
             ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
-            *account_of(self.scenario(), self.status, self.duration, notes),
-            ("events", f"{len(events)}{largest}"),
+            *account.lines(),
+            ("events", self.events_in_words()),
             ("shocks", f"{len(self.shocks)}"),
-            *notes_in(notes),
+            *account.noted(),
         ]
 
     @cached_property

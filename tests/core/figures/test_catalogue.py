@@ -31,7 +31,7 @@ def panel(figure: Figure, name: str) -> mpl.axes.Axes:
 
 
 def test_every_axis_has_its_unit(cycles: ss.Solution) -> None:
-    figure = catalogue.draw_catalogue(catalogue.catalogue_data(cycles))
+    figure = catalogue.draw_catalogue(catalogue.catalogue_shown(cycles))
     assert len(figure.axes) == 7
     texts = [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())]
     assert all(UNIT.search(text) or "events" in text for text in texts), texts
@@ -40,7 +40,7 @@ def test_every_axis_has_its_unit(cycles: ss.Solution) -> None:
 
 def test_the_figure_shows_the_numbers_of_the_catalogue(cycles: ss.Solution) -> None:
     events = cycles.events
-    figure = catalogue.draw_catalogue(catalogue.catalogue_data(cycles))
+    figure = catalogue.draw_catalogue(catalogue.catalogue_shown(cycles))
     marks, ring = panel(figure, "a").lines
     assert panel(figure, "a").get_ylabel() == "slip (mm)"
     assert marks.get_xydata() == pytest.approx(np.column_stack([events.start / ss.YEAR, 1e3 * events.slip]), rel=1e-14)
@@ -54,25 +54,24 @@ def test_the_figure_shows_the_numbers_of_the_catalogue(cycles: ss.Solution) -> N
 
 
 def test_another_event_can_be_chosen(cycles: ss.Solution) -> None:
-    dataset = catalogue.catalogue_data(cycles, 2)
-    assert int(dataset.chosen) == 2
+    assert catalogue.catalogue_shown(cycles, 2).chosen == 2
     with pytest.raises(ss.InputError, match="no event 99"):
-        catalogue.catalogue_data(cycles, 99)
+        catalogue.catalogue_shown(cycles, 99)
 
 
 def test_a_late_event_is_drawn_sharply() -> None:
     """Milliseconds after 468 years, where seconds are 2e-6 apart: a straight line, to rounding."""
-    dataset = catalogue.catalogue_data(ss.simulate(rate_law_slab(), 480 * ss.YEAR))
-    time, slip = dataset.close_time.values, dataset.close_slip.values
+    shown = catalogue.catalogue_shown(ss.simulate(rate_law_slab(), 480 * ss.YEAR))
+    time, slip = shown.zooms["close"]
     late = time > 0.0
-    assert int(dataset.chosen) == 1
+    assert shown.chosen == 1
     assert slip[late] / time[late] == pytest.approx(np.full(late.sum(), 4.10204082), rel=1e-8, abs=0.0)
     assert (slip[time < 0.0] == 0.0).all()
 
 
 @pytest.mark.parametrize(("duration", "panels"), [(12.0, "abcd"), (480 * ss.YEAR, "abcdef")])
 def test_few_events_have_no_panels_without_data(duration: float, panels: str) -> None:
-    figure = catalogue.draw_catalogue(catalogue.catalogue_data(ss.simulate(rate_law_slab(), duration)))
+    figure = catalogue.draw_catalogue(catalogue.catalogue_shown(ss.simulate(rate_law_slab(), duration)))
     assert [axes.get_title(loc="left")[1] for axes in figure.axes] == list(panels)
     for axes in figure.axes:
         assert axes.has_data()
@@ -83,12 +82,12 @@ def test_few_events_have_no_panels_without_data(duration: float, panels: str) ->
 def test_no_events_cannot_be_drawn() -> None:
     still = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0)
     with pytest.raises(ss.InputError, match="no slip event"):
-        catalogue.catalogue_data(still)
+        catalogue.catalogue_shown(still)
 
 
 def test_wide_ranges_are_logarithmic() -> None:
     run = ss.simulate(rate_law_slab(selection="maximal"), 380 * ss.YEAR)
-    figure = catalogue.draw_catalogue(catalogue.catalogue_data(run))
+    figure = catalogue.draw_catalogue(catalogue.catalogue_shown(run))
     assert panel(figure, "f").get_xscale() == panel(figure, "g").get_yscale() == "log"
     assert panel(figure, "e").get_xscale() == "linear"
 
@@ -138,7 +137,7 @@ SIZES = [None, "single column", "3.4 x 3 in", "16 x 10 cm"]
 def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str | None) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = catalogue.draw_catalogue(catalogue.data_of_events(CATALOGUES[kind], kind), size=size)
+        figure = catalogue.draw_catalogue(catalogue.ShownCatalogue(CATALOGUES[kind], kind), size=size)
         assert illegible(figure) == []
 
 
@@ -148,7 +147,7 @@ def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str
 def test_a_catalogue_with_its_run_is_legible_in_any_size(scenario: str, size: str | None) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = catalogue.draw_catalogue(catalogue.catalogue_data(ss.simulate(scenario)), size=size)
+        figure = catalogue.draw_catalogue(catalogue.catalogue_shown(ss.simulate(scenario)), size=size)
         assert illegible(figure) == []
 
 
@@ -164,7 +163,7 @@ def test_a_catalogue_with_its_run_is_legible_in_any_size(scenario: str, size: st
     ],
 )
 def test_a_low_figure_leaves_out_zooms_first(size: str, titles: list[str], cycles: ss.Solution) -> None:
-    figure = catalogue.draw_catalogue(catalogue.catalogue_data(cycles), size=size)
+    figure = catalogue.draw_catalogue(catalogue.catalogue_shown(cycles), size=size)
     found = [" ".join(axes.get_title(loc="left").split()) for axes in figure.axes]
     marks = [f"({letter}) " for letter in "abcdefg"[: len(titles)]] if len(titles) > 1 else [""]
     assert sorted(found) == [mark + title for mark, title in zip(marks, titles, strict=True)]
@@ -174,7 +173,7 @@ def test_a_low_figure_leaves_out_zooms_first(size: str, titles: list[str], cycle
 
 @pytest.mark.slow
 def test_illegible_texts_are_noticed(cycles: ss.Solution) -> None:
-    figure = catalogue.draw_catalogue(catalogue.catalogue_data(cycles))
+    figure = catalogue.draw_catalogue(catalogue.catalogue_shown(cycles))
     assert illegible(figure) == []
     figure.axes[1].set_title("a title that is far too long for a panel beside two others", loc="left")
     figure.axes[0].set_xticks([1.0, 1.1], ["1.0", "1.1"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -79,10 +80,8 @@ class Pictures:
         """
         from stickslip.figures.runs import catalogue
 
-        def draw(**place: Any) -> object:
-            return catalogue.draw_catalogue(catalogue.data_of_events(table, title, load_unit), **place)
-
-        return write_files((self._file_of_events(table), drawing(draw, self.look)))
+        shown = partial(catalogue.draw_catalogue, catalogue.ShownCatalogue(table, title, load_unit))
+        return write_files((self._file_of_events(table), drawing(shown, self.look)))
 
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""

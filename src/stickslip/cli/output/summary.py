@@ -7,28 +7,22 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import console, fits, print_numbers, say, titled
+from stickslip.cli.output.show import fits, print_numbers, say, titled
 from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.show import clean, number, with_unit
-from stickslip.problem import Status
 from stickslip.problem.scenarios import doubts
-from stickslip.solution import account_of, notes_in
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from stickslip.problem import Problem
     from stickslip.problem.scenarios import Scenario
-    from stickslip.run import Catalogue
-    from stickslip.solution import Solution
+    from stickslip.solution import Account, Solution
 
 ROWS_SHOWN = 12
 """Number of table rows that are shown."""
 TABLE_DIGITS = 8, 5
 """Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
-MANY_EVENTS = 100_000
-"""A catalogue with more events than this is not read again for its statistics."""
 REST = " (--all has the rest)"
 """Says where the rest of the notes is that one line sums up."""
 SENTENCES = "slip", "status"
@@ -39,54 +33,41 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution, *, everything: bool = False) -> None:
     """Print the summary of a run on standard output, with `everything` that is known of its proof, waves and predictability."""
-    from stickslip.engine import SHOCK_COLUMNS, SlipEvents, shock_columns
+    from stickslip.engine import SlipEvents, shock_columns
     from stickslip.problem import default_event_rate
     from stickslip.solution.observables import event_columns
 
-    screen, history, notes = titled(scenario), solution.history, solution.notes
-    _say_account(screen, scenario, solution.status, solution.duration, notes)
+    history, account = solution.history, solution.account
+    events = event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem)))
+    show_run(titled(scenario), account, events, solution.problem, shocks=shock_columns(history), everything=everything)
+
+
+def show_run(
+    screen: Console,
+    account: Account | None,
+    events: Mapping[Any, Any] | str,
+    problem: Problem | None,
+    *,
+    shocks: Mapping[str, Any] | None = None,
+    everything: bool = False,
+) -> None:
+    """Print what is said of a run, its slip events or a text on them, and its shocks if they are kept.
+
+    Account and problem may not be known.
+    """
+    from stickslip.engine import SHOCK_COLUMNS
+
+    if account is not None:
+        say(screen, *(clean(text if name in SENTENCES else f"{name} {text}") for name, text in account.lines()))
+        say(screen, *(f"warning: {one}" for one in doubts(account.scenario.problem)))
     screen.print()
-    _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
-    shocks = shock_columns(history)
-    _print(screen, "shock", shocks, [_unit(SHOCK_COLUMNS[name], scenario.problem) for name in shocks])
-    _say_notes(screen, notes, everything=everything)
-
-
-def show_catalogue(scenario: Scenario, found: Catalogue, *, everything: bool = False) -> None:
-    """Print on standard output the summary of a run that kept only slip events; `everything` as for a run."""
-    screen = titled(scenario)
-    _say_account(screen, scenario, found.status, found.reached, found.notes)
-    say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}\n")
-    if found.events > MANY_EVENTS:
-        say(screen, "mean recurrence and slip: `stickslip show` on the catalogue works them out\n")
-    elif found.events > 2:
-        say(screen, *statistics(dict(found.read().items()), _unit("slip", scenario.problem)))
-    _say_notes(screen, found.notes, everything=everything)
-    announce(*found.files)
-
-
-def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any], scenario: Scenario | None) -> None:
-    """Print on standard output the slip events of a catalogue, after what its attributes say about the run, if there are any."""
-    screen, notes = console(), {name: str(text) for name, text in about.items()}
-    say(screen, clean(name), style="bold")
-    if scenario is not None and "status" in about:
-        status = Status(notes["status"], notes["status_message"], ok=True)
-        _say_account(screen, scenario, status, float(about["duration"]), notes)
-    screen.print()
-    _print_events(screen, table, None if scenario is None else scenario.problem)
-    _say_notes(screen, {"rounding": notes.get("rounding", "")}, everything=True)
-
-
-def _say_account(screen: Console, scenario: Scenario, status: Status, reached: float, notes: Mapping[str, str]) -> None:
-    """Print how a run went, a line each, and doubts about its numbers."""
-    lines = account_of(scenario, status, reached, notes)
-    say(screen, *(clean(text if name in SENTENCES else f"{name} {text}") for name, text in lines))
-    say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))
-
-
-def _say_notes(screen: Console, notes: Mapping[str, str], *, everything: bool) -> None:
-    """Print a paragraph for each note on a run; not `everything`: in short."""
-    for name, text in notes_in(notes, everything=everything):
+    if isinstance(events, str):
+        say(screen, f"{events}\n")
+    else:
+        _print_events(screen, events, problem)
+    if shocks is not None:
+        _print(screen, "shock", shocks, [_unit(SHOCK_COLUMNS[name], problem) for name in shocks])
+    for name, text in () if account is None else account.noted(everything=everything):
         say(screen, clean(f"{name}: {text}" if name else f"{text}{REST}"), "")
 
 

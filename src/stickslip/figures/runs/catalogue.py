@@ -7,10 +7,10 @@ import re
 import string
 import textwrap
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
-import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -27,8 +27,6 @@ from stickslip.figures.style import (
     SPAN_OF_LOGARITHM,
     VERMILLION,
     curve_label,
-    curve_quantity,
-    quantity,
     spans_decades,
     styled,
     time_unit,
@@ -38,7 +36,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
-from stickslip.solution import Solution, last_large_event
+from stickslip.solution import Curve, Solution, last_large_event
 from stickslip.solution.observables import is_followed, that_count
 from stickslip.solution.observables.predictability import predictability
 
@@ -48,12 +46,12 @@ if TYPE_CHECKING:
 
 LAST_ZOOM = 1e-3
 """The last zoom shows this share of the event's duration after its start, and a quarter of that before it."""
-ZOOMS = {
+ZOOMS: dict[str, tuple[str, Curve, str]] = {
     "run": ("slip in the run", "slip", "time $t$"),
     "window": ("one event", "event_slip", "since its start"),
     "close": ("its start", "event_slip", "since its start"),
 }
-"""Title, curve and name of the time axis of the three zooms, by the prefix of their variables."""
+"""Title, curve and name of the time axis of the three zooms, by what they show."""
 TITLES_OF_ZOOMS = {"A": "slip events", **dict(zip("BCD", (title for title, *_ in ZOOMS.values()), strict=True))}
 TITLES_OF_ZOOMS |= {"E": "slips", "F": "recurrence times", "G": "return map"}
 """Titles of the panels, by their names in the mosaic: the time line, the zooms, and the distributions."""
@@ -69,14 +67,41 @@ LETTERS_OF_LINE = 17
 """Number of letters in a line of a title or a label of a panel in a narrow figure."""
 
 
-def catalogue_data(solution: Solution, event: int | None = None) -> xr.Dataset:
-    """Return the catalogue of a run, its slip, and one event in local time, as a dataset in SI.
+@dataclass(frozen=True)
+class ShownCatalogue:
+    """What the figure shows: a table of slip events (SI) of a body whose loads have a unit and, if its run is there, `zooms`.
+
+    They are times (s) and slips (m) of the run, of the event `chosen`, and of the start of that, the last two in s since the event
+    began. `horizon` is that of predictability (s; inf if there is none or it is not known).
+    """
+
+    table: pd.DataFrame
+    heading: str = ""
+    load_unit: str = "Pa"
+    zooms: Mapping[str, tuple[Floats, Floats]] = field(default_factory=dict)
+    chosen: int | None = None
+    horizon: float = math.inf
+
+    @property
+    def length(self) -> str:
+        """The SI unit of slip."""
+        return si_unit("slip", self.load_unit)
+
+    @property
+    def whole_slip(self) -> Floats:
+        """The slips of the events that are over."""
+        return that_count(self.table, "slip")
+
+    def of(self, column: str) -> Floats:
+        """Return a column."""
+        return self.table[column].to_numpy(float)
+
+
+def catalogue_shown(solution: Solution, event: int | None = None) -> ShownCatalogue:
+    """Return what is shown of a run.
 
     `event` is the row number in `solution.events`; negative ones count from the last. By default it is the last event whose slip is
-    at least 99 % of the largest, and `chosen` tells it. The dataset holds start (s), slip (m) and recurrence time (s) of all
-    events; slip (m) against time (s) over the whole run, over the event, and at the start of the event, the last two in s since the
-    event began; and the predictability `horizon` (s; inf if there is none or it is not known). Raises InputError if the run has no
-    slip event, or not the one asked for.
+    at least 99 % of the largest. Raises InputError if the run has no slip event, or not the one asked for.
     """
     table = solution.events
     if table.empty:
@@ -85,61 +110,33 @@ def catalogue_data(solution: Solution, event: int | None = None) -> xr.Dataset:
     window = solution.window(chosen)
     lasting = window.shown[1] / 1.1
     near = solution.window(chosen, before=0.25 * LAST_ZOOM * lasting, after=LAST_ZOOM * lasting)
-    loads = solution.problem.load_unit
-    contents = _events(table, loads)
-    for name, readings in (("run", solution), ("window", window), ("close", near)):
-        time, slip = readings.curve("slip" if name == "run" else "event_slip")
-        contents[f"{name}_time"] = curve_quantity(f"{name}_point", time, "time")
-        contents[f"{name}_slip"] = curve_quantity(f"{name}_point", slip, "slip", loads)
+    zooms = {name: run.curve(ZOOMS[name][1]) for name, run in (("run", solution), ("window", window), ("close", near))}
     # After the horizon only statistics mean anything.
     horizon = predictability(solution).horizon if is_followed(solution.problem) else math.inf
-    contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
-    contents["chosen"] = xr.Variable((), chosen % len(table))
-    return xr.Dataset(contents, attrs={"title": _title(title_of(solution), table), "load_unit": loads})
-
-
-def data_of_events(table: pd.DataFrame, title: str = "", load_unit: str = "Pa") -> xr.Dataset:
-    """Return a catalogue without the run that made it, as `data` does but for the zooms, for a body whose loads have this unit.
-
-    Raises InputError if it has no event.
-    """
-    if table.empty:
-        raise InputError("catalogue figure: there is no slip event")
-    return xr.Dataset(_events(table, load_unit), attrs={"title": _title(title, table), "load_unit": load_unit})
-
-
-def _events(table: pd.DataFrame, load_unit: str) -> dict[str, xr.Variable]:
-    length = si_unit("slip", load_unit)
-    about = {"start": ("start of the event", "s"), "slip": ("slip", length), "recurrence": ("recurrence time", "s")}
-    found = {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
-    return found | {"whole_slip": quantity("whole_event", that_count(table, "slip"), "slip of events that are over", "", length)}
-
-
-def _title(title: str, table: pd.DataFrame) -> str:
-    return f"{title}: {len(table)} slip event{'s' if len(table) > 1 else ''}".removeprefix(": ")
+    return ShownCatalogue(table, title_of(solution), solution.problem.load_unit, zooms, chosen % len(table), horizon)
 
 
 @styled
-def draw_catalogue(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw_catalogue(shown: ShownCatalogue, **place: Unpack[Place]) -> Figure:
     """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
 
     A catalogue without its run has no zooms, one of one event no distributions, and one of two no return map. In a narrow figure
     less than three panels stand side by side, and what a low one has no room for is left out, the zooms first.
     """
-    slip, recurrence = dataset["slip"].values, dataset["recurrence"].values
+    count, recurrence = len(shown.table), shown.of("recurrence")
     recurrence = recurrence[np.isfinite(recurrence)]
-    distributions = "EFG"[: 0 if len(slip) == 1 else len(slip)]
-    rows, usual = _rows("BCD" if "run_time" in dataset else "", distributions[:3], **place)
+    distributions = "EFG"[: 0 if count == 1 else count]
+    rows, usual = _rows("BCD" if shown.zooms else "", distributions[:3], **place)
     narrow = usual[0] < WHOLE_WIDTH
     figure = sheet(usual, **place)
     cells = math.lcm(*map(len, rows))
     axes = figure.subplot_mosaic(";".join("".join(name * (cells // len(row)) for name in row) for row in rows))
     letters = dict(zip(sorted(axes), string.ascii_lowercase, strict=False))
-    _draw_time_line(axes["A"], dataset, ring=bool({"C", "D"} & set(axes)))
-    _draw_zooms(axes, dataset)
+    _draw_time_line(axes["A"], shown, ring=bool({"C", "D"} & set(axes)))
+    _draw_zooms(axes, shown)
     unit, size = time_unit(float(recurrence.max())) if len(recurrence) else ("s", 1.0)
     if "E" in axes:
-        _draw_distribution(axes["E"], dataset["whole_slip"], name_of("slip", dataset.attrs["load_unit"]))
+        _draw_distribution(axes["E"], shown)
     if "F" in axes:
         _draw_recurrence(axes["F"], recurrence / size, unit, narrow=narrow)
     if "G" in axes:
@@ -147,8 +144,8 @@ def draw_catalogue(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     letter_panels((axes[name] for name in letters), (TITLES_OF_ZOOMS[name] for name in letters))
     for name in letters if narrow else ():
         _make_small(axes[name], LETTERS_OF_LINE if name != "A" else 2 * LETTERS_OF_LINE)
-    add_legend(axes["A"], _marks(dataset, letters))
-    set_title(figure, dataset.attrs["title"])
+    add_legend(axes["A"], _marks(shown, letters))
+    set_title(figure, f"{shown.heading}: {count} slip event{'s' if count > 1 else ''}".removeprefix(": "))
     return figure
 
 
@@ -188,12 +185,12 @@ def _in_lines(text: str, length: int) -> str:
     return textwrap.fill(joined, length, break_long_words=False).replace(HELD, " ")
 
 
-def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
+def _marks(shown: ShownCatalogue, letters: Mapping[str, str]) -> list[Artist]:
     """Return the entries of the key for the panels that are drawn, which have these letters."""
     point: Any = {"linestyle": "none", "marker": "o"}
     event = "(a) slip event" if len(letters) > 1 else "slip event"  # one panel has no letter
     marks: list[Artist] = [Line2D([], [], color=BLUE, markersize=3, label=event, **point)]
-    if (dataset["slip"].values < 0.0).any():
+    if (shown.of("slip") < 0.0).any():
         back = {"markersize": 3, "markerfacecolor": "white", "color": BLUE}
         marks.append(Line2D([], [], label=event.replace("slip event", "event that slips back"), **point | back))
     closer = ", ".join(f"({letters[name]})" for name in "CD" if name in letters)
@@ -202,7 +199,7 @@ def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
         marks.append(Line2D([], [], label=f"(a) event of {closer}", **point | ring))
     if "B" in letters:
         marks.append(Line2D([], [], color=VERMILLION, linewidth=0.8, label=f"({letters['B']}) its time"))
-    if "chosen" in dataset and float(dataset["horizon"]) < float(dataset["run_time"].values[-1]):
+    if shown.zooms and shown.horizon < shown.zooms["run"][0][-1]:
         marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="(a) beyond the predictability horizon"))
     if "F" in letters:
         marks.append(Line2D([], [], color=VERMILLION, linewidth=1.0, linestyle="--", label=f"({letters['F']}) mean"))
@@ -211,24 +208,24 @@ def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
     return marks
 
 
-def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
-    signed = dataset["slip"].values
+def _draw_time_line(axes: Axes, shown: ShownCatalogue, *, ring: bool) -> None:
+    signed, starts = shown.of("slip"), shown.of("start")
     wide, back = spans_decades(np.abs(signed)), signed < 0.0
     slip = np.abs(signed) if wide else signed  # a logarithmic axis has no place for a sign: open circles tell it
-    last = float(dataset["run_time"].values[-1]) if "run_time" in dataset else float(dataset["start"].values[-1])
+    last = float((shown.zooms["run"][0] if shown.zooms else starts)[-1])
     unit, size = time_unit(last)
-    length, metres = readable_unit(dataset["slip"].attrs["units"], slip, log=wide)
-    start, end = dataset["start"].values / size, last / size
+    length, metres = readable_unit(shown.length, slip, log=wide)
+    start, end = starts / size, last / size
     low = 0.5 * slip.min() / metres if wide else 0.0
     axes.vlines(start, low, slip / metres, color=BLUE, linewidth=0.9)
     axes.plot(start, slip / metres, "o", color=BLUE, markersize=3)
     if back.any():
         axes.plot(start[back], slip[back] / metres, "o", color=BLUE, markersize=3, markerfacecolor="white")
-    if "chosen" in dataset:
-        chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
+    if shown.chosen is not None:
         if ring:
-            axes.plot(start[chosen], slip[chosen] / metres, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
-        if horizon < end:
+            at = start[shown.chosen], slip[shown.chosen] / metres
+            axes.plot(*at, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
+        if (horizon := shown.horizon / size) < end:
             axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
     set_scale(axes, "y", wide)
     axes.margins(y=0.12)  # no point is cut by the upper edge of a low panel
@@ -238,28 +235,28 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
         zero_line(axes)
     if end > 0.0:  # else one event at 0 s is all there is
         axes.set_xlim(-0.02 * end, 1.02 * end)
-    axes.set(xlabel=curve_label("time", unit), ylabel=f"{name_of('slip', dataset.attrs['load_unit'])} ({length})")
+    axes.set(xlabel=curve_label("time", unit), ylabel=f"{name_of('slip', shown.load_unit)} ({length})")
 
 
-def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
+def _draw_zooms(panels: Mapping[str, Axes], shown: ShownCatalogue) -> None:
     for panel, (name, (_, curve, clock)) in zip("BCD", ZOOMS.items(), strict=True):
         if panel not in panels:
             continue
         axes = panels[panel]
-        time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
-        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), readable_unit(dataset["slip"].attrs["units"], np.ptp(slip))
+        time, slip = shown.zooms[name]
+        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), readable_unit(shown.length, np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
-            axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
-        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length, dataset.attrs["load_unit"]))
+            axes.axvline(float(shown.of("start")[shown.chosen]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
+        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length, shown.load_unit))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         zero_line(axes)
 
 
-def _draw_distribution(axes: Axes, slips: xr.DataArray, name: str) -> None:
-    slip = slips.values
+def _draw_distribution(axes: Axes, shown: ShownCatalogue) -> None:
+    slip, name = shown.whole_slip, name_of("slip", shown.load_unit)
     many, wide = len(slip) > SPAN_OF_LOGARITHM, spans_decades(slip)
-    unit, size = readable_unit(slips.attrs["units"], slip, log=wide)
+    unit, size = readable_unit(shown.length, slip, log=wide)
     ordered = np.sort(slip) / size  # sizes, in either direction
     smallest = ordered[0] if wide else 0.0
     axes.step([smallest, *ordered, ordered[-1]], [len(slip), *range(len(slip), 0, -1), 1 if many else 0], where="pre", color=BLUE)

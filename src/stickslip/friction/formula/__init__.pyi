@@ -50,13 +50,13 @@ from stickslip.friction.formula.operations.enclosures import (
     multiply,  # Return [a, b] times [c, d].
 )
 from stickslip.friction.formula.operations.operation import (
-    SLOPE,
     TINIEST,  # Smallest bound of a magnitude from below.
     Scaled,  # A series that differs from that of a node by a factor, and is known earlier.
     oldest_first,  # Sort the pairs of orders in a product's recurrence so that those which need the newest coefficients come last.
     sum_of,  # Write the sum of terms, which are given oldest first: the older ones as a balanced tree, then the newest one by one.
 )
 from stickslip.friction.formula.operations.sets import (
+    SLOPE,
     Disc,  # A disc: its real centre, its radius, and a lower bound of the magnitude of all values that the node may have in it.
 )
 from stickslip.friction.formula.text import (

@@ -8,7 +8,7 @@ from stickslip.foundation.arrays import Floats, Floats1, Floats2, Integers1, Int
 from stickslip.foundation.kernels.kernels import exact, exact_entry
 from stickslip.friction.formula.expression import VARIABLES as _VARIABLES
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS
-from stickslip.friction.formula.operations.operation import REFERENCE, SLOPE, STEP, VALUE
+from stickslip.friction.formula.operations.sets import REFERENCE, SLOPE, STEP, VALUE
 from stickslip.friction.formula.tape import NUMBER, VARIABLE, rule_by_code
 
 rule = rule_by_code([one.change for one in OPERATIONS.values()])

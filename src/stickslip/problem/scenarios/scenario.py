@@ -15,7 +15,7 @@ from stickslip.foundation.arguments import as_path, for_users, shown
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import check_fields, declare, fields_of
-from stickslip.foundation.show import html_table, shown_fields
+from stickslip.foundation.show import ShownAsTable, shown_fields
 from stickslip.problem.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_options import DURATION, RunOptions
@@ -46,7 +46,7 @@ class OfProblem:
 
 
 @dataclass(frozen=True)
-class Scenario(RunOptions, OfProblem):
+class Scenario(ShownAsTable, RunOptions, OfProblem):
     """A problem, and how long (s, or a text with a unit) and how accurately to run it.
 
     Two scenarios are equal if they differ in `name` and `source`, the TOML text from which it was read, only. After `max_events`
@@ -68,9 +68,11 @@ class Scenario(RunOptions, OfProblem):
         others = ", ".join(f"{name}={text}" for name, text in fields_shown.items() if name not in ("name", "title", "description"))
         return f"stickslip Scenario {': '.join(head)}\n{problem}\n{others}"
 
+    def _lines(self) -> list[tuple[str, str]]:
+        return [(name, text.strip("'")) for name, text in shown_fields(self) if name != "problem"]
+
     def _repr_html_(self) -> str:
-        rows = [(name, text.strip("'")) for name, text in shown_fields(self) if name not in ("problem", "name")]
-        return html_table(f"stickslip Scenario {self.name}", rows) + self.problem._repr_html_()
+        return super()._repr_html_() + self.problem._repr_html_()
 
     @property
     def heading(self) -> str:
@@ -236,7 +238,7 @@ def _in_tables(message: str) -> str:
     return message.replace("initial_", "[initial] ")
 
 
-class BundledScenarios(Mapping[str, Scenario]):
+class BundledScenarios(ShownAsTable, Mapping[str, Scenario]):
     """The bundled scenarios by name: `ss.scenarios["fig6-slab"]` reads one, `print(ss.scenarios)` lists all.
 
     Iterating gives the names. A name that is not bundled raises InputError, which names the nearest one; a file is read with
@@ -265,9 +267,12 @@ class BundledScenarios(Mapping[str, Scenario]):
         width = max(len(name) for name in self)
         return "\n".join(f"{name:<{width}}  {entry.title}" for name, entry in library.entries().items())
 
-    def _repr_html_(self) -> str:
-        rows = ((name, entry.title, entry.description) for name, entry in library.entries().items())
-        return html_table("bundled scenarios: ss.scenarios[name], ss.simulate(name)", rows)
+    @property
+    def _caption(self) -> str:
+        return "bundled scenarios: ss.scenarios[name], ss.simulate(name)"
+
+    def _lines(self) -> list[tuple[str, str, str]]:
+        return [(name, entry.title, entry.description) for name, entry in library.entries().items()]
 
     def _ipython_key_completions_(self) -> list[str]:
         return library.names()

@@ -56,14 +56,18 @@ class RuleInfluence:
         if self.regime == "regular":
             return f"{self.rule}: without effect, the solution is unique"
         depends = f"{self.rule}: the contact equation has several solutions, this run depends on the rule"
-        if self.folds_move:
-            return depends
+        return f"{depends}; {self.decided}" if self.decided else depends
+
+    @property
+    def decided(self) -> str:
+        """What the rule decided, in a few words; empty if it has no effect, or if folds move."""
+        if self.regime == "regular" or self.folds_move:
+            return ""
         shocks, decided = len(self.shocks), int(self.shocks.sum())
+        found = f"it decided {decided or 'none'} of the {shocks} shocks" if shocks else "no shock occurred"
         if self.since is None and not decided:
-            none = f"it decided none of the {shocks} shocks" if shocks else "no shock occurred"
-            return f"{depends}; {none}: the load was never between the folds"
-        since = "" if self.since is None else f": the load was between the folds first at {_time(self.since)}"
-        return f"{depends}; {f'it decided {decided} of the {shocks} shocks' if shocks else 'no shock occurred'}{since}"
+            return f"{found}: the load was never between the folds"
+        return found + ("" if self.since is None else f": the load was between the folds first at {_time(self.since)}")
 
 
 def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floats]]) -> RuleInfluence:

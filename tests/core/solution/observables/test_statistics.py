@@ -46,7 +46,7 @@ def test_summary_and_figure_leave_out_the_event_that_the_end_of_the_run_cuts_off
     assert slip.startswith("slip: mean 0.0034")
     assert float(re.findall(r"deviation (\S+) %", slip)[0]) < 1e-6, "all whole events are alike"
     assert (recurrence[:10], note) == ("recurrence", "the event that the end of the run cuts off\n")
-    np.testing.assert_array_equal(catalogue.catalogue_data(run).whole_slip, events.slip[:-1])
+    np.testing.assert_array_equal(catalogue.catalogue_shown(run).whole_slip, events.slip[:-1])
     assert "without" not in statistics(dict(whole.items()))[0]
 
 

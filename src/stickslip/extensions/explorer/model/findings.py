@@ -73,11 +73,6 @@ def marks_of(found: Findings, motion: BodyCurves) -> tuple[Mark, ...]:
     return tuple(sorted(marks, key=lambda mark: mark.time))
 
 
-def several(count: int, thing: str) -> str:
-    """Return a number of things: "no pulse", "one pulse", "3 pulses"."""
-    return f"{ {0: 'no', 1: 'one'}.get(count, count) } {thing}{'' if count in (0, 1) else 's'}"
-
-
 def largest_first(table: pd.DataFrame) -> pd.DataFrame:
     """Return events or pulses, the one with the largest slip in either direction first."""
     return table.iloc[np.argsort(-table.slip.abs().to_numpy(float), kind="stable")]
@@ -148,13 +143,6 @@ NEAR_ONE = 5e-4
 """If a ratio is closer to 1 than this, its distance from 1 is given instead."""
 JUMPS_NAMED = 2
 """Name all jumps if they are at most this many."""
-RULES = {
-    "perfect-delay": "the rule of perfect delay",
-    "maxwell": "Maxwell's rule",
-    "minimal": "the minimal rule",
-    "maximal": "the maximal rule",
-}
-"""How the built-in selection rules are called."""
 CAUSES = {
     "start": "at the start",
     "fold": "at a fold",
@@ -167,7 +155,8 @@ CAUSES = {
 
 def sentence(found: Findings, contact: Uniqueness, influence: RuleInfluence) -> str:
     """Return the sentence on a run; its parts end with full stops."""
-    parts = (_regime(found.solution.problem, contact, influence), _reach(found), _motion(found), _jumped(found), _rule(influence))
+    chosen = f"rule {influence.rule}: {influence.decided}" if influence.decided else ""
+    parts = (_regime(found.solution.problem, contact, influence), _reach(found), _motion(found), _jumped(found), chosen)
     return " ".join(f"{part[0].upper()}{part[1:]}." for part in parts if part)
 
 
@@ -210,18 +199,13 @@ def _reach(found: Findings) -> str:
 
 def _motion(found: Findings) -> str:
     """Return what moved: slip, pulses and arrest of the largest event."""
-    event, span, (length, rate) = found.largest, found.solution.history.span, found.units
-    if event is None:
-        moved = found.total_slip
-        lasts = short(span[1] - span[0], "s")
-        return f"it slips {short(moved, length)} in {lasts}, too slowly for a slip event" if moved else f"nothing slips in {lasts}"
-    number = len(found.events)
-    head = f"{several(number, 'slip event')}{', the largest' if number > 1 else ''} of"
-    slipped = f"{short(abs(event.slip), length)}{' back' if event.slip < 0.0 else ''}"
-    text = f"{head} {slipped} in {several(int(event.pulses), 'pulse')}, at up to {short(event.peak_rate, rate)}"
-    if np.isnan(event.end):
-        return f"{text}, which goes on at the end of the run"
-    return f"{text}, {'arrested at ' + short(event.end, 's') if number == 1 else 'lasting ' + short(event.duration, 's')}"
+    if found.largest is not None:
+        return found.solution.events_in_words(DIGITS).replace(" um", " µm")
+    span = found.solution.history.span
+    moved, lasts = found.total_slip, short(span[1] - span[0], "s")
+    return (
+        f"it slips {short(moved, found.units[0])} in {lasts}, too slowly for a slip event" if moved else f"nothing slips in {lasts}"
+    )
 
 
 def _jumped(found: Findings) -> str:
@@ -241,16 +225,3 @@ def _jump(shock: Any, unit: str) -> str:
     before, after = (short(rate, unit) if rate else "rest" for rate in (shock.rate_before, shock.rate_after))
     when = "" if shock.cause == "start" else f" at {short(shock.time, 's')}"
     return f"from {before} to {after} {CAUSES[shock.cause]}{when}"
-
-
-def _rule(influence: RuleInfluence) -> str:
-    rule = RULES.get(influence.rule, f"the rule {influence.rule}")
-    if influence.regime == "regular":
-        return ""
-    if influence.folds_move:
-        return f"the folds move, and the run rests on {rule}"
-    decided, shocks = int(influence.shocks.sum()), len(influence.shocks)
-    if influence.since is None and not decided:
-        return f"nothing rests on {rule}: the load was never between the folds"
-    since = "" if influence.since is None else f"; it had its first choice at {short(influence.since, 's')}"
-    return f"{rule} decided {decided or 'none'} of {several(shocks, 'jump')}{since}"

@@ -21,11 +21,7 @@ from stickslip.friction.formula.operations.enclosures import (
 )
 from stickslip.friction.formula.operations.operation import (
     FORMULA_UNITS,
-    REFERENCE,
-    SLOPE,
-    STEP,
     TINIEST,
-    VALUE,
     BallsWriter,
     Dimension,
     Levels,
@@ -37,7 +33,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import HIGH, LOW, Disc, multiplied, put, squared
+from stickslip.friction.formula.operations.sets import HIGH, LOW, REFERENCE, SLOPE, STEP, VALUE, Disc, multiplied, put, squared
 
 MOST_PARTS = 3
 """A linear combination of at most this many terms is taken apart (see `Operation.parts`); longer sums are added as a tree."""

@@ -12,11 +12,7 @@ from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, outward
 from stickslip.friction.formula.operations.operation import (
     LARGEST_EXPONENT,
-    REFERENCE,
-    SLOPE,
-    STEP,
     TINIEST,
-    VALUE,
     BallsWriter,
     Levels,
     Operation,
@@ -25,7 +21,7 @@ from stickslip.friction.formula.operations.operation import (
     Scaled,
     SeriesWriter,
 )
-from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, REFERENCE, SLOPE, STEP, VALUE, Disc
 
 STAYS_LARGE = LARGEST_EXPONENT - 10.0
 """A harmless overflow counts as constant as long as its exponent stays above this. It begins to count at a larger exponent, so that

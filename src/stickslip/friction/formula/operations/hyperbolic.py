@@ -10,18 +10,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression, nodes_of
 from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain, multiply, outward, square
-from stickslip.friction.formula.operations.operation import (
-    REFERENCE,
-    SLOPE,
-    STEP,
-    VALUE,
-    Levels,
-    Operation,
-    Radius,
-    Recurrence,
-    SeriesWriter,
-)
-from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
+from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, REFERENCE, SLOPE, STEP, VALUE, Disc
 
 
 @exact

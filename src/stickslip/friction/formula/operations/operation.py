@@ -27,10 +27,6 @@ no division by zero."""
 FRESH = 4
 """Number of terms of a sum that are added last, because they need the newest coefficients (see `sum_of`)."""
 
-REFERENCE, STEP, VALUE, SLOPE = range(4)
-"""Columns of the table of changes, in which each node has a row: its value at the reference point, its change to the end point, its
-value there, and its derivative there. The value at the end point is computed independently: reference + change would lose the
-digits of a value that has become small. A rule writes the row n of a node from the rows i and j of its arguments."""
 Dimension = dict[str, Fraction]
 """Exponents of m, kg and s in a unit; those that are zero are left out."""
 FORMULA_UNITS = "u is in m, v in m/s, a number without unit is a pure number"
@@ -183,7 +179,7 @@ class Operation:
     value: Callable[..., Any]
     """Its value from numbers or arrays."""
     change: Callable[..., None]
-    """How far its value changes between two points, without cancellation, and its derivative: see `STEP`."""
+    """How far its value changes between two points, without cancellation, and its derivative: see `operations.sets.STEP`."""
     slope_formula: Callable[..., Expression]
     """The formula of its derivative: from the node, and the formula of each argument's derivative."""
     bounds: Callable[..., None]

@@ -15,10 +15,6 @@ from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import RATE, Expression, depends_on
 from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, Ends, chain, multiply, of_positive, outward, rounded
 from stickslip.friction.formula.operations.operation import (
-    REFERENCE,
-    SLOPE,
-    STEP,
-    VALUE,
     BallsWriter,
     Dimension,
     Levels,
@@ -31,7 +27,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, REFERENCE, SLOPE, STEP, VALUE, Disc
 
 
 @exact

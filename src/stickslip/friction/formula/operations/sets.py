@@ -1,4 +1,4 @@
-"""Sets of values for the rules of operations: intervals of numbers, and discs of complex numbers."""
+"""What rules of operations write: changes between two points, and sets of values, as intervals or as discs of complex numbers."""
 
 from __future__ import annotations
 
@@ -19,6 +19,10 @@ EVERYTHING: Interval = (-math.inf, math.inf)
 
 LOW, HIGH = range(2)
 """Columns of the ends of a node's interval; rules write the row n of a node from the rows i and j of its arguments."""
+REFERENCE, STEP, VALUE, SLOPE = range(4)
+"""Columns of the table of changes, in which each node has a row: its value at the reference point, its change to the end point, its
+value there, and its derivative there. The value at the end point is computed independently: reference + change would lose the
+digits of a value that has become small."""
 
 
 @exact

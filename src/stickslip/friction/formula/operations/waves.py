@@ -11,20 +11,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.enclosures import LIBRARY, Ends, chain
-from stickslip.friction.formula.operations.operation import (
-    REFERENCE,
-    SLOPE,
-    STEP,
-    VALUE,
-    BallsWriter,
-    Levels,
-    Operation,
-    Radius,
-    Recurrence,
-    Scaled,
-    SeriesWriter,
-)
-from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, Disc
+from stickslip.friction.formula.operations.operation import BallsWriter, Levels, Operation, Radius, Recurrence, Scaled, SeriesWriter
+from stickslip.friction.formula.operations.sets import HIGH, LOW, OF_FUNCTION, REFERENCE, SLOPE, STEP, VALUE, Disc
 
 
 def both(node: Expression) -> tuple[Expression, Expression]:
