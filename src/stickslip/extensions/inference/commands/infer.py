@@ -27,7 +27,7 @@ OUT_OF_TIME = 124
 """Exit code if the time of --max-time is over, as that of the command `timeout`."""
 TOLD_AGAIN = 60.0
 """Processor time (s) between two lines on a long search where there is no terminal to show it in one."""
-NAMES = {"begin": "--from", "end": "--to", "bounds": "--bound", "priors": "--prior"}
+NAMES_TYPED = {"begin": "--from", "end": "--to", "bounds": "--bound", "priors": "--prior"}
 """What options are called on the command line, but for those that are called as in Python."""
 OF_SEARCH = ("bounds", "priors", "begin_at", "loss", "weight", "starts", "seed", "trend", "max_time")
 PANELS = dict.fromkeys(OF_SEARCH, SEARCH) | {"rtol": ACCURACY}
@@ -52,7 +52,7 @@ OPTIONS = {one.name: one for one in fields(Wishes) if str(one.type) in TYPED}
 
 def _name(one: Field[Any]) -> str:
     """Return what an option of `infer` in Python is called on the command line."""
-    return NAMES.get(one.name, f"--{one.name.replace('_', '-')}")
+    return NAMES_TYPED.get(one.name, f"--{one.name.replace('_', '-')}")
 
 
 def _declared(one: Field[Any]) -> tuple[str, Any, Any]:
