@@ -15,7 +15,6 @@ from stickslip.cli.options import Changes, ScenarioName, axes_of, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
-from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
     from stickslip.contact import SteadySlidings
@@ -121,6 +120,8 @@ def _show_special(loaded: Scenario, drawing_wanted: object) -> None:
 
 def _show_examination(scenario: Scenario, found: Examination) -> None:
     """Print what was found about a scenario: its numbers, and what follows from them."""
+    from stickslip.foundation.show import clean  # with numpy, which help does without
+
     screen = titled(scenario)
     if scenario.description:
         say(screen, clean(scenario.description))
