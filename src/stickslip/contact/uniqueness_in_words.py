@@ -9,11 +9,8 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.folds import Fold
 from stickslip.contact.rules.loop import Jump
 from stickslip.foundation.names import si_unit
-from stickslip.foundation.show import brief, exact_range, exactly
+from stickslip.foundation.show import NamedLine, brief, exact_range, exactly
 from stickslip.problem import Problem, Resistance
-
-Line = tuple[str, str]
-"""The name of a line, and its text."""
 
 MOST_SHOWN = 6
 """`repr` and `summary` show at most this many folds, and jumps."""
@@ -101,7 +98,7 @@ def _units(contact: Any) -> tuple[str, str]:
     return loads, si_unit("slip_rate", loads)
 
 
-def regime_lines(contact: Any) -> Iterator[Line]:
+def regime_lines(contact: Any) -> Iterator[NamedLine]:
     """Yield the regime, the critical value, and the loads with several slip rates."""
     yield "regime", f"{contact.regime}, {contact.certificate}"
     if contact.critical_parameter is not None and contact.critical_value is not None:
@@ -111,7 +108,7 @@ def regime_lines(contact: Any) -> Iterator[Line]:
         yield "window", f"load minus static strength from {low} to {high}"
 
 
-def fold_lines(contact: Any, most: int | None = None) -> Iterator[Line]:
+def fold_lines(contact: Any, most: int | None = None) -> Iterator[NamedLine]:
     """Yield the folds, what is not decided of them, and what depends on the rule: jumps, and the loop that they enclose.
 
     Of folds and of jumps `most` are shown, by default all.
@@ -133,7 +130,7 @@ def fold_lines(contact: Any, most: int | None = None) -> Iterator[Line]:
         yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."
 
 
-def _more(what: str, shown: tuple[object, ...], found: tuple[object, ...]) -> Iterator[Line]:
+def _more(what: str, shown: tuple[object, ...], found: tuple[object, ...]) -> Iterator[NamedLine]:
     if len(found) > len(shown):
         yield "", f"and {len(found) - len(shown)} more {what}"
 

@@ -20,6 +20,8 @@ from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumber
 
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
 """Units of time with their lengths in s, longest first."""
+NamedLine = tuple[str, str]
+"""The name of a line, and its text."""
 BRIEF_DIGITS = 6
 """Number of significant digits of `brief`."""
 UNHANDY = 2

@@ -1,8 +1,7 @@
 """Options that several functions take by name: their names, their types and what is said of them stand once.
 
 A function `f(problem, **options: Unpack[Given])` takes the options of a TypedDict, for type checkers. `takes` says the same to
-people: `help(f)` lists them in its signature and under Parameters, where the docstring has a line "{options}". A function of a
-record, a dataclass, is called with the arguments of the record: `takes_fields`.
+people: `help(f)` lists them in its signature and under Parameters, where the docstring has a line "{options}".
 """
 
 from __future__ import annotations
@@ -11,12 +10,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, signature
 from textwrap import fill
-from typing import Any, NamedTuple, ParamSpec, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Fields = ParamSpec("Fields")
-Record = TypeVar("Record")
-Result = TypeVar("Result")
 WIDTH = 128
 """Width of a line of a docstring, in characters."""
 
@@ -54,30 +50,7 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
             check_names(function.__name__, full, args, by_name)
             return function(*args, **by_name)
 
-        return cast(Function, _told(call, full, said, (*more, *names)))
-
-    return decorate
-
-
-def takes_fields(
-    said: Mapping[str, Said], record: Callable[Fields, Record]
-) -> Callable[[Callable[[Record], Result]], Callable[Fields, Result]]:
-    """Decorate a function of a record: it is called with the arguments of the record, which type checkers see, too.
-
-    `said` has what is said of each.
-    """
-
-    def decorate(function: Callable[[Record], Result]) -> Callable[Fields, Result]:
-        from stickslip.foundation.arguments import check_names  # which needs numpy; what is said of options does not
-
-        full = list(signature(record).parameters.values())
-
-        @wraps(function)
-        def call(*args: Fields.args, **by_name: Fields.kwargs) -> Result:
-            check_names(function.__name__, full, args, by_name)
-            return function(record(*args, **by_name))
-
-        return _told(call, full, said, [one.name for one in full])
+        return cast(Function, told(call, full, said, (*more, *names)))
 
     return decorate
 
@@ -87,7 +60,7 @@ def _parameter(name: str, kind: Any, default: Any) -> Parameter:
     return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=getattr(kind, "__forward_arg__", kind))
 
 
-def _told(call: Function, full: Sequence[Parameter], said: Mapping[str, Said], names: Iterable[str]) -> Function:
+def told(call: Function, full: Sequence[Parameter], said: Mapping[str, Said], names: Iterable[str]) -> Function:
     """Return a function whose signature has all parameters, and its docstring the entries of these."""
     call.__signature__ = signature(call).replace(parameters=full)  # type: ignore[attr-defined] # `inspect` reads it
     entries = "".join(_entry(name, said[name]) for name in names)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, TypeVar, Unpack, overload
@@ -12,7 +13,7 @@ from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.takes import takes
 from stickslip.problem import Problem
-from stickslip.problem.scenarios import Scenario, read_source, under_rule
+from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run.kinds import ALL_TAKE, SolverKind, Special, special_solver_of, special_solvers
 from stickslip.run.options import CallOptions
 from stickslip.run.progress import reporting
@@ -102,7 +103,8 @@ def simulate(problem: Any, duration: float | str | WithUnit | None = None, rtol:
             solver = special_solver_of(problem) or EXACT
         given = {"duration": duration, "rtol": rtol} | options | {"title": options.get("title") or None}
         solver.check("simulate", given | of_solver | {"selection": rule, "checkpoint": checkpoint})
-        problem = problem if rule is None else under_rule(problem, rule)
+        if rule is not None:
+            problem = replace(problem, problem=replace(problem.problem, selection=rule))
         file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
         return solver.run(problem, CallOptions.of(problem, **given, progress=report, checkpoint=file, of_solver=of_solver))
 

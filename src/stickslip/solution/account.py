@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.show import brief, how_long, with_unit
+from stickslip.foundation.show import NamedLine, brief, how_long, with_unit
 from stickslip.problem import Problem, Status, creep_tolerance
 from stickslip.problem.scenarios import Scenario
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Line = tuple[str, str]
-"""The name of a line, and its text."""
 NOTES = {"trapped": "trapped energy", "predictability": "predictability", "proven": "proven", "rounding": "rounding"}
 """What is noted of the whole run, by the words of files, and the name of its line; `short` sums up all but the last."""
 
@@ -36,7 +34,7 @@ class Account:
     reached: float
     notes: Mapping[str, str]
 
-    def lines(self) -> Iterator[Line]:
+    def lines(self) -> Iterator[NamedLine]:
         """Yield how it went: slip, what ended it and when, and what the options of the run came to."""
         scenario, problem, note = self.scenario, self.scenario.problem, self.notes.get
         if reach := note("reach"):
@@ -54,7 +52,7 @@ class Account:
             yield "creep_rtol", f"{tolerance:g} (automatic; 0 runs every {problem.body.turn}): {creep}"
         yield "selection rule", note("selection", problem.rule)
 
-    def noted(self, *, everything: bool = True) -> Iterator[Line]:
+    def noted(self, *, everything: bool = True) -> Iterator[NamedLine]:
         """Yield what is noted of the whole run; not `everything`: in one short line without a name, and the rounding."""
         short = "" if everything else self.notes.get("short", "")
         if short:

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import BRIEF_DIGITS, ShownAsTable, brief, how_long
+from stickslip.foundation.show import BRIEF_DIGITS, NamedLine, ShownAsTable, brief, how_long
 from stickslip.problem import Problem, RunOptions, Status, check_event_rate, default_event_rate, in_given_units
 from stickslip.problem.scenarios import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
-from stickslip.solution.account import Account, Line, events_in_words
+from stickslip.solution.account import Account, events_in_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -261,7 +261,7 @@ class Solution(Exports, ShownAsTable):
         return Account(self.scenario(), self.status, self.duration, {word: note for word, note in notes.items() if note})
 
     @in_given_units
-    def _lines(self) -> list[Line]:
+    def _lines(self) -> list[NamedLine]:
         """Return what is said of the run, with its body, law and loading, in lines of a name and a text."""
         problem, account = self.problem, self.account
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())

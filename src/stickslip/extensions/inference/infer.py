@@ -45,6 +45,7 @@ from stickslip.extensions.inference.fit.setup import (
 )
 from stickslip.extensions.inference.fit.starting import with_starts
 from stickslip.extensions.inference.inference import Inference
+from stickslip.extensions.inference.of_record import takes_fields
 from stickslip.extensions.inference.record.noise import LOSSES
 from stickslip.extensions.inference.record.record import Record
 from stickslip.extensions.inference.record.resample import MOST_FITTED, resampled
@@ -54,7 +55,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.locks import held
 from stickslip.foundation.quantities import Quantity
-from stickslip.foundation.takes import takes_fields
 from stickslip.problem import PRESSING, Problem, read_option
 from stickslip.problem.scenarios import read_problem
 from stickslip.run import telling

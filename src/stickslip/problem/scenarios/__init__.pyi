@@ -48,7 +48,6 @@ from stickslip.problem.scenarios.source import (
     read_problem,  # Return a problem itself, or that of a scenario, which may be given as to `read_source`.
     read_source,  # Return the scenario of a problem with a `duration`, a scenario itself, or that of a bundled name or a file.
     solved_by_core,  # Return a scenario if its own problem is solved, as all but runs need it.
-    under_rule,  # Return a scenario under another selection rule.
 )
 from stickslip.problem.scenarios.table import (
     ScenarioTable,  # What a table of an extension holds, and what it means.
@@ -105,7 +104,6 @@ __all__ = [
     "text_of",
     "to_table",
     "typed_number",
-    "under_rule",
     "values_in",
     "with_law",
     "with_values",

@@ -11,7 +11,6 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_options import DURATION
-from stickslip.problem.selection_rule import SelectionRule
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios.scenario import Scenario
@@ -49,11 +48,6 @@ def read_source(
     if duration is not None:
         found = replace(found, duration=DURATION.check(who, "duration", duration))
     return found if any_kind else solved_by_core(who, found)
-
-
-def under_rule(scenario: Scenario, rule: str | SelectionRule) -> Scenario:
-    """Return a scenario under another selection rule. Raises InputError for an unknown rule."""
-    return replace(scenario, problem=replace(scenario.problem, selection=rule))
 
 
 def read_problem(who: str, source: Problem | Scenario | str | Path) -> Problem:

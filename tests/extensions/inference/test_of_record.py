@@ -7,8 +7,9 @@ from inspect import signature
 
 import pytest
 
+from stickslip.extensions.inference.of_record import takes_fields
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.takes import Said, takes_fields
+from stickslip.foundation.takes import Said
 
 
 @dataclass(frozen=True)
