@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from stickslip.cli.options import ACCURACY, complete_rule, option
-from stickslip.run.words import WORDS
+from stickslip.run import WORDS
 
 GOES_ON = "A run that needs more ends there; --out keeps what there is, and --resume goes on with a larger number."
 """What --max-pieces says of the files of the command line."""

@@ -2,6 +2,10 @@
 
 from stickslip.problem import features, loading
 from stickslip.problem import selection_rule as selection
+from stickslip.problem.bodies.soft_torque import (
+    sent_back,  # Return the size of the share (1) that the drive sends back of a wave with a period (s).
+    tuned_period,  # Return the period (s) at which inertia and integral gain of a drive cancel; NaN if it has not both.
+)
 from stickslip.problem.drivers.driver import (
     DRIVERS,  # What each kind of driver answers, by `Problem.driver_kind`.
     driver_impedance,  # Return how the driver of a uniform body resists a motion exp(s t) of its end.
@@ -243,9 +247,11 @@ __all__ = [
     "registered",
     "resistance_slope",
     "selection",
+    "sent_back",
     "settled_rate",
     "steady_inflow",
     "tone_of",
+    "tuned_period",
     "units_given",
     "units_shared",
     "wave_before",

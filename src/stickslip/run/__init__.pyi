@@ -60,11 +60,15 @@ from stickslip.run.study import (
     telling,
     uninterrupted,  # Return a solution that has just been computed.
 )
+from stickslip.run.words import (
+    WORDS,  # What is said of each option of a run.
+)
 
 __all__ = [
     "ALL_TAKE",
     "CAPACITY",
     "FILES_OF_CORE",
+    "WORDS",
     "CallOptions",
     "Catalogue",
     "Edge",

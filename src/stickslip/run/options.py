@@ -34,10 +34,7 @@ class CallOptions(BoundedOptions):
 
     @classmethod
     def of(cls, source: Any, **given: Any) -> Self:
-        """Return the options of a run, not yet checked: those `given`, and for those that are None the scenario's or the defaults.
-
-        The source is a scenario, or what the solver of an extension solves, which has no options.
-        """
+        """Return the options, not yet checked, for a scenario or what an extension solves: those `given`, or its own where None."""
         own = vars(source.options) | {"title": source.heading} if isinstance(source, Scenario) else {"duration": None}
         return cls(**own).with_given(given)
 

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from stickslip.foundation.show import brief
-from stickslip.problem import Problem, driver_of
-from stickslip.problem.bodies.soft_torque import sent_back, tuned_period
+from stickslip.problem import Problem, driver_of, sent_back, tuned_period
 from stickslip.run.check.asked import Fact
 from stickslip.run.check.far_side import GivesWay
 
