@@ -14,7 +14,7 @@ import json
 import sys
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -98,10 +98,20 @@ def readings(run: ss.Solution) -> dict[str, Callable[[], Any]]:
     if isinstance(run.problem.body, ss.ElasticSlab):
         depths = np.linspace(0.0, run.problem.body.thickness, 4)
         found["field"] = lambda: [np.asarray(part) for part in run.field(depths, times[1::4, None])]
-        found["uniqueness"] = lambda: repr(ss.uniqueness(run.problem)).encode()
+        found["uniqueness"] = lambda: numbers_of(ss.uniqueness(run.problem)).encode()
         found["admissible"] = lambda: [ss.uniqueness(run.problem).admissible(load * 1e6) for load in (20, 45, 62, 66, 70, 79, 90)]
         found["stability"] = lambda: [ss.uniqueness(run.problem).stability(load * 1e6) for load in (20, 45, 62, 66, 70, 79, 90)]
     return found
+
+
+def numbers_of(answer: Any) -> str:
+    """Return all numbers of an answer about uniqueness, to the last digit, whatever words it is told in."""
+    if isinstance(answer, tuple):
+        return f"({', '.join(map(numbers_of, answer))})"
+    if not is_dataclass(answer):
+        return repr(answer)
+    without = ("resistance", "problem", "summary")
+    return numbers_of(tuple(getattr(answer, one.name) for one in fields(answer) if one.name not in without))
 
 
 def without_bounds(store: Store) -> Store:
