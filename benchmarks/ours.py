@@ -15,6 +15,7 @@ from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.workspace import counts_in, lend_history
 from stickslip.problem.run_codes import Stop
+from stickslip.problem.run_options import RunOptions
 from stickslip.problem.run_status import STATUSES
 from stickslip.solution.solution import Solution
 
@@ -49,7 +50,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
             float(setup.params.ramp),
             case.duration,
         )
-        return Solution(case.problem, case.duration, tolerance, STATUSES[Stop.FINISHED], history)
+        return Solution(case.problem, RunOptions(case.duration, tolerance), STATUSES[Stop.FINISHED], history)
 
     def slip(times: Floats) -> Floats:
         return solution().slip(times) - case.problem.initial_slip

@@ -334,18 +334,16 @@ def _quantities_of(kind: type) -> dict[str, Quantity]:
     return {name: declared for name, declared in found.items() if isinstance(declared, Quantity)}
 
 
-def check_fields(
-    owner: Any, but: Collection[str] = (), units: Mapping[str, str] = MappingProxyType({}), who: str | None = None
-) -> None:
+def check_fields(owner: Any, but: Collection[str] = (), units: Mapping[str, str] = MappingProxyType({})) -> None:
     """Check the declared fields of a frozen dataclass, except those in `but`, and store the converted values.
 
-    Messages begin with `who`, by default the name of its class. `units` replaces declared units such as "Pa or N" by the one that
-    applies here. A field that is None is left as it is if None is its default. Raise InputError for a value that is not allowed.
+    `units` replaces declared units such as "Pa or N" by the one that applies here. A field that is None is left as it is if None
+    is its default. Raise InputError for a value that is not allowed.
     """
     for name, (declared, default) in fields_of(type(owner)).items():
         value = getattr(owner, name)
         if name not in but and (value is not None or default is not None):
-            object.__setattr__(owner, name, in_units(declared, units).check(who or type(owner).__name__, name, value))
+            object.__setattr__(owner, name, in_units(declared, units).check(type(owner).__name__, name, value))
 
 
 def given_in(owner: Any) -> str:

@@ -44,11 +44,17 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
         options = [_parameter(name, given.__annotations__[name], said[name].default) for name in names]
         any_name = [Parameter(others, Parameter.VAR_KEYWORD)] if others else []
         full = [*named, *options, *any_name]
+        known = {one.name for one in full}
 
         @wraps(function)
         def call(*args: Any, **by_name: Any) -> Any:
-            check_names(function.__name__, full, args, by_name)
-            return function(*args, **by_name)
+            if not others and not known.issuperset(by_name):
+                check_names(function.__name__, full, args, by_name)
+            try:
+                return function(*args, **by_name)
+            except TypeError:
+                check_names(function.__name__, full, args, by_name)
+                raise
 
         return cast(Function, told(call, full, said, (*more, *names)))
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Count, Quantity, check_fields, declare, fields_of
+from stickslip.foundation.quantities import Count, Quantity, declare, fields_of
 
 if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
@@ -49,7 +50,7 @@ class RunOptions(CheckedArguments):
     @property
     def options(self) -> RunOptions:
         """The options alone, of a record that has more."""
-        return RunOptions(**{one.name: getattr(self, one.name) for one in fields(RunOptions)})
+        return RunOptions(*VALUES_OF_OPTIONS(self))
 
     def with_given(self, given: Mapping[str, Any]) -> Self:
         """Return a record with other values of some of its fields; those that are None are not given."""
@@ -59,9 +60,12 @@ class RunOptions(CheckedArguments):
         """Return the options with numbers in SI, each in its range whatever is run. Raises InputError, which begins with `who`."""
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
-        found = replace(self)
-        check_fields(found, who=who)
-        return found
+        changed = {}
+        for name, (declared, default) in fields_of(type(self)).items():
+            given = getattr(self, name)
+            if (given is not None or default is not None) and (found := declared.check(who, name, given)) is not given:
+                changed[name] = found
+        return replace(self, **changed) if changed else self
 
     def check(self, who: str, problem: Problem) -> Self:
         """Return the options if this problem can be run with them. Raises InputError, which begins with `who`, otherwise."""
@@ -79,12 +83,16 @@ class RunOptions(CheckedArguments):
 
         Raises InputError, which begins with `who` and names options as `called` says.
         """
+        if self.creep_rtol is None and self.shortest_event is None:
+            return
         from stickslip.problem.limits import check_creep_rtol, check_shortest_event  # which most scenarios can do without
 
-        if self.creep_rtol is not None:
-            check_creep_rtol(problem, self.creep_rtol, who, called("creep_rtol"))
-        if self.shortest_event is not None:
-            check_shortest_event(problem, self.shortest_event, who, called("shortest_event"))
+        check_creep_rtol(problem, self.creep_rtol, who, called("creep_rtol"))
+        check_shortest_event(problem, self.shortest_event, who, called("shortest_event"))
+
+
+VALUES_OF_OPTIONS = attrgetter(*(one.name for one in fields(RunOptions)))
+"""Returns the values of the options of a record that has them, in their order."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ class CallOptions(BoundedOptions):
     def of(cls, source: Any, **given: Any) -> Self:
         """Return the options, not yet checked, for a scenario or what an extension solves: those `given`, or its own where None."""
         own = vars(source.options) | {"title": source.heading} if isinstance(source, Scenario) else {"duration": None}
-        return cls(**own).with_given(given)
+        return cls(**(own | {name: value for name, value in given.items() if value is not None}))
 
     @classmethod
     def to_continue(cls, stopped: Solution, duration: float | str | WithUnit | None, **given: Any) -> Self:

@@ -40,7 +40,8 @@ WORDS = {
     ),
     "selection": Said(
         "str or callable, optional",
-        "The selection rule, which decides where the contact equation has several solutions; by default that of the problem.",
+        "The selection rule; by default that of the problem.",
+        "It decides where the contact equation has several solutions: "
         '"perfect-delay", "maxwell", "minimal", "maximal", or one of your own (see `stickslip.selection`).',
     ),
     "progress": Said(

@@ -151,7 +151,7 @@ def typed_in(line: str) -> list[str]:
 def test_a_full_history_is_written_and_the_line_that_says_how_goes_on(
     command, limit: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 500)
+    monkeypatch.setattr("stickslip.problem.run_options.MAX_PIECES", 500)
     shown = command("run", "fig5-slab-printed", "--duration", "3 minutes", "--out", "run.nc", *limit)
     assert (shown.code, shown.err) == (1, "")
     assert "\ntoo many pieces" in shown.out

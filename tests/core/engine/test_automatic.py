@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.engine.creep.schedule import CreepLeaps
-from stickslip.engine.input.limits import MOST_PIECES, PATIENCE
+from stickslip.engine.input.limits import EXACT_TRIPS, MOST_PIECES
 from stickslip.foundation.units import to_si
 from stickslip.problem.limits import AUTOMATIC_SHARE, creep_tolerance
 from stickslip.problem.run_codes import Stop
@@ -121,10 +121,10 @@ def test_a_plain_call_reaches_the_first_pulse(rtol: float, error: float) -> None
 
 def test_the_first_round_trips_are_all_run() -> None:
     """Bit for bit those of a run without leaps; and a run that ends before is that run."""
-    exact, leaping = ss.simulate(printed(1), PATIENCE * ROUND, creep_rtol=0.0), ss.simulate(printed(1), 1e5)
-    assert leaping.creep.start_row.iloc[0] == PATIENCE
+    exact, leaping = ss.simulate(printed(1), EXACT_TRIPS * ROUND, creep_rtol=0.0), ss.simulate(printed(1), 1e5)
+    assert leaping.creep.start_row.iloc[0] == EXACT_TRIPS
     assert same_pieces(exact, leaping, len(exact.history) - 1)
-    short = ss.simulate(printed(1), PATIENCE * ROUND)
+    short = ss.simulate(printed(1), EXACT_TRIPS * ROUND)
     assert len(short.history) == len(exact.history)
     assert same_pieces(exact, short, len(exact.history))
 
@@ -203,8 +203,8 @@ def test_laws_of_slip_lump_nothing() -> None:
 def test_a_full_history_is_written_and_goes_on_with_more_pieces(
     options: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
-    monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 1000)
+    file, short = tmp_path / "run.nc", 0.5 * EXACT_TRIPS * ROUND
+    monkeypatch.setattr("stickslip.problem.run_options.MAX_PIECES", 1000)
     full = ss.simulate(printed(1), short, checkpoint=file, **options)
     kept = ss.open_solution(file)
     assert full.status.name == "too many pieces"
@@ -223,14 +223,14 @@ def test_a_full_history_is_written_and_goes_on_with_more_pieces(
 
 def test_a_long_run_that_was_stopped_goes_on_without_a_number_of_pieces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It had more than the default allows, because it was allowed more; it is not full."""
-    file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
+    file, short = tmp_path / "run.nc", 0.5 * EXACT_TRIPS * ROUND
 
     def stop(report: Any) -> None:
         if report.pieces > 3000:
             raise KeyboardInterrupt
 
     stopped = ss.simulate(printed(1), short, checkpoint=file, max_pieces=20_000, progress=stop)
-    monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 1000)
+    monkeypatch.setattr("stickslip.problem.run_options.MAX_PIECES", 1000)
     assert stopped.status.name == "interrupted"
     more = ss.resume(file)
     assert len(more.history) > 1.25 * len(stopped.history)
@@ -238,7 +238,7 @@ def test_a_long_run_that_was_stopped_goes_on_without_a_number_of_pieces(tmp_path
 
 def test_a_history_takes_a_share_of_the_memory_that_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """12 MB are counted on, of which a history may take 2: some 4 000 pieces."""
-    file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
+    file, short = tmp_path / "run.nc", 0.5 * EXACT_TRIPS * ROUND
     monkeypatch.setenv("STICKSLIP_MEMORY", "12 MB")
     full = ss.simulate(printed(1), short, checkpoint=file, max_pieces=100_000_000)
     assert full.status.name == "too many pieces"

@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.creep.drivers.rigid import Multiplier
-from stickslip.engine.input.limits import PATIENCE
+from stickslip.engine.input.limits import EXACT_TRIPS
 from stickslip.friction import FrictionLaw
 from tests.core.run.long_runs.problems import differences, stopped_and_continued
 
@@ -146,8 +146,8 @@ def test_a_deviation_is_multiplied_as_the_echo_does(reflection: float, slope: fl
 
 def test_the_first_round_trips_of_sliding_are_all_run() -> None:
     run = ss.simulate(CASES["fades"], 3.0)
-    assert run.creep.start_row.iloc[0] == PATIENCE
-    assert len(ss.simulate(CASES["fades"], 0.9 * PATIENCE * LAB.two_way_time).creep) == 0
+    assert run.creep.start_row.iloc[0] == EXACT_TRIPS
+    assert len(ss.simulate(CASES["fades"], 0.9 * EXACT_TRIPS * LAB.two_way_time).creep) == 0
 
 
 @pytest.mark.sampled(every=2)

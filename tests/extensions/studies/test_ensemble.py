@@ -294,7 +294,7 @@ BAD = [
     ({"size": math.nan}, "size must lie between"),
     ({"seed": -1}, "seed must be a whole number, 0 or more, got -1"),
     ({"duration": 0.0}, "duration must be greater than 0 s, got 0"),
-    ({"rtol": 1.0}, "rtol must be at most 0.01, got 1"),
+    ({"rtol": 1.0}, "rtol must be at most 0.01 (a pure number), got 1"),
     ({"max_events": 0}, "max_events must be a whole number above 0"),
     ({"event_rate": -1.0}, "event_rate must be at least 0 m/s, got -1"),
     ({"problem": ss.Problem(SLAB, STATE, initial_load=0.0, initial_state=1.0)}, "neither a strength nor an initial load"),
@@ -329,12 +329,12 @@ def test_an_ensemble_that_was_stopped_goes_on_with_the_runs_that_it_kept(tmp_pat
     half.advance(50)
     assert 0 < half.length < len(whole.runs[1].history)
     save_checkpoint(half.solution(UNDER_WAY), folder / "member-2.nc")
-    begun_anew: list[ss.Problem] = []
+    begun_anew = list[ss.Problem]()
     real = kept_runs.simulate
 
-    def noted(problem: ss.Problem, *rest: Any, **more: Any) -> Any:
-        begun_anew.append(problem)
-        return real(problem, *rest, **more)
+    def noted(scenario: ss.Scenario, *rest: Any, **more: Any) -> Any:
+        begun_anew.append(scenario.problem)
+        return real(scenario, *rest, **more)
 
     monkeypatch.setattr(kept_runs, "simulate", noted)
     _same(ensemble(FAST, 300 * TRIP, members=3, checkpoint=folder), whole)

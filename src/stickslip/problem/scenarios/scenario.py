@@ -34,6 +34,8 @@ MOST_TABLES = 100
 """Largest number of tables in a scenario; the laws with most parts have a fifth of it."""
 LARGE_COEFFICIENT, SMALL_STRESS = 3.0, 10.0
 """A static coefficient above, or a normal stress (Pa) of a slab below, these values raises a question."""
+KEYS_OF_RUN = {name: key_of(name, entry) for name, (entry, _) in fields_of(RunOptions).items()}
+"""The keys of [run], by option."""
 _HEADING = re.compile(r"""^[ \t]*\[{1,2}[ \t]*[A-Za-z_"']""", re.MULTILINE)
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
 
@@ -142,7 +144,7 @@ class Scenario(ShownAsTable, RunOptions, OfProblem):
                     to_table(value) if isinstance(value, LoadingHistory) else as_written(value)
                 )
         tables |= {name: tables_of_extensions()[name].write(value) for name, value in self.tables}
-        run: dict[str, Any] = {key_of(name, entry): getattr(self, name) for name, (entry, _) in fields_of(RunOptions).items()}
+        run: dict[str, Any] = {key: getattr(self, name) for name, key in KEYS_OF_RUN.items()}
         run["selection"] = problem.rule
         allowed = run if self.run_keys is None else self.run_keys
         tables["run"] = {name: value for name, value in run.items() if value is not None and name in allowed}
@@ -206,7 +208,7 @@ def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
         problem = Problem(body, law, **loading, **start, selection=run.pop("selection"))
     except InputError as error:
         raise InputError(f"{file}: {_in_tables(without_owner(error))}") from None
-    options = {name: run[key_of(name, entry)] for name, (entry, _) in fields_of(RunOptions).items()}
+    options = {name: run[key] for name, key in KEYS_OF_RUN.items()}
     found = Scenario(problem, **options, title=document["title"], description=document["description"], name=file)
     found.check_with(problem, file, lambda option: f"[run] {option}")
     return _with_tables(found, document, source)

@@ -45,9 +45,8 @@ def read_source(
     found = load_scenario(source) if isinstance(source, str | Path) else source
     if not isinstance(found, Scenario):
         check_problem(who, found, "a Problem, a scenario, or the name of one")
-    if duration is not None:
-        found = replace(found, duration=DURATION.check(who, "duration", duration))
-    return found if any_kind else solved_by_core(who, found)
+    found = found if any_kind else solved_by_core(who, found)
+    return found if duration is None else replace(found, duration=DURATION.check(who, "duration", duration))
 
 
 def read_problem(who: str, source: Problem | Scenario | str | Path) -> Problem:

@@ -202,10 +202,10 @@ def test_an_own_history_runs_and_is_saved_once_it_is_known(tmp_path: Path, monke
 
 def test_a_run_says_how_it_is_loaded() -> None:
     said = repr(ss.simulate("stress-pulse-slab"))
-    assert "loading   pull rate 0 m/s, far stress piecewise-linear, 5.9 MPa at first, initial load 5.9 MPa" in said
+    assert "  loading         pull rate 0 m/s, far stress piecewise-linear, 5.9 MPa at first, initial load 5.9 MPa" in said
     said = repr(ss.simulate("tides-block"))
-    assert "loading   pull rate sinusoidal, 0.035 m/year at first, initial load 59 TN" in said
-    assert "loading   pull rate 0.05 m/year, initial load 80 MPa" in repr(ss.simulate("fig6-slab"))
+    assert "  loading         pull rate sinusoidal, 0.035 m/year at first, initial load 59 TN" in said
+    assert "  loading         pull rate 0.05 m/year, initial load 80 MPa" in repr(ss.simulate("fig6-slab"))
 
 
 def test_an_export_says_how_it_is_loaded(tmp_path: Path) -> None:

@@ -49,7 +49,7 @@ CASES = [
     ("pull_rate =", "far_stress = 5.0\npull_rate =", f"[loading] {FAR}"),
     ('"12 s"', '"0 s"', "[run] duration must be greater than 0 s, got 0 (from '0 s')"),
     ('"12 s"', "-3", "[run] duration must be greater than 0 s, got -3"),
-    ('"12 s"', '"12 s"\nrtol = 0.5', "[run] rtol must be at most 0.01, got 0.5"),
+    ('"12 s"', '"12 s"\nrtol = 0.5', "[run] rtol must be at most 0.01 (a pure number), got 0.5"),
     ('"12 s"', '"12 s"\nrtol = 0.0', "[run] rtol must be at least 1e-15 (a pure number), got 0"),
     ('"12 s"', '"12 s"\ncreep_rtol = -1e-6', "[run] creep_rtol must be at least 0 (a pure number), got -1e-06"),
     ('"12 s"', '"12 s"\ncreep_rtol = 0.5', f"[run] creep_rtol {CREEP}, got 0.5"),

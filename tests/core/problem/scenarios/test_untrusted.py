@@ -187,7 +187,7 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 
 @pytest.mark.parametrize("pieces", [10**15, 10**30, 1e15])
 def test_a_history_that_no_machine_can_hold_is_refused(pieces: int) -> None:
-    with pytest.raises(ss.InputError, match="simulate: max_pieces must be a whole number from 1 to 1000000000, got 1"):
+    with pytest.raises(ss.InputError, match=r"simulate: max_pieces must be (a whole number above 0|below 1e\+09), got 1"):
         ss.simulate("fig6-slab", max_pieces=pieces)
 
 

@@ -112,7 +112,7 @@ def test_events_stop_a_run_where_the_last_one_is_known(events: int, times: int, 
     assert differences(again, short) == []
     more = ss.resume(path, max_events=events + 5)
     assert differences(more, ss.simulate(problem, long, max_events=events + 5)) == []
-    assert differences(ss.resume(path, long), replace(whole, max_events=None)) == []
+    assert differences(ss.resume(path, long), replace(whole, options=replace(whole.options, max_events=None))) == []
 
 
 def test_fewer_events_than_there_were_are_refused(tmp_path: Path) -> None:
