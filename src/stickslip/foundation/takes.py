@@ -36,7 +36,7 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
     """
 
     def decorate(function: Function) -> Function:
-        from stickslip.foundation.arguments import check_names  # which needs numpy; what is said of options does not
+        from stickslip.foundation.arguments import for_users  # which needs numpy; what is said of options does not
 
         own = list(signature(function).parameters.values())
         named = [one for one in own if one.kind is not one.VAR_KEYWORD]
@@ -49,14 +49,10 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
         @wraps(function)
         def call(*args: Any, **by_name: Any) -> Any:
             if not others and not known.issuperset(by_name):
-                check_names(function.__name__, full, args, by_name)
-            try:
-                return function(*args, **by_name)
-            except TypeError:
-                check_names(function.__name__, full, args, by_name)
-                raise
+                raise TypeError  # which is then told in one line
+            return function(*args, **by_name)
 
-        return cast(Function, told(call, full, said, (*more, *names)))
+        return cast(Function, for_users(told(call, full, said, (*more, *names))))
 
     return decorate
 

@@ -138,7 +138,7 @@ from stickslip.problem.run_options import (
     RUN_RTOL,  # Declares the relative tolerance of a run.
     BoundedOptions,  # The options that the engine takes: those of a run, and how many pieces its history may have.
     RunOptions,  # How long and how accurately to run a problem, when to stop, and what to call the run.
-    read_option,  # Return the value of one option, in SI and in its range whatever is run.
+    read_option,  # Return one option in SI and in its range.
 )
 from stickslip.problem.run_status import (
     SHORT_OF_MEMORY,  # How the message of that status begins where memory is short.

@@ -60,7 +60,7 @@ class RunOptions(CheckedArguments):
         """Return the options with numbers in SI, each in its range whatever is run. Raises InputError, which begins with `who`."""
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
-        changed = {}
+        changed: dict[str, Any] = {}
         for name, (declared, default) in fields_of(type(self)).items():
             given = getattr(self, name)
             if (given is not None or default is not None) and (found := declared.check(who, name, given)) is not given:
@@ -109,8 +109,5 @@ class BoundedOptions(RunOptions):
 
 
 def read_option(name: str, value: Any, where: str, called: str = "") -> Any:
-    """Return the value of one option, in SI and in its range whatever is run.
-
-    Raises InputError, which begins with `where` and calls the option by its name if it is not `called` otherwise.
-    """
+    """Return one option in SI and in its range. Raises InputError, which begins with `where` and calls it so, or by its name."""
     return fields_of(RunOptions)[name][0].check(where, called or name, value)

@@ -27,11 +27,7 @@ def solved_by_core(who: str, scenario: Scenario) -> Scenario:
 
 
 def read_source(
-    who: str,
-    source: Problem | Scenario | str | Path,
-    duration: float | str | WithUnit | None = None,
-    *,
-    any_kind: bool = False,
+    who: str, source: Problem | Scenario | str | Path, duration: float | str | WithUnit | None = None, *, any_kind: bool = False
 ) -> Scenario:
     """Return the scenario of a problem with a `duration`, a scenario itself, or that of a bundled name or a file.
 
