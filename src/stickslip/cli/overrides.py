@@ -18,10 +18,10 @@ from stickslip.problem.scenarios import (
     LARGEST_SCENARIO_FILE,
     Scenario,
     check_rule,
+    check_solved_by_core,
     load_scenario,
     read_scenario,
     read_typed,
-    solved_by_core,
     text_of,
     typed_number,
     with_values,
@@ -41,7 +41,9 @@ def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, a
 
     Raises InputError, also for a scenario whose own problem is not what is solved unless it may be of `any_kind`.
     """
-    loaded = _load(scenario) if any_kind else solved_by_core(command, _load(scenario))
+    loaded = _load(scenario)
+    if not any_kind:
+        check_solved_by_core(command, loaded)
     where = f"{command}: --set"
     if changes:
         values = typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"')

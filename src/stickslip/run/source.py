@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stickslip.foundation.errors import InputError
-from stickslip.problem.scenarios import Scenario, load_scenario, solved_by_core
+from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.run.study import uninterrupted
@@ -42,6 +42,6 @@ def run_source(
     if Path(str(source)).suffix == ".nc":
         solution = read_solution(Path(str(source)))
         return RunSource(Path(str(source)).stem, lambda _: solution)
-    scenario = solved_by_core(who, source if isinstance(source, Scenario) else load_scenario(source))
+    scenario = read_source(who, source)
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
     return RunSource(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))

@@ -19,7 +19,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem, default_event_rate, read_option
-from stickslip.problem.scenarios import Scenario, load_scenario, solved_by_core
+from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import Study, TextProgress, run_source, telling
 from stickslip.solution import Solution
 from stickslip.solution.files import read_solution
@@ -221,7 +221,7 @@ def _scenario_of(source: str | Path | Scenario | Solution) -> Scenario:
         return source.scenario()
     if not isinstance(source, Scenario) and Path(str(source)).suffix == ".nc":
         return read_solution(Path(str(source))).scenario()
-    return solved_by_core("compare", source if isinstance(source, Scenario) else load_scenario(source))
+    return read_source("compare", source)
 
 
 def distinct(names: Sequence[str]) -> list[str]:

@@ -45,9 +45,9 @@ from stickslip.problem.scenarios.schema import (
     without_owner,
 )
 from stickslip.problem.scenarios.source import (
+    check_solved_by_core,  # Refuse a scenario whose own problem is not what is solved, as all but runs need it.
     read_problem,  # Return a problem itself, or that of a scenario, which may be given as to `read_source`.
     read_source,  # Return the scenario of a problem with a `duration`, a scenario itself, or that of a bundled name or a file.
-    solved_by_core,  # Return a scenario if its own problem is solved, as all but runs need it.
 )
 from stickslip.problem.scenarios.table import (
     ScenarioTable,  # What a table of an extension holds, and what it means.
@@ -79,6 +79,7 @@ __all__ = [
     "ScenarioTable",
     "Source",
     "check_rule",
+    "check_solved_by_core",
     "describe",
     "document_with",
     "doubts",
@@ -99,7 +100,6 @@ __all__ = [
     "read_source",
     "read_typed",
     "scenario_of",
-    "solved_by_core",
     "template",
     "text_of",
     "to_table",

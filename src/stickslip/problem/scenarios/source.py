@@ -16,14 +16,13 @@ if TYPE_CHECKING:
     from stickslip.problem.scenarios.scenario import Scenario
 
 
-def solved_by_core(who: str, scenario: Scenario) -> Scenario:
-    """Return a scenario if its own problem is solved, as all but runs need it. Raises InputError, which begins with `who`."""
+def check_solved_by_core(who: str, scenario: Scenario) -> None:
+    """Refuse a scenario whose own problem is not what is solved, as all but runs need it. Raises InputError."""
     if not scenario.is_of_core:
         made = ((name, tables()[name]) for name, value in scenario.tables if tables()[name].problem(value, scenario) is not None)
         name, table = next(made)
         uses = "for which there are `stickslip run`, `check`, `show` and ss.simulate"
         raise InputError(f"{who}: {scenario.name} has a {table.what.format(name)}, {uses}: {table.instead.format(name)}")
-    return scenario
 
 
 def read_source(
@@ -41,7 +40,8 @@ def read_source(
     found = load_scenario(source) if isinstance(source, str | Path) else source
     if not isinstance(found, Scenario):
         check_problem(who, found, "a Problem, a scenario, or the name of one")
-    found = found if any_kind else solved_by_core(who, found)
+    if not any_kind:
+        check_solved_by_core(who, found)
     return found if duration is None else replace(found, duration=DURATION.check(who, "duration", duration))
 
 
