@@ -74,11 +74,9 @@ def load_with(
     `changes` are the values of --set, which come first. Raises InputError as `load` does.
     """
     loaded = load(scenario, command, changes, any_kind=any_kind)
-    given = {**typed}
-    if (rule := given.pop("selection", None)) is not None:
-        changed = replace(loaded.problem, selection=check_rule(rule, command, "--selection"))
-        loaded = replace(loaded, problem=changed)
-    found = loaded.with_given({name: typed_option(name, value, command) for name, value in given.items()})
+    if (rule := typed.pop("selection", None)) is not None:
+        loaded = replace(loaded, problem=replace(loaded.problem, selection=check_rule(rule, command, "--selection")))
+    found = loaded.with_given({name: typed_option(name, value, command) for name, value in typed.items()})
     found.check_with(found.problem, command, option_for)
     return found
 
