@@ -205,7 +205,7 @@ def test_numbers_of_bodies_and_laws_are_checked(given: Any, shown: str) -> None:
 def test_studies_of_one_run_are_checked() -> None:
     refused(lambda: ss.studies.predictability("run.nc"), "predictability: needs a Solution, got 'run.nc'")  # type: ignore[arg-type]
     refused(lambda: ss.studies.catalogue_statistics(PROBLEM), "catalogue_statistics: table must be a table of slip events")  # type: ignore[arg-type]
-    refused(lambda: ss.studies.compare("fig6-slab", 3), "load_scenario: path_or_name must be the name of a file or of a bundled")  # type: ignore[arg-type]
+    refused(lambda: ss.studies.compare("fig6-slab", 3), "compare: problem must be a Problem, a scenario, or the name of one, got 3")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -42,6 +41,6 @@ def run_source(
     if Path(str(source)).suffix == ".nc":
         solution = read_solution(Path(str(source)))
         return RunSource(Path(str(source)).stem, lambda _: solution)
-    scenario = read_source(who, source)
-    changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
+    scenario = read_source(who, source, duration)
+    changed = scenario.with_given({"rtol": rtol})
     return RunSource(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
