@@ -49,7 +49,7 @@ def takes(said: Mapping[str, Said], given: type, *more: str, others: str = "") -
         @wraps(function)
         def call(*args: Any, **by_name: Any) -> Any:
             if not others and not known.issuperset(by_name):
-                raise TypeError  # which is then told in one line
+                raise TypeError  # `for_users` answers it with the nearest name
             return function(*args, **by_name)
 
         return cast(Function, for_users(told(call, full, said, (*more, *names))))

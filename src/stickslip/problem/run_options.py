@@ -109,5 +109,5 @@ class BoundedOptions(RunOptions):
 
 
 def read_option(name: str, value: Any, where: str, called: str = "") -> Any:
-    """Return one option in SI and in its range. Raises InputError, which begins with `where` and calls it so, or by its name."""
+    """Return one option in SI and in its range. Raises InputError that begins with `where` and names it `called`, if given."""
     return fields_of(RunOptions)[name][0].check(where, called or name, value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import fields
 from inspect import signature
 
@@ -10,7 +11,9 @@ import pytest
 import stickslip as ss
 from stickslip.cli.typed_options import TypedOptions
 from stickslip.foundation.quantities import fields_of
-from stickslip.problem import BoundedOptions, RunOptions
+from stickslip.problem import LARGEST_SHARE, MAX_PIECES, MOST_PIECES, BoundedOptions, RunOptions, creep_tolerance
+from stickslip.problem.limits import EXACT_TRIPS, LARGEST_RTOL
+from stickslip.problem.run_options import RUN_RTOL
 from stickslip.problem.scenarios import Scenario
 from stickslip.run.words import WORDS, GivenToRun
 
@@ -39,3 +42,17 @@ def test_help_lists_each_option_once(call: object) -> None:
     said = [line.partition(" : ")[0].strip() for line in (call.__doc__ or "").splitlines() if line[:4].isspace() and " : " in line]
     assert "{options}" not in (call.__doc__ or "")
     assert [one for one in taken if said.count(one) != 1] == ["duration"] * (call is ss.catalogue)
+
+
+def numbers_in(name: str) -> list[float]:
+    """Return the numbers that are said of an option, in their order."""
+    return [float(one) for one in re.findall(r"\d+(?:\.\d+)?(?:e-?\d+)?", WORDS[name].meaning)]
+
+
+def test_numbers_that_are_said_are_those_that_hold() -> None:
+    usual = RunOptions(1.0).rtol
+    automatic = creep_tolerance(ss.scenarios["fig5-slab-printed"].problem, None, usual)
+    assert numbers_in("rtol") == [RUN_RTOL.at_least, RUN_RTOL.at_most, usual]
+    assert numbers_in("creep_rtol") == pytest.approx([LARGEST_RTOL, 0.0, EXACT_TRIPS, automatic], rel=1e-12, abs=0.0)
+    assert numbers_in("shortest_event") == [1.0, 100.0 * LARGEST_SHARE, 0.0, MOST_PIECES]
+    assert (MAX_PIECES, "two million by default" in WORDS["max_pieces"].meaning) == (2_000_000, True)
