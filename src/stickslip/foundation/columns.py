@@ -37,6 +37,8 @@ class Table:
     """Sentences on what was passed over."""
     doubts: tuple[str, ...] = ()
     """Sentences on columns without a unit."""
+    interval: float | None = None
+    """The time (s) between two rows, if the file states it."""
 
     def at(self, i: int) -> str:
         """Return the place of row i for a message."""
