@@ -168,8 +168,8 @@ class NumberSeries:
             found = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
         if not self.least <= len(found) <= self.most:
             raise InputError(f"{owner}: {name} must have {self.least} to {self.most} numbers, got {len(found)}")
-        if self.ascending and (np.diff(found) <= 0.0).any():
-            i = int(np.flatnonzero(np.diff(found) <= 0.0)[0])
+        falls = np.flatnonzero(np.diff(np.asarray(value if type(value) is np.ndarray else found, float)) <= 0.0) if self.ascending else ()
+        for i in falls[:1]:
             one, following = found[i], found[i + 1]
             cure = "sort the points" if following < one else "keep one point of each, or their mean"
             raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}; {cure}")

@@ -10,6 +10,7 @@ import numpy as np
 from typing_extensions import override
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
@@ -60,7 +61,7 @@ class Record(LoadingHistory):
     @property
     def about(self) -> str:
         """How many samples it has, how far apart, and the largest, in words."""
-        peak = brief(float(np.abs(self.samples).max()) / 9.80665, "g", 4)
+        peak = brief(float(np.abs(self.samples).max()) / GRAVITY, "g", 4)
         return f"{len(self.values)} samples every {brief(self.interval, 's')}, {peak} at most"
 
     @override
