@@ -38,7 +38,7 @@ class Table:
     doubts: tuple[str, ...] = ()
     """Sentences on columns without a unit."""
     interval: float | None = None
-    """The time (s) between two rows, if the file states it."""
+    """Time between samples (s), where the header of a file states it."""
 
     def at(self, i: int) -> str:
         """Return the place of row i for a message."""

@@ -14,7 +14,7 @@ from stickslip.foundation.given import column_given
 from stickslip.foundation.headings import KNOWN_COLUMNS, TURNED, find, missing
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import MOST_SAMPLES
-from stickslip.foundation.record_files.foreign import text_in
+from stickslip.foundation.record_files import text_in
 from stickslip.foundation.text_columns import read_text
 
 LARGEST_DATA_FILE = 50_000_000

@@ -15,7 +15,7 @@ from stickslip.foundation.given import column_given
 from stickslip.foundation.headings import KNOWN_COLUMNS, find, missing
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import MOST_SAMPLES
-from stickslip.foundation.record_files.foreign import text_in
+from stickslip.foundation.record_files import text_in
 from stickslip.foundation.show import brief
 from stickslip.foundation.text_columns import read_text
 from stickslip.problem.even_times import interval_of
