@@ -168,7 +168,11 @@ class NumberSeries:
             found = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
         if not self.least <= len(found) <= self.most:
             raise InputError(f"{owner}: {name} must have {self.least} to {self.most} numbers, got {len(found)}")
-        falls = np.flatnonzero(np.diff(np.asarray(value if type(value) is np.ndarray else found, float)) <= 0.0) if self.ascending else ()
+        falls = (
+            np.flatnonzero(np.diff(np.asarray(value if type(value) is np.ndarray else found, float)) <= 0.0)
+            if self.ascending
+            else ()
+        )
         for i in falls[:1]:
             one, following = found[i], found[i + 1]
             cure = "sort the points" if following < one else "keep one point of each, or their mean"

@@ -32,7 +32,7 @@ def interval_of(times: Floats) -> float:
     place = np.arange(1.0, count)
     least, most = (since[1:] - off) / place, (since[1:] + off) / place
     low, high = float(least.max()), float(most.min())
-    if not 0.0 < high or low > high:
+    if not high > 0.0 or low > high:
         raise InputError(_where_it_changes(times))
     return _simplest(max(low, 0.0), high)
 

@@ -11,8 +11,8 @@ from stickslip.foundation.names import KINDS_OF_BODY, si_unit
 from stickslip.foundation.quantities import LawField, NumberSeries, Quantity, fields_of
 from stickslip.foundation.units import si_factor
 from stickslip.problem.loading import VARYING, LoadingHistory
-from stickslip.problem.record import ACCELERATION
 from stickslip.problem.problem import Problem
+from stickslip.problem.record import ACCELERATION
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -8,6 +8,7 @@ To add one, add its class to this file and to HISTORIES.
 from __future__ import annotations
 
 import math
+from collections import ChainMap
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -61,9 +62,7 @@ class Steps(PiecewiseLinear):
     kind = "steps"
 
     times: Numbers = declare(
-        NumberSeries(
-            Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True, most=MOST_SAMPLES
-        )
+        NumberSeries(Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True, most=MOST_SAMPLES)
     )
     values: Numbers = declare(NumberSeries(Quantity(VARYING, "the values"), most=MOST_SAMPLES))
 
@@ -131,12 +130,18 @@ class HoldAndSlide(LoadingHistory):
 
 
 HISTORIES: dict[str, type[LoadingHistory]] = {
-    history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide, Record)
+    history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide)
 }
 """Every built-in loading history by its name in scenario files."""
+OF_GROUND: dict[str, type[LoadingHistory]] = {Record.kind: Record}
+"""Histories that are motions of the ground and nothing else."""
+ALL_HISTORIES = ChainMap(HISTORIES, OF_GROUND)
+"""Every history that a scenario file may have, those of users in HISTORIES too."""
 
 __all__ = [
+    "ALL_HISTORIES",
     "HISTORIES",
+    "OF_GROUND",
     "VARYING",
     "HoldAndSlide",
     "LoadingHistory",

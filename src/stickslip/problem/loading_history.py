@@ -175,7 +175,6 @@ class LoadingHistory(Declared, ABC):
         return np.asarray(value[n] + slope[n] * (time - start[n]) + amplitude * np.sin(frequency * time + phase))
 
 
-
 def fixed(array: Floats) -> Floats:
     """Return an array that nobody can change: the parts of a history are shared by all problems that have it."""
     array.flags.writeable = False

@@ -27,7 +27,7 @@ def record(
     columns: Mapping[str, str | int] | None = None,
     unit: str | None = None,
 ) -> Record:
-    """Read the acceleration of the ground from a file of a recorder, or from a trace or stream of ObsPy.
+    r"""Read the acceleration of the ground from a file of a recorder, or from a trace or stream of ObsPy.
 
     Units, number of samples, interval and sign are those of the file; `print(record)` says what was found.
 
@@ -65,7 +65,7 @@ def record(
     --------
     >>> import stickslip as ss
     >>> with open("made.csv", "w") as file:
-    ...     _ = file.write("time (s),acceleration (g)\\n0.00,0\\n0.01,0.2\\n0.02,-0.1\\n0.03,0\\n")
+    ...     _ = file.write("time (s),acceleration (g)\n0.00,0\n0.01,0.2\n0.02,-0.1\n0.03,0\n")
     >>> ss.loading.record("made.csv").about
     '4 samples every 10 ms, 0.2 g at most'
     """
@@ -73,7 +73,9 @@ def record(
         raise InputError(f"{WHO}: component and columns both say which column is {VALUE}: give one of them")
     if isinstance(source, str | Path):
         if unit is not None:
-            raise InputError(f'{WHO}: unit is for objects of ObsPy; that of a column goes with columns, as {{"{VALUE}": "3 (gal)"}}')
+            raise InputError(
+                f'{WHO}: unit is for objects of ObsPy; that of a column goes with columns, as {{"{VALUE}": "3 (gal)"}}'
+            )
         named = dict(columns or {}) | ({} if component is None else {VALUE: str(component)})
         fields = _of_file(as_path(f"{WHO}: source", source), named, baseline)
     else:
@@ -100,6 +102,8 @@ def _of_trace(source: Any, component: str | int | None, unit: str | None, baseli
 
     if not hasattr(source, "stats") and not hasattr(source, "traces"):
         wanted = "the name of a file, or a trace or stream of ObsPy"
-        raise InputError(f"{WHO}: source must be {wanted}, got {shown(source)}; arrays make one as ss.loading.Record(values, interval)")
+        raise InputError(
+            f"{WHO}: source must be {wanted}, got {shown(source)}; arrays make one as ss.loading.Record(values, interval)"
+        )
     values, interval, name = samples_of(source, unit, component)
     return {"values": values, "interval": interval, "origin": name} | ({} if baseline is None else {"offset": float(values.mean())})

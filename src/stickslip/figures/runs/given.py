@@ -48,6 +48,8 @@ def _straight(history: LoadingHistory, start: float, end: float, turns: float) -
     edges = [start, *begins[(start < begins) & (begins < end)].tolist(), end]
     first = int(np.searchsorted(begins, start, side="right"))
     parts = [Segment(*one) for one in history.parts[:, first : first + len(edges) - 1].T.tolist()]
-    dense = [np.linspace(low, high, 2 + int(POINTS_OF_TONE * turns * (high - low) / (end - start))) for low, high in pairwise(edges)]
+    dense = [
+        np.linspace(low, high, 2 + int(POINTS_OF_TONE * turns * (high - low) / (end - start))) for low, high in pairwise(edges)
+    ]
     values = [one.at(time) for one, time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
     return np.concatenate(dense), np.concatenate(values)

@@ -54,7 +54,7 @@ def fields_in(
     samples. Unless `shows`, no message repeats a heading of the file.
     """
     if baseline is not None and baseline not in BASELINES:
-        raise InputError(f"{where}: baseline must be \"{BASELINES[0]}\", or left out, got {shown(baseline)}")
+        raise InputError(f'{where}: baseline must be "{BASELINES[0]}", or left out, got {shown(baseline)}')
     try:
         text = text_in(content)
     except UnicodeDecodeError:

@@ -25,7 +25,7 @@ from stickslip.problem.bodies import BODIES
 from stickslip.problem.bodies.on_bit import WEIGHT_ON_BIT
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import MAY_VARY, STEADY
-from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
+from stickslip.problem.loading import ALL_HISTORIES, HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.record import Record
 from stickslip.problem.run_options import RunOptions
@@ -34,7 +34,7 @@ from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 
 TABLES_WITH_KIND: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
-REGISTERED = TABLES_WITH_KIND | {"loading": HISTORIES}
+REGISTERED = TABLES_WITH_KIND | {"loading": ALL_HISTORIES}
 """Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
 LISTED, EXPLAINED = "`stickslip new --list` lists all", "`stickslip new slab`, or another starter, explains all"
 """Where the kinds of laws and histories are, and the keys."""
