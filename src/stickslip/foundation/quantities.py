@@ -180,7 +180,7 @@ class NumberSeries:
         return found
 
     def at_once(self, value: Any) -> tuple[float, ...] | None:
-        """Return floats of a list or tuple, or an array of plain numbers, if all of them are allowed; None for what is to be looked at one by one."""
+        """Return floats, or an array of plain numbers, if all of them are allowed; else None: look at them one by one."""
         if type(value) is np.ndarray and value.ndim == 1 and value.dtype.kind in "fiu":
             array = value.astype(float)
             found = tuple(array.tolist()) if self.item.allows(array).all() else None

@@ -40,8 +40,8 @@ def record(
     component
         Which of several components: the heading of its column, such as "N90E", or its number.
     polarity
-        1 as recorded, -1 for the opposite direction. A load on a block gains -m times the acceleration of the ground, so that with 1
-        a positive acceleration slides the block backwards.
+        1 as recorded, -1 for the opposite direction. A load on a block gains -m times the acceleration of the ground, so that
+        with 1 a positive acceleration slides the block backwards.
     scale
         Factor on the samples.
     baseline
@@ -73,9 +73,8 @@ def record(
         raise InputError(f"{WHO}: component and columns both say which column is {VALUE}: give one of them")
     if isinstance(source, str | Path):
         if unit is not None:
-            raise InputError(
-                f'{WHO}: unit is for objects of ObsPy; that of a column goes with columns, as {{"{VALUE}": "3 (gal)"}}'
-            )
+            cure = f'that of a column goes with columns, as {{"{VALUE}": "3 (gal)"}}'
+            raise InputError(f"{WHO}: unit is for objects of ObsPy; {cure}")
         named = dict(columns or {}) | ({} if component is None else {VALUE: str(component)})
         fields = _of_file(as_path(f"{WHO}: source", source), named, baseline)
     else:

@@ -34,7 +34,7 @@ class _CheckOfUniform(CheckOfWaves):
 
     def mass_on_ground(self, body: BodyOnCharacteristics) -> float | None:
         """Return the mass of a body with a free top, and of its contact."""
-        return 0.5 * body.impedance * body.two_way_time + body.inertia if body.reflection == DEAD_LOAD else None
+        return 0.5 * body.impedance * as_waves(body).two_way_time + body.inertia if body.reflection == DEAD_LOAD else None
 
     def modulus(self, body: BodyOnCharacteristics) -> float:
         return as_waves(body).modulus
