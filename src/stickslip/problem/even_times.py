@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
@@ -66,8 +64,9 @@ def _where_it_changes(times: Floats) -> str:
     if usual <= 0.0:
         usual = float((times[-1] - times[0]) / (len(times) - 1))
     k = int(np.argmax(np.abs(steps - usual)))
-    what = "gap" if steps[k] > 1.5 * usual else "times do not ascend" if steps[k] < 0.0 else "other interval"
     found = f"the interval varies: it is {usual:.6g} s, but from {times[k]:.9g} to {times[k + 1]:.9g} s it is {steps[k]:.6g} s"
-    missing = max(round(float(steps[k]) / usual) - 1, 1) if usual > 0.0 and math.isfinite(steps[k]) else 1
-    cure = f"a gap of {missing} sample{'s' * (missing > 1)}: fill it" if what == "gap" else "resample the record evenly"
-    return f"{found} ({cure}, or give the points as piecewise-linear)"
+    if steps[k] <= 0.0:
+        return f"{found}: sort the rows, or keep one of each time"
+    missing = round(float(steps[k]) / usual) - 1
+    cure = f"fill this gap of {missing} sample{'s' * (missing > 1)}" if missing > 0 else "resample the record evenly"
+    return f"{found}: {cure}, or give the points as piecewise-linear"

@@ -34,7 +34,7 @@ from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 
 TABLES_WITH_KIND: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
-REGISTERED = TABLES_WITH_KIND | {"loading": ALL_HISTORIES}
+REGISTERED = TABLES_WITH_KIND | {"loading": HISTORIES}
 """Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
 LISTED, EXPLAINED = "`stickslip new --list` lists all", "`stickslip new slab`, or another starter, explains all"
 """Where the kinds of laws and histories are, and the keys."""
@@ -294,7 +294,7 @@ def columns_of(table: str, kind: type, heading: str = "") -> dict[str, str]:
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     """Return the class that `kind` names in a table. Raises InputError if it is missing or unknown."""
-    kind, registered = content.get("kind"), REGISTERED[table.partition(".")[0]]
+    kind, registered = content.get("kind"), ALL_HISTORIES if table == RECORDED else REGISTERED[table.partition(".")[0]]
     if "kind" not in content and "file" in content and table == RECORDED:
         return Record
     if "kind" not in content:
