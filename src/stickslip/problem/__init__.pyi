@@ -87,10 +87,10 @@ from stickslip.problem.loading import (
     # Unit of the varying quantity: m/s or rad/s for a pull rate or a velocity of the ground, m/s^2 or rad/s^2 for its
     # acceleration, and Pa, N or N m for a far stress or a normal load.
     VARYING,
+    Accelerogram,  # Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
     # A pull rate, far stress, normal load or motion of the ground as a function of time (s) since the start of the run.
     LoadingHistory,
     PiecewiseLinear,  # A straight line from point to point, constant before the first point and after the last.
-    Record,  # Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
     Segment,  # A straight part of a history from a time `start` (s) on: a value there, and its change per second.
     Steps,  # Jumps to the next value at each given time, and constant values between them: one velocity step, or several.
     Tone,  # A sinusoid amplitude (in the unit of the values) sin(frequency t + phase), of an angular frequency (rad/s) > 0.
@@ -200,6 +200,7 @@ __all__ = [
     "UNDER_WAY",
     "UNSTABLE",
     "VARYING",
+    "Accelerogram",
     "BoundedOptions",
     "Branch",
     "Crowd",
@@ -210,7 +211,6 @@ __all__ = [
     "PiecewiseLinear",
     "Plateau",
     "Problem",
-    "Record",
     "Resistance",
     "RunOptions",
     "Segment",

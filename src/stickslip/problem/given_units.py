@@ -10,9 +10,9 @@ from stickslip.foundation.given import PLACE, Given, Units, display_name, shown_
 from stickslip.foundation.names import KINDS_OF_BODY, si_unit
 from stickslip.foundation.quantities import LawField, NumberSeries, Quantity, fields_of
 from stickslip.foundation.units import si_factor
+from stickslip.problem.accelerogram import ACCELERATION
 from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
-from stickslip.problem.record import ACCELERATION
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -21,8 +21,8 @@ from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.lazy_names import other_names
 from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, declare, quantity
+from stickslip.problem.accelerogram import Accelerogram
 from stickslip.problem.loading_history import VARYING, LoadingHistory, Segment, Tone, fixed
-from stickslip.problem.record import Record
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ HISTORIES: dict[str, type[LoadingHistory]] = {
     history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide)
 }
 """Every built-in loading history by its name in scenario files."""
-OF_GROUND: dict[str, type[LoadingHistory]] = {Record.kind: Record}
+OF_GROUND: dict[str, type[LoadingHistory]] = {Accelerogram.kind: Accelerogram}
 """Histories that are motions of the ground and nothing else."""
 ALL_HISTORIES = ChainMap(HISTORIES, OF_GROUND)
 """Every history that a scenario file may have, those of users in HISTORIES too."""
@@ -143,10 +143,10 @@ __all__ = [
     "HISTORIES",
     "OF_GROUND",
     "VARYING",
+    "Accelerogram",
     "HoldAndSlide",
     "LoadingHistory",
     "PiecewiseLinear",
-    "Record",
     "Segment",
     "Sinusoidal",
     "Steps",

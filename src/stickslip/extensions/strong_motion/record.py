@@ -9,7 +9,7 @@ from typing import Any, Literal
 from stickslip.foundation.arguments import as_path, for_users, shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.problem.loading import Record
+from stickslip.problem import Accelerogram
 from stickslip.problem.scenarios.points_of_files import LARGEST_DATA_FILE
 from stickslip.problem.scenarios.record_of_file import VALUE, fields_in
 
@@ -26,7 +26,7 @@ def record(
     baseline: Literal["mean"] | None = None,
     columns: Mapping[str, str | int] | None = None,
     unit: str | None = None,
-) -> Record:
+) -> Accelerogram:
     r"""Read the acceleration of the ground from a file of a recorder, or from a trace or stream of ObsPy.
 
     Units, number of samples, interval and sign are those of the file; `print(record)` says what was found.
@@ -53,7 +53,7 @@ def record(
 
     Returns
     -------
-    Record
+    Accelerogram
         A loading history for `ground_acceleration`, in m/s^2: straight lines between samples, 0 after the last one.
 
     Raises
@@ -79,7 +79,7 @@ def record(
         fields = _of_file(as_path(f"{WHO}: source", source), named, baseline)
     else:
         fields = _of_trace(source, component, unit, baseline)
-    return Record(**fields, scale=scale, polarity=polarity)
+    return Accelerogram(**fields, scale=scale, polarity=polarity)
 
 
 def _of_file(path: Path, named: Mapping[str, Any], baseline: str | None) -> dict[str, Any]:
@@ -102,7 +102,7 @@ def _of_trace(source: Any, component: str | int | None, unit: str | None, baseli
     if not hasattr(source, "stats") and not hasattr(source, "traces"):
         wanted = "the name of a file, or a trace or stream of ObsPy"
         raise InputError(
-            f"{WHO}: source must be {wanted}, got {shown(source)}; arrays make one as ss.loading.Record(values, interval)"
+            f"{WHO}: source must be {wanted}, got {shown(source)}; arrays make one as ss.loading.Accelerogram(values, interval)"
         )
     values, interval, name = samples_of(source, unit, component)
     return {"values": values, "interval": interval, "origin": name} | ({} if baseline is None else {"offset": float(values.mean())})

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import MAY_VARY, LoadingHistory
-from stickslip.problem.loading import Segment
+from stickslip.problem import MAY_VARY, LoadingHistory, Segment
 
 if TYPE_CHECKING:
     from stickslip.problem import Problem

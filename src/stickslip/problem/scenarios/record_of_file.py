@@ -1,4 +1,4 @@
-"""The record of an accelerometer in a file, as the fields of `Record`: in any format of text that is known, or as a table."""
+"""The record of an accelerometer in a file, as the fields of `Accelerogram`: in any format of text that is known, or as a table."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from stickslip.foundation.quantities import MOST_SAMPLES
 from stickslip.foundation.record_files import text_in
 from stickslip.foundation.show import brief
 from stickslip.foundation.text_columns import read_text
+from stickslip.problem.accelerogram import LONGEST_ORIGIN, Accelerogram
 from stickslip.problem.even_times import interval_of
-from stickslip.problem.record import LONGEST_ORIGIN, Record
 from stickslip.problem.scenarios.points_of_files import content_of
 
 VALUE = "ground_acceleration"
@@ -42,7 +42,7 @@ def fields_beside_file(raw: Mapping[str, Any], folder: Path | None, where: str) 
     found = fields_in(content, name, f"{where}: {shown(name)}", raw.get("columns"), raw.get("baseline"), shows=False)
     if both := next((key for key in found if key in raw), None):
         raise InputError(f"{where} and {both} exclude each other")
-    return {"kind": Record.kind} | {key: value for key, value in raw.items() if key not in BESIDE_FILE} | found
+    return {"kind": Accelerogram.kind} | {key: value for key, value in raw.items() if key not in BESIDE_FILE} | found
 
 
 def fields_in(
@@ -72,7 +72,7 @@ def fields_in(
     fields = {"values": values, "interval": interval}
     if baseline is not None:
         fields["offset"] = float(table.columns[VALUE].mean())
-    return fields | {"origin": _origin(name, content, table, Record(**fields), begins)}
+    return fields | {"origin": _origin(name, content, table, Accelerogram(**fields), begins)}
 
 
 def _interval(table: Table) -> tuple[float, float]:
@@ -87,7 +87,7 @@ def _interval(table: Table) -> tuple[float, float]:
         raise InputError(f"{table.place}: {error}") from None
 
 
-def _origin(name: str, content: bytes, table: Table, record: Record, begins: float) -> str:
+def _origin(name: str, content: bytes, table: Table, record: Accelerogram, begins: float) -> str:
     """Return what a record says of its file: name, checksum, and what was found in it."""
     notes = list(table.notes) or [record.about]
     if begins != 0.0:

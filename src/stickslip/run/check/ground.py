@@ -8,8 +8,7 @@ import numpy as np
 
 from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.show import brief
-from stickslip.problem import Ground, Problem
-from stickslip.problem.loading import Record
+from stickslip.problem import Accelerogram, Ground, Problem
 from stickslip.run.check.asked import CHECK_KINDS, Fact
 
 DRIFT = 0.1
@@ -62,7 +61,7 @@ def chosen_of_ground(problem: Problem) -> Iterator[str]:
     if problem.ground is None or problem.body.has_belt:
         return
     yield "before the start the ground is at rest"
-    if isinstance(problem.ground_acceleration, Record):
+    if isinstance(problem.ground_acceleration, Accelerogram):
         end, kept = problem.ground_acceleration.duration, float(problem.ground.velocity[-1])
         yield f"after the record, {brief(end, 's')}, the acceleration is 0, and the ground keeps {brief(kept, 'm/s', 3)}"
 

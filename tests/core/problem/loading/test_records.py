@@ -16,10 +16,10 @@ from stickslip.foundation.given import Given
 from stickslip.foundation.packed import packed, unpacked
 from stickslip.foundation.quantities import MOST_SAMPLES
 from stickslip.problem.even_times import interval_of
-from stickslip.problem.loading import PiecewiseLinear, Record, Steps
+from stickslip.problem.loading import Accelerogram, PiecewiseLinear, Steps
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
-from stickslip.run.check.examine import examine
 from stickslip.run.check.asked import Fact
+from stickslip.run.check.examine import examine
 
 BLOCK = ss.SpringBlock(mass=1.0, stiffness=1e-9, normal_force=GRAVITY)
 DRY = ss.friction.Coulomb(static=0.1, dynamic=0.1)
@@ -34,7 +34,7 @@ def fact(problem: ss.Problem, name: str) -> Fact:
 
 
 def test_between_samples_it_is_straight_and_after_the_last_it_is_zero() -> None:
-    record = Record([1.0, 3.0, -2.0], 0.5)
+    record = Accelerogram([1.0, 3.0, -2.0], 0.5)
     assert record.at([0.0, 0.25, 0.5, 0.75, 0.999]).tolist() == pytest.approx([1.0, 2.0, 3.0, 0.5, -1.99], rel=1e-14)
     assert record.at([1.0, 5.0]).tolist() == [0.0, 0.0]
     assert record.duration == 1.0
@@ -45,7 +45,7 @@ def test_between_samples_it_is_straight_and_after_the_last_it_is_zero() -> None:
 def test_a_record_is_the_piecewise_linear_history_that_falls_to_zero_at_its_end(seed: int) -> None:
     drawn = np.random.default_rng(seed)
     values, interval = drawn.normal(size=40), float(drawn.uniform(0.01, 0.1))
-    own = Record(values, interval, scale=2.0, polarity=-1, offset=0.25)
+    own = Accelerogram(values, interval, scale=2.0, polarity=-1, offset=0.25)
     by_hand = PiecewiseLinear(interval * np.arange(40), -2.0 * (values - 0.25))
     until = np.linspace(0.0, 39 * interval * (1 - 1e-12), 200)
     assert own.at(until) == pytest.approx(by_hand.at(until), rel=1e-12, abs=1e-13)
@@ -54,41 +54,43 @@ def test_a_record_is_the_piecewise_linear_history_that_falls_to_zero_at_its_end(
 
 
 def test_what_is_after_the_record_keeps_the_velocity_of_the_ground() -> None:
-    problem = problem_of(Record([2.0, 2.0, 2.0], 0.5))
+    problem = problem_of(Accelerogram([2.0, 2.0, 2.0], 0.5))
     assert problem.ground is not None
     assert problem.ground.velocity_at([1.0, 7.0]).tolist() == [2.0, 2.0]
     assert problem.ground.displacement_at(7.0) == pytest.approx(13.0, rel=1e-14)
 
 
 def test_polarity_turns_a_record_round_and_a_factor_below_zero_does_too() -> None:
-    record = Record([1.0, 2.0], 0.1)
+    record = Accelerogram([1.0, 2.0], 0.1)
     assert record.scaled(-3.0).samples.tolist() == replace(record, polarity=-1, scale=3.0).samples.tolist() == [-3.0, -6.0]
 
 
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
-        ({"polarity": 2}, "Record: polarity must be 1 or -1, got 2"),
-        ({"polarity": 0.5}, "Record: polarity must be a whole number up to 16, got 0.5"),
-        ({"scale": 0.0}, "Record: scale must be greater than 0 (a pure number), got 0"),
-        ({"interval": 0.0}, "Record: interval must be greater than 0 s, got 0"),
-        ({"values": [1.0]}, f"Record: values must have 2 to {MOST_SAMPLES} numbers, got 1"),
-        ({"values": [1.0, float("nan")]}, "Record: values[1] must be finite, got nan"),
-        ({"values": np.array([0.0, np.inf])}, "Record: values[1] must be finite, got inf"),
+        ({"polarity": 2}, "Accelerogram: polarity must be 1 or -1, got 2"),
+        ({"polarity": 0.5}, "Accelerogram: polarity must be a whole number up to 16, got 0.5"),
+        ({"scale": 0.0}, "Accelerogram: scale must be greater than 0 (a pure number), got 0"),
+        ({"interval": 0.0}, "Accelerogram: interval must be greater than 0 s, got 0"),
+        ({"values": [1.0]}, f"Accelerogram: values must have 2 to {MOST_SAMPLES} numbers, got 1"),
+        ({"values": [1.0, float("nan")]}, "Accelerogram: values[1] must be finite, got nan"),
+        ({"values": np.array([0.0, np.inf])}, "Accelerogram: values[1] must be finite, got inf"),
     ],
 )
 def test_what_no_record_can_be_is_refused_in_one_line(fields: dict[str, object], message: str) -> None:
     with pytest.raises(InputError) as refused:
-        Record(**{"values": [0.0, 1.0], "interval": 0.01} | fields)  # type: ignore[arg-type]
+        Accelerogram(**{"values": [0.0, 1.0], "interval": 0.01} | fields)  # type: ignore[arg-type]
     assert str(refused.value) == message
 
 
 def test_a_record_is_refused_as_a_pull_rate() -> None:
     with pytest.raises(InputError, match=r"pull_rate must be in m/s, got a history of values in m/s\^2"):
-        ss.Problem(BLOCK, DRY, initial_load=0.0, pull_rate=Record([0.0, 1.0], 0.1))
+        ss.Problem(BLOCK, DRY, initial_load=0.0, pull_rate=Accelerogram([0.0, 1.0], 0.1))
 
 
-@pytest.mark.parametrize("make", [lambda t, a: PiecewiseLinear(t, a), lambda t, a: Steps(t, a), lambda t, a: Record(a, 0.005)])
+@pytest.mark.parametrize(
+    "make", [lambda t, a: PiecewiseLinear(t, a), lambda t, a: Steps(t, a), lambda t, a: Accelerogram(a, 0.005)]
+)
 def test_samples_of_a_problem_take_the_memory_that_is_stated(make: object) -> None:
     count = 100_000
     times, values = 0.005 * np.arange(count), np.sin(0.1 * np.arange(count))
@@ -97,14 +99,14 @@ def test_samples_of_a_problem_take_the_memory_that_is_stated(make: object) -> No
     held, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert problem.ground is not None
-    kept = 2 if make(times[:3], values[:3]).kind != "record" else 1  # type: ignore[operator]
+    kept = 2 if make(times[:3], values[:3]).kind != "accelerogram" else 1  # type: ignore[operator]
     ground = 5 * 8
     assert held < 1.1 * count * (kept * 32 + 24 + ground + 16)
 
 
 def test_a_million_samples_make_a_problem() -> None:
     values = np.sin(0.1 * np.arange(MOST_SAMPLES))
-    assert problem_of(Record(values, 0.005)).ground_acceleration.at(0.005) == values[1]  # type: ignore[union-attr]
+    assert problem_of(Accelerogram(values, 0.005)).ground_acceleration.at(0.005) == values[1]  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("kind", ["given", "list", "array", "whole numbers", "texts"])
@@ -116,7 +118,7 @@ def test_numbers_are_checked_alike_at_once_and_one_by_one(kind: str) -> None:
         "whole numbers": np.array([1, 2], np.uint8),
         "texts": ["1 m/s^2", "2 m/s^2"],
     }
-    assert Record(forms[kind], 0.1).samples.tolist() == [1.0, 2.0]  # type: ignore[arg-type]
+    assert Accelerogram(forms[kind], 0.1).samples.tolist() == [1.0, 2.0]  # type: ignore[arg-type]
 
 
 def test_unsigned_times_that_fall_are_seen_to_fall() -> None:
@@ -214,7 +216,7 @@ def scenario_in(folder: Path, table: str, rows: str = ROWS) -> Scenario:
 def test_a_scenario_names_a_file_and_needs_no_kind(tmp_path: Path) -> None:
     found = scenario_in(tmp_path, 'file = "made.csv"\npolarity = -1\nscale = 2')
     record = found.problem.ground_acceleration
-    assert isinstance(record, Record)
+    assert isinstance(record, Accelerogram)
     assert record.samples.tolist() == pytest.approx([0.0, -0.6 * GRAVITY, 0.6 * GRAVITY, -0.2 * GRAVITY], rel=1e-15)
     assert record.origin.startswith("made.csv, sha256 ")
     assert record.origin.endswith(": 4 samples every 10 ms, 0.3 g at most")
@@ -246,8 +248,8 @@ def test_the_mean_is_taken_off_on_request_only(tmp_path: Path) -> None:
     rows = ROWS.replace("0.3\n", "0.4\n")
     plain = scenario_in(tmp_path, 'file = "made.csv"', rows).problem.ground_acceleration
     level = scenario_in(tmp_path, 'file = "made.csv"\nbaseline = "mean"', rows).problem.ground_acceleration
-    assert isinstance(plain, Record)
-    assert isinstance(level, Record)
+    assert isinstance(plain, Accelerogram)
+    assert isinstance(level, Accelerogram)
     assert plain.offset == 0.0
     assert level.samples.mean() == pytest.approx(0.0, abs=1e-15)
     assert level.offset == pytest.approx(plain.samples.mean(), rel=1e-15)
@@ -281,20 +283,20 @@ def test_a_file_that_is_no_record_is_refused_in_one_line(tmp_path: Path, table: 
 
 def test_the_checksum_of_the_file_is_accepted(tmp_path: Path) -> None:
     record = scenario_in(tmp_path, 'file = "made.csv"').problem.ground_acceleration
-    assert isinstance(record, Record)
+    assert isinstance(record, Accelerogram)
     own = record.origin.split()[2].rstrip(":")
     assert scenario_in(tmp_path, f'file = "made.csv"\nchecksum = "sha256:{own}"').problem.ground_acceleration == record
 
 
 def test_times_that_begin_later_are_told_and_begin_the_run(tmp_path: Path) -> None:
     record = scenario_in(tmp_path, 'file = "made.csv"', ROWS.replace("0.0", "7.0")).problem.ground_acceleration
-    assert isinstance(record, Record)
+    assert isinstance(record, Accelerogram)
     assert record.origin.endswith("its first time, 7 s, is 0 s of the run")
 
 
 def test_check_says_yield_peak_and_how_often_it_is_passed() -> None:
     """By hand: the block yields at 0.1 g, and the ground goes back by more than that in two of its three swings."""
-    record = Record(GRAVITY * np.array([0.0, -0.3, 0.2, -0.05, 0.1, -0.2, 0.0]), 0.5)
+    record = Accelerogram(GRAVITY * np.array([0.0, -0.3, 0.2, -0.05, 0.1, -0.2, 0.0]), 0.5)
     problem = problem_of(record)
     assert fact(problem, "yield").value == pytest.approx(0.1, rel=1e-14)
     assert fact(problem, "yield").meaning.endswith("passed 2 times")
@@ -311,7 +313,7 @@ def test_the_yield_of_a_column_is_that_of_its_whole_mass(body: str) -> None:
         "slab": ss.ElasticSlab(2000.0, 300.0, 30.0, mass * GRAVITY, driver_impedance=0.0),
         "layers": ss.LayeredSlab([10.0, 20.0], [2000.0, 2000.0], [100.0, 200.0], mass * GRAVITY, driver_impedance=0.0),
     }
-    problem = ss.Problem(of_kind[body], DRY, initial_load=0.0, ground_acceleration=Record([0.0, 1.0, 0.0], 0.1), one_way=True)
+    problem = ss.Problem(of_kind[body], DRY, initial_load=0.0, ground_acceleration=Accelerogram([0.0, 1.0, 0.0], 0.1), one_way=True)
     assert fact(problem, "yield").value == pytest.approx(0.1, rel=1e-9)
 
 
@@ -319,14 +321,14 @@ def test_an_offset_of_an_instrument_is_suspected_and_a_record_at_rest_is_not() -
     time = 0.01 * np.arange(3001)
     swing = np.sin(2.0 * np.pi * time)
     for offset, suspected in ((0.0, False), (-0.05, True)):
-        found = examine(Scenario(problem_of(Record(swing + offset, 0.01)), 40.0)).warnings
+        found = examine(Scenario(problem_of(Accelerogram(swing + offset, 0.01)), 40.0)).warnings
         assert any("the instrument's" in one for one in found) == suspected
         if suspected:
             assert "the ground ends at -1.5 m/s" in found[-1] or "-1.5 m/s" in "".join(found)
 
 
 def test_no_sample_of_a_record_has_a_name_but_its_scale_has() -> None:
-    problem = problem_of(Record([0.0, 1.0, 0.0], 0.1))
+    problem = problem_of(Accelerogram([0.0, 1.0, 0.0], 0.1))
     names = [name for name in problem.parameters if "ground" in name]
     assert names == [f"loading.ground_acceleration.{one}" for one in ("interval", "scale", "polarity", "offset")]
     assert Scenario(problem, 1.0).with_values({"loading.ground_acceleration.scale": 3.0}).problem.ground_acceleration.scale == 3.0  # type: ignore[union-attr]

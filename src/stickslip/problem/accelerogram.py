@@ -24,14 +24,14 @@ ACCELERATION = si_unit("slip_acceleration").partition(" or ")[0]
 
 
 @dataclass(frozen=True)
-class Record(LoadingHistory):
+class Accelerogram(LoadingHistory):
     """Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
 
     The ground keeps the velocity that it has at the end. What counts is polarity times scale times (values less offset): a load on
     a block gains -m times that, so that with polarity 1 a positive acceleration slides the block backwards.
     """
 
-    kind = "record"
+    kind = "accelerogram"
     example: ClassVar = {"values": [0.0, "0.1 g", "-0.2 g", "0.05 g", 0.0], "interval": "0.01 s"}
     columns: ClassVar = {"time": "times", "value": "values"}
 
@@ -46,7 +46,7 @@ class Record(LoadingHistory):
         super().__post_init__()
         object.__setattr__(self, "unit", ACCELERATION)
         if abs(self.polarity) != 1.0:
-            raise InputError(f"Record: polarity must be 1 or -1, got {self.polarity:g}")
+            raise InputError(f"Accelerogram: polarity must be 1 or -1, got {self.polarity:g}")
 
     @cached_property
     def samples(self) -> Floats:
