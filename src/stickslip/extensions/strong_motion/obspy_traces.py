@@ -46,7 +46,7 @@ def samples_of(given: Any, unit: str | None = None, component: str | None = None
     Raises
     ------
     InputError
-        For no unit, for samples that are no numbers or are missing, for a gap, and for several traces of which none is named.
+        For no unit, for samples that are no numbers or are missing, for a gap, and for several traces if none is named.
     """
     trace = _one_of(given, component)
     stats = trace.stats

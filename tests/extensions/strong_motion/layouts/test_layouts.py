@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,16 @@ def refused(text: str, columns: dict[str, str] | None = None) -> str:
     assert message.startswith("a, line ")
     assert "\n" not in message
     return message.split(": ", 1)[1]
+
+
+def told(text: str, columns: dict[str, str] | None = None) -> str:
+    """What is said of a file that may be refused."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        try:
+            return read(text, columns).place
+        except ss.InputError as error:
+            return str(error)
 
 
 @pytest.mark.parametrize("layout", FILES)
@@ -261,6 +272,47 @@ def test_a_table_with_headings_stays_a_table_though_its_notes_state_an_interval(
     table = read_text("sampling interval: 0.01 s\ntime (s)  slip (mm)\n" + rows, ("time", "slip"), "a", 100)
     assert table.columns["slip"] == pytest.approx(1e-4 * np.arange(9))
     assert table.interval is None
+
+
+HEADS = {name: written.text().splitlines()[:3] for name, written in FILES.items()}
+LONG_LINES = [
+    *(" " * 40_000, "." * 40_000, "a:" * 20_000, "-1 " * 13_000, "(" * 40_000, "9" * 40_000),
+    *("dt" + " " * 40_000, "#" * 40_000),
+]
+
+
+@pytest.mark.parametrize("line", LONG_LINES, ids=lambda line: line[:3].strip() or "blanks")
+def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
+    """Behind the first one to three lines, or at their end; a pattern that tries all ways through one takes hours."""
+    for head in HEADS.values():
+        for count in (1, 2, 3):
+            for text in ([*head[:count], *[line] * 20], [*head[: count - 1], head[count - 1] + line, line]):
+                assert told("\n".join(text)).startswith("a")
+
+
+@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("layout", FILES)
+def test_a_damaged_file_is_read_or_refused_in_one_line(layout: str, seed: int) -> None:
+    """Lines are left out, repeated or cut, and letters are exchanged, most of them in the header."""
+    draw = np.random.default_rng(seed)
+    lines = FILES[layout].text().splitlines()
+    for _ in range(int(draw.integers(1, 4))):
+        i = min(int(draw.exponential(20.0)), len(lines) - 1)
+        kind, at = draw.integers(5), int(draw.integers(max(1, len(lines[i]))))
+        if kind == 0:
+            del lines[i]
+        elif kind == 1:
+            lines.insert(i, lines[i])
+        elif kind == 2:
+            lines[i] = lines[i][:at]
+        elif kind == 3:
+            lines[i] = lines[i][:at] + str(draw.choice(list("0-9.,:x (=%é\t"))) + lines[i][at + 1 :]
+        else:
+            del lines[i:]
+        lines = lines or [""]
+    message = told("\n".join(lines), {"ground_acceleration": "NS"} if layout == "CWB" else None)
+    assert message.startswith("a")
+    assert "\n" not in message
 
 
 def test_a_million_samples_take_no_more_than_a_few_times_their_own_memory() -> None:

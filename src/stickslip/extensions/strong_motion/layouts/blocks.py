@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.extensions.strong_motion.layouts.motion import Layout
+from stickslip.extensions.strong_motion.layouts.motion import RecordLayout
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.record_files import Asked, Lines
 
@@ -79,7 +79,9 @@ def _cells(texts: Sequence[str], columns: Columns) -> Iterator[str]:
         yield from (cell for k in range(0, last, width) if (cell := text[k : k + width].strip()))
 
 
-def samples(layout: Layout, asked: Asked, line: int, texts: Sequence[str], *, count: int, columns: Columns | None = None) -> Floats:
+def samples(
+    layout: RecordLayout, asked: Asked, line: int, texts: Sequence[str], *, count: int, columns: Columns | None = None
+) -> Floats:
     """Return the samples in lines of text behind `line`. Raises InputError if one is no number, or for another count."""
     try:
         found = numbers(texts, columns, count)

@@ -11,19 +11,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from stickslip.extensions.strong_motion.layouts.blocks import Columns, next_block, numbers, samples
-from stickslip.extensions.strong_motion.layouts.motion import UNITS, Component, Layout, sheet_of
+from stickslip.extensions.strong_motion.layouts.motion import UNITS, Component, RecordLayout, said_in, sheet_of
 from stickslip.foundation.record_files import Asked, Lines, Sheet
 
-LAYOUT = Layout("the header of COSMOS", "a file of COSMOS")
-CODES = {2: "g", 4: "cm/s^2", 7: "in/s^2", 10: "gal", 11: "mg", 50: "counts"}
+COSMOS_LAYOUT = RecordLayout("the header of COSMOS", "a file of COSMOS")
+UNITS_BY_CODE = {2: "g", 4: "cm/s^2", 7: "in/s^2", 10: "gal", 11: "mg", 50: "counts"}
 """Units of acceleration by their code, and counts."""
 ANGLES = {400: "UP", 401: "DOWN", 402: "VERT", 500: "RADL", 501: "TRAN", 600: "LONG", 601: "TANG", 700: "H1", 701: "H2"}
 """Directions by their code; others are azimuths in degrees."""
-_FIRST = re.compile(r"(raw|uncorrected|corrected)\s+(accel|veloc|displ)\w*.*\(\s*format\s+v", re.IGNORECASE)
+_FIRST_LINE = re.compile(r"(raw|uncorrected|corrected)\s+(accel|veloc|displ)\w*.*\(\s*format\s+v", re.IGNORECASE)
 _TEXTS = re.compile(r"with\s+(\d{1,3})\s+text\s+lines", re.IGNORECASE)
 _HEAD = re.compile(r"\s*(\d{1,5})\s+(integer|real)\S*\s.*?on\s+(\d{1,4})\s+lines", re.IGNORECASE)
 _COMMENTS = re.compile(r"\s*(\d{1,4})\s+comment", re.IGNORECASE)
-_BLOCK = re.compile(r"\s*(\d{1,9})\s+(accel|veloc|displ|raw)", re.IGNORECASE)
+_BLOCK_LINE = re.compile(r"\s*(\d{1,9})\s+(accel|veloc|displ|raw)", re.IGNORECASE)
 _CODE = re.compile(r"units\s*=?\s*[^(,]{0,20}\(\s*(\d{1,3})\s*\)", re.IGNORECASE)
 _ANGLE, _INTERVAL = 53, 61
 """Places of the angle among the whole numbers, and of the interval among the real ones."""
@@ -32,29 +32,29 @@ _INTERVAL_OF_RAW = 33
 
 def begins(first: Sequence[str]) -> bool:
     """Return True for the first lines of such a file."""
-    return bool(first) and _FIRST.match(first[0].lstrip()) is not None
+    return bool(first) and _FIRST_LINE.match(said_in(first[0])) is not None
 
 
 def sheet(lines: Lines, asked: Asked) -> Sheet:
     """Return the accelerations of all channels of a file. Raises InputError."""
     components, intervals, at = list[Component](), list[float](), 1
-    while _FIRST.match((lines.peek()).lstrip()):
-        LAYOUT.check_acceleration(asked, lines.number + 1, lines.peek())
+    while _FIRST_LINE.match(said_in(lines.peek())):
+        COSMOS_LAYOUT.check_acceleration(asked, lines.number + 1, lines.peek())
         whole, real = _head(lines, asked)
         found, at = _acceleration(lines, asked)
         intervals.append(_interval(real, asked, at))
         components.append(found._replace(name=_direction(whole)))
         _skip_to_next(lines)
-    return sheet_of(LAYOUT, asked, at, LAYOUT.common(asked, at, intervals), components)
+    return sheet_of(COSMOS_LAYOUT, asked, at, COSMOS_LAYOUT.common(asked, at, intervals), components)
 
 
 def _head(lines: Lines, asked: Asked) -> tuple[list[float], list[float]]:
     """Read the lines of text and both lists of numbers of a channel. Raises InputError if they are not there."""
-    said = _TEXTS.search(next(lines))
+    said = _TEXTS.search(said_in(next(lines)))
     for _ in range(int(said[1]) - 1 if said else 0):
         next(lines, "")
     lists = list[list[float]]()
-    for line in lines:
+    for line in map(said_in, lines):
         if found := _HEAD.match(line):
             count, at = int(found[1]), lines.number
             columns = Columns.of(line, Columns(10, 8))
@@ -62,39 +62,41 @@ def _head(lines: Lines, asked: Asked) -> tuple[list[float], list[float]]:
             try:
                 lists.append(numbers(texts, columns, count).tolist())
             except ValueError:
-                raise LAYOUT.fault(asked, at, "a number of its header is none") from None
+                raise COSMOS_LAYOUT.fault(asked, at, "a number of its header is none") from None
             if len(lists) == 2:
                 return lists[0], lists[1]
         elif lines.number > 10_000:
             break
-    raise LAYOUT.fault(asked, lines.number, "no lists of whole and real numbers in its header")
+    raise COSMOS_LAYOUT.fault(asked, lines.number, "no lists of whole and real numbers in its header")
 
 
 def _acceleration(lines: Lines, asked: Asked) -> tuple[Component, int]:
     """Read the block of accelerations, and return it with its line. Raises InputError if it is not there."""
-    for line in lines:
+    for line in map(said_in, lines):
         if found := _COMMENTS.match(line):
             for _ in range(int(found[1])):
                 next(lines, "")
-        elif found := _BLOCK.match(line):
+        elif found := _BLOCK_LINE.match(line):
             count, at = int(found[1]), lines.number
             columns = Columns.of(line, Columns(8, 10))
-            LAYOUT.check_acceleration(asked, at, line)
+            COSMOS_LAYOUT.check_acceleration(asked, at, line)
             code = _CODE.search(line)
-            unit = CODES.get(int(code[1]), "") if code else ""
+            unit = UNITS_BY_CODE.get(int(code[1]), "") if code else ""
             unit = (
-                unit if unit in UNITS else LAYOUT.unit(asked, at, unit or line.lower().partition("units")[2].partition("format")[0])
+                unit
+                if unit in UNITS
+                else COSMOS_LAYOUT.unit(asked, at, unit or line.lower().partition("units")[2].partition("format")[0])
             )
-            values = samples(LAYOUT, asked, at, _until_end(lines, count, columns), count=count, columns=columns)
+            values = samples(COSMOS_LAYOUT, asked, at, _until_end(lines, count, columns), count=count, columns=columns)
             return Component(values, unit), at
-    raise LAYOUT.fault(asked, lines.number, "no block of accelerations")
+    raise COSMOS_LAYOUT.fault(asked, lines.number, "no block of accelerations")
 
 
 def _until_end(lines: Lines, count: int, columns: Columns) -> list[str]:
-    """Return the lines of a block, or those before the line at which it ends too early."""
+    """Return the lines of a block, or those before it ends too early."""
     found = list[str]()
     for _ in range(-(-count // columns.across)):
-        if lines.peek().lower().startswith("end-of-data") or _BLOCK.match(lines.peek()):
+        if lines.peek().lower().startswith("end-of-data") or _BLOCK_LINE.match(said_in(lines.peek())):
             break
         found += next_block(lines, 1, columns)
     return found
@@ -102,10 +104,10 @@ def _until_end(lines: Lines, count: int, columns: Columns) -> list[str]:
 
 def _skip_to_next(lines: Lines) -> None:
     """Pass over the blocks of velocity and displacement, and the line that ends a channel."""
-    for line in lines:
-        if found := _BLOCK.match(line):
+    for line in map(said_in, lines):
+        if found := _BLOCK_LINE.match(line):
             next_block(lines, int(found[1]), Columns.of(line, Columns(8, 10)))
-        if _FIRST.match(lines.peek().lstrip()):
+        if _FIRST_LINE.match(said_in(lines.peek())):
             return
 
 
@@ -115,7 +117,7 @@ def _interval(real: Sequence[float], asked: Asked, at: int) -> float:
         return real[_INTERVAL] / 1000.0
     if len(real) > _INTERVAL_OF_RAW and real[_INTERVAL_OF_RAW] > 0.0:
         return real[_INTERVAL_OF_RAW]
-    raise LAYOUT.fault(asked, at, "no sampling interval among the real numbers of its header")
+    raise COSMOS_LAYOUT.fault(asked, at, "no sampling interval among the real numbers of its header")
 
 
 def _direction(whole: Sequence[float]) -> str:

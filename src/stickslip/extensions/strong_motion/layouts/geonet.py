@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from stickslip.extensions.strong_motion.layouts.blocks import Columns, next_block, numbers, samples
-from stickslip.extensions.strong_motion.layouts.motion import Component, Layout, sheet_of
+from stickslip.extensions.strong_motion.layouts.motion import Component, RecordLayout, said_in, sheet_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.record_files import Asked, Lines, Sheet
 
-LAYOUT = Layout("the header of GeoNet", "a file of GeoNet")
-_FIRST = re.compile(r"(un)?corrected\s+accelerogram.*\bGNS\b", re.IGNORECASE)
+GEONET_LAYOUT = RecordLayout("the header of GeoNet", "a file of GeoNet")
+_FIRST_LINE = re.compile(r"(un)?corrected\s+accelerogram.*\bGNS\b", re.IGNORECASE)
 _TEXTS, _NUMBERS = 16, 10
 _COLUMNS = Columns(10, 8)
 _COMPONENT = re.compile(r"component\s+(\w{1,6})", re.IGNORECASE)
@@ -26,31 +26,31 @@ _POINTS = re.compile(r"number\s+of\s+points\s+(\d{1,9})", re.IGNORECASE)
 
 def begins(first: Sequence[str]) -> bool:
     """Return True for the first lines of such a file."""
-    return bool(first) and _FIRST.match(first[0].lstrip()) is not None
+    return bool(first) and _FIRST_LINE.match(said_in(first[0])) is not None
 
 
 def sheet(lines: Lines, asked: Asked) -> Sheet:
     """Return the accelerations of the components of a file in mm/s^2. Raises InputError."""
     components, steps, at = list[Component](), list[float](), 0
-    while _FIRST.match(lines.peek().lstrip()):
-        texts = [next(lines, "") for _ in range(_TEXTS)]
+    while _FIRST_LINE.match(said_in(lines.peek())):
+        texts = [said_in(next(lines, "")) for _ in range(_TEXTS)]
         table = _numbers(lines, asked)
         at = lines.number
         corrected = not texts[0].lstrip().lower().startswith("un")
         counts = [int(one) for one in (table[3, 3:6] if corrected else (table[3, 0], 0, 0))]
         stated = next((int(found[1]) for text in texts if (found := _POINTS.search(text))), counts[0])
         if stated != counts[0] and not corrected:
-            raise LAYOUT.fault(asked, at, f"its text says {stated} points, but its numbers {counts[0]}")
-        block = [text for text in next_block(lines, counts[0], _COLUMNS) if not _FIRST.match(text.lstrip())]
-        values = samples(LAYOUT, asked, at, block, count=counts[0], columns=_COLUMNS)
+            raise GEONET_LAYOUT.fault(asked, at, f"its text says {stated} points, but its numbers {counts[0]}")
+        block = [text for text in next_block(lines, counts[0], _COLUMNS) if not _FIRST_LINE.match(said_in(text))]
+        values = samples(GEONET_LAYOUT, asked, at, block, count=counts[0], columns=_COLUMNS)
         for count in counts[1:]:
             next_block(lines, count, _COLUMNS)
-        direction = next((found[1] for text in texts if (found := _COMPONENT.match(text.strip()))), "")
+        direction = next((found[1] for text in texts if (found := _COMPONENT.match(text))), "")
         components.append(Component(values, "mm/s^2", direction.upper()))
         steps.append(float(table[6, 5]))
         while lines.peek() == "" and next(lines, None) is not None:
             pass
-    return sheet_of(LAYOUT, asked, at, LAYOUT.common(asked, at, steps), components)
+    return sheet_of(GEONET_LAYOUT, asked, at, GEONET_LAYOUT.common(asked, at, steps), components)
 
 
 def _numbers(lines: Lines, asked: Asked) -> Floats:
@@ -62,8 +62,8 @@ def _numbers(lines: Lines, asked: Asked) -> Floats:
         except ValueError:
             found.append([])
         if len(found[-1]) != _COLUMNS.across:
-            raise LAYOUT.fault(asked, lines.number, f"{_NUMBERS} lines of its header have ten numbers each")
+            raise GEONET_LAYOUT.fault(asked, lines.number, f"{_NUMBERS} lines of its header have ten numbers each")
     table = np.array(found)
     if not (table[3] >= 0.0).all() or not np.isfinite(table).all():
-        raise LAYOUT.fault(asked, lines.number, "a count in its header is below 0")
+        raise GEONET_LAYOUT.fault(asked, lines.number, "a count in its header is below 0")
     return table

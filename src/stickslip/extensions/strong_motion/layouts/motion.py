@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.headings import split_heading
 from stickslip.foundation.record_files import Asked, Sheet
 
 GRAVITY = 9.80665
@@ -24,6 +23,8 @@ NO_SAMPLE = 1e20
 """Numbers of this size mark a missing sample, as 1.7e38 does."""
 SINGLE = 2.0**-24
 """Numbers of single precision are off by up to this share."""
+LONGEST_SAID = 400
+"""A line of a header says what it says in its first characters, at most so many."""
 FEW_DIGITS = 4
 """An interval that was meant has at most this many digits."""
 _A_SECOND_TWICE = r"s(ec|econd)?\s*(\^|\*\*)?\s*2\b|s(ec|econd)?\s*(/|\*|-|\s)\s*s(ec|econd)?\b|s(ec)?²"
@@ -50,7 +51,7 @@ class Component(NamedTuple):
     name: str = ""
 
 
-class Layout(NamedTuple):
+class RecordLayout(NamedTuple):
     """What a layout is called in a note ("1003 samples ... from PEER's header"), and what a file in it is called in a message."""
 
     header: str
@@ -91,14 +92,19 @@ class Layout(NamedTuple):
         raise self.fault(asked, line, f"no unit of acceleration; {', '.join(UNITS)} are known")
 
 
+def said_in(line: str) -> str:
+    """Return what a line of a header says, with single blanks, so that no pattern tries all ways through many of them."""
+    return " ".join(line[:LONGEST_SAID].split())
+
+
 def unit_in(text: str) -> str:
     """Return the unit in a text, "counts" or "velocity"; "" if there is none."""
-    plain = text.lower()
+    plain = said_in(text).lower()
     return next((unit for unit, pattern in _PATTERNS if pattern.search(plain)), "")
 
 
 def interval_of(seconds: float, notes: list[str]) -> float:
-    """Return an interval (s) without the error of single precision, in which some programs keep it; a note says so.
+    """Return an interval (s) without the error of the single precision that some programs keep it in; a note says so.
 
     0.004999999888 is 0.005 then: the shortest number of single precision with the same bits has few digits.
     """
@@ -110,13 +116,13 @@ def interval_of(seconds: float, notes: list[str]) -> float:
 
 
 def sheet_of(
-    layout: Layout, asked: Asked, line: int, interval: float, components: Sequence[Component], *, notes: Sequence[str] = ()
+    layout: RecordLayout, asked: Asked, line: int, interval: float, components: Sequence[Component], *, notes: Sequence[str] = ()
 ) -> Sheet:
     """Return samples as a sheet with a column of time. `line` is that of the header that states the `interval` (s).
 
     Channels may have different numbers of samples; the table is as long as the one that is chosen.
 
-    Raises InputError for an interval that is none, for missing samples, and for several components of which none is chosen.
+    Raises InputError for an interval that is none, for missing samples, and for several components if none is chosen.
     """
     told = list(notes)
     if not (math.isfinite(interval) and interval > 0.0):
@@ -144,7 +150,7 @@ def _names(names: Sequence[str]) -> list[str]:
     return [name if name and often[name] == 1 else f"channel {i + 1} {name}".strip() for i, name in enumerate(names)]
 
 
-def _check_samples(layout: Layout, asked: Asked, line: int, one: Component) -> None:
+def _check_samples(layout: RecordLayout, asked: Asked, line: int, one: Component) -> None:
     bad = np.flatnonzero(~(np.abs(one.samples) < NO_SAMPLE))
     if len(bad):
         where = f"sample {bad[0] + 1} of {len(one.samples)}" + (f" of {one.name}" if one.name else "")
@@ -153,11 +159,11 @@ def _check_samples(layout: Layout, asked: Asked, line: int, one: Component) -> N
         )
 
 
-def _chosen(layout: Layout, asked: Asked, line: int, header: Sequence[str], names: Sequence[str]) -> int:
+def _chosen(layout: RecordLayout, asked: Asked, line: int, header: Sequence[str], names: Sequence[str]) -> int:
     """Return which component is the acceleration of the ground. Raises InputError if it is asked for and none is chosen."""
     if len(names) == 1:
         return 0
-    found = [i for i, cell in enumerate(header[1:]) if split_heading(cell)[0] == "ground_acceleration"]
+    found = [i for i, cell in enumerate(header[1:]) if cell.partition(" (")[0] == "ground_acceleration"]
     if not found and "ground_acceleration" in asked.wanted:
         there = ", ".join(f"'{name}'" for name in names)
         cure = f'choose one, as columns = {{ ground_acceleration = "{names[0]}" }}'
@@ -165,7 +171,7 @@ def _chosen(layout: Layout, asked: Asked, line: int, header: Sequence[str], name
     return found[0] if found else 0
 
 
-def _sentence(layout: Layout, one: Component, name: str, interval: float) -> str:
+def _sentence(layout: RecordLayout, one: Component, name: str, interval: float) -> str:
     peak = float(np.max(np.abs(one.samples)))
     size = f"{peak:.4g} {one.unit}" + ("" if one.unit == "g" else f" ({peak * UNITS[one.unit] / GRAVITY:.4g} g)")
     direction = f", {name}" if one.name else ""

@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.extensions.strong_motion.layouts.blocks import samples
-from stickslip.extensions.strong_motion.layouts.motion import Component, Layout, sheet_of
+from stickslip.extensions.strong_motion.layouts.motion import Component, RecordLayout, said_in, sheet_of
 from stickslip.foundation.record_files import Asked, Lines, Sheet
 
-LAYOUT = Layout("the header of ObsPy's text", "a file of ObsPy (TSPAIR or SLIST)")
-_FIRST = re.compile(
+OBSPY_LAYOUT = RecordLayout("the header of ObsPy's text", "a file of ObsPy (TSPAIR or SLIST)")
+_FIRST_LINE = re.compile(
     r"TIMESERIES\s+(?P<name>\S{1,40}?),?\s+(?P<count>\d{1,9})\s+samples,\s*(?P<rate>[\d.eE+-]{1,24})\s+sps,\s*(?P<start>\S{1,32}?),"
     r"\s*(?P<layout>TSPAIR|SLIST),\s*\w{1,12},?\s*(?P<unit>.{0,40})",
     re.IGNORECASE,
@@ -47,35 +47,39 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     for line in lines:
         if not line.strip():
             continue
-        found = _FIRST.match(line.strip())
+        found = _FIRST_LINE.match(said_in(line))
         if found is None:
-            raise LAYOUT.fault(asked, lines.number, "its header must say TIMESERIES, name, samples, sps, start, layout, type, unit")
+            raise OBSPY_LAYOUT.fault(
+                asked, lines.number, "its header must say TIMESERIES, name, samples, sps, start, layout, type, unit"
+            )
         pieces.append(_piece(found, lines, asked))
     first = pieces[0]
     for one in pieces[1:]:
         if one.name == first.name:
-            raise LAYOUT.fault(asked, one.at, f"a gap: a second piece of one channel begins {_later(first, one)}; fill it first")
+            raise OBSPY_LAYOUT.fault(
+                asked, one.at, f"a gap: a second piece of one channel begins {_later(first, one)}; fill it first"
+            )
         if (one.rate, len(one.samples)) != (first.rate, len(first.samples)):
-            raise LAYOUT.fault(
+            raise OBSPY_LAYOUT.fault(
                 asked, one.at, "channels with different rates or numbers of samples: write each to a file of its own"
             )
     components = [Component(one.samples, one.unit, _channel(one.name)) for one in pieces]
-    interval = LAYOUT.common(asked, first.at, [1.0 / one.rate for one in pieces])
-    return sheet_of(LAYOUT, asked, first.at, interval, components)
+    interval = OBSPY_LAYOUT.common(asked, first.at, [1.0 / one.rate for one in pieces])
+    return sheet_of(OBSPY_LAYOUT, asked, first.at, interval, components)
 
 
 def _piece(found: re.Match[str], lines: Lines, asked: Asked) -> _Piece:
     at, count = lines.number, int(found["count"])
     rate = asked.number(found["rate"], at, "the sampling rate")
     if not rate > 0.0:
-        raise LAYOUT.fault(asked, at, "the sampling rate must be above 0")
-    unit = LAYOUT.unit(asked, at, found["unit"])
+        raise OBSPY_LAYOUT.fault(asked, at, "the sampling rate must be above 0")
+    unit = OBSPY_LAYOUT.unit(asked, at, found["unit"])
     texts = list[str]()
     while lines.peek() and not lines.peek().startswith("TIMESERIES"):
         texts.append(next(lines))
     if found["layout"].upper() == "TSPAIR":
         texts = [text.rstrip().rpartition(" ")[2] for text in texts]
-    return _Piece(found["name"], rate, found["start"], unit, at, samples(LAYOUT, asked, at, texts, count=count))
+    return _Piece(found["name"], rate, found["start"], unit, at, samples(OBSPY_LAYOUT, asked, at, texts, count=count))
 
 
 def _channel(name: str) -> str:

@@ -1,6 +1,6 @@
 """Text that states the interval of its samples, and has accelerations alone, one or several in a line.
 
-As many programs write it: free lines, one of which says "dt = 0.005 s", "Sampling interval (s): 0.02" or "NPTS= 4000 DT= .005 SEC",
+As many programs write it: free lines, where one says "dt = 0.005 s", "Sampling interval (s): 0.02" or "NPTS= 4000 DT= .005 SEC",
 and the unit in one of them.
 """
 
@@ -13,12 +13,11 @@ from itertools import takewhile
 import numpy as np
 
 from stickslip.extensions.strong_motion.layouts.blocks import rest, samples
-from stickslip.extensions.strong_motion.layouts.motion import UNITS, Component, Layout, sheet_of, unit_in
-from stickslip.foundation.headings import split_heading
+from stickslip.extensions.strong_motion.layouts.motion import UNITS, Component, RecordLayout, said_in, sheet_of, unit_in
 from stickslip.foundation.record_files import Asked, Lines, Sheet
 
-LAYOUT = Layout("its heading", "a text with an interval in its heading")
-_MOST = 60
+PLAIN_LAYOUT = RecordLayout("its heading", "a text with an interval in its heading")
+_MOST_LINES = 60
 """The heading has at most this many lines."""
 _VALUE = r"\s*[:=]?\s*(\d{0,6}\.?\d{1,12}(?:[eE][+-]?\d{1,3})?)\s*(ms(?:ec)?|s(?:ec(?:ond)?s?)?|hz)?\b"
 _INTERVAL = re.compile(
@@ -35,16 +34,16 @@ _MARKS = re.compile(r"^[\s#%!*/;]+")
 
 def begins(first: Sequence[str]) -> bool:
     """Return True for the first lines of such a file: an interval is stated, and numbers follow that are no table with headings."""
-    head = list(takewhile(lambda line: not _is_numbers(line), first[:_MOST]))
+    head = list(takewhile(lambda line: not _is_numbers(line), first[:_MOST_LINES]))
     rows = [line.split() for line in first[len(head) : len(head) + 3] if line.strip()]
-    if not rows or not any(_INTERVAL.search(line) or _RATE.search(line) for line in head):
+    if not rows or not any(_INTERVAL.search(line) or _RATE.search(line) for line in map(said_in, head)):
         return False
     width = len(rows[0])
     if width == 1:
         return True
     above = _MARKS.sub("", next((line for line in reversed(head) if line.strip()), ""))
     is_header = len(re.split(r"[\t;,]", above)) == width or len(re.split(r"\s{2,}", above)) == width or len(above.split()) == width
-    stated = _INTERVAL.search(above) or _RATE.search(above)
+    stated = _INTERVAL.search(said_in(above)) or _RATE.search(said_in(above))
     return (not is_header or stated is not None) and not _is_clock(rows)
 
 
@@ -66,16 +65,16 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     """Return the samples of a file. Raises InputError, also if it does not say their unit and the user does not, either."""
     head = list[str]()
     while lines.peek() is not None and not _is_numbers(lines.peek()):
-        head.append(next(lines))
+        head.append(said_in(next(lines)))
     at = lines.number
     said = "\n".join(head)
-    LAYOUT.check_acceleration(asked, at, said)
+    PLAIN_LAYOUT.check_acceleration(asked, at, said)
     interval = _interval(said, asked, at)
     texts = rest(lines)
     count = found[1] if (found := _COUNT.search(said)) else None
     stated = int(count) if count else sum(map(len, map(str.split, texts)))
-    values = samples(LAYOUT, asked, at, texts, count=stated)
-    return sheet_of(LAYOUT, asked, at, interval, [Component(values, _unit(said, asked, at))])
+    values = samples(PLAIN_LAYOUT, asked, at, texts, count=stated)
+    return sheet_of(PLAIN_LAYOUT, asked, at, interval, [Component(values, _unit(said, asked, at))])
 
 
 def _interval(said: str, asked: Asked, at: int) -> float:
@@ -84,7 +83,7 @@ def _interval(said: str, asked: Asked, at: int) -> float:
     found |= {1.0 / float(one[2]) for one in _RATE.finditer(said) if float(one[2]) > 0.0}
     if len(found) != 1 and (not found or max(found) - min(found) > 1e-6 * max(found)):
         what = f"two intervals, {min(found):g} s and {max(found):g} s" if found else "no interval above 0"
-        raise LAYOUT.fault(asked, at, f"it states {what}")
+        raise PLAIN_LAYOUT.fault(asked, at, f"it states {what}")
     return min(found)
 
 
@@ -94,10 +93,10 @@ def _seconds(before: str | None, number: str, behind: str | None) -> float:
 
 def _unit(said: str, asked: Asked, at: int) -> str:
     """Return the unit that the user gives, or else that of the heading. Raises InputError if none does."""
-    given = split_heading(asked.header(["time (s)", "ground_acceleration"], at)[1])[1]
-    if given is not None and (unit := unit_in(given)) in UNITS:
-        return unit
+    given = unit_in(asked.header(["time (s)", "ground_acceleration"], at)[1].partition("(")[2].rstrip(")"))
+    if given in UNITS:
+        return given
     if unit_in(said) in ("", "velocity"):
         way = 'say it as columns = { ground_acceleration = "ground_acceleration (g)" }'
-        raise LAYOUT.fault(asked, at, f"it does not say the unit of its numbers ({', '.join(UNITS)}): {way}")
-    return LAYOUT.unit(asked, at, said)
+        raise PLAIN_LAYOUT.fault(asked, at, f"it does not say the unit of its numbers ({', '.join(UNITS)}): {way}")
+    return PLAIN_LAYOUT.unit(asked, at, said)
