@@ -65,7 +65,7 @@ class Extension:
         return ()
 
     def forms(self) -> Sequence[RecordForm]:
-        """Return formats of text in which records come, each with what knows it by the first lines of a file."""
+        """Return formats of text for records, each with what knows it by the first lines of a file."""
         return ()
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
