@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
-from stickslip.extension import Extension
+from collections.abc import Mapping, Sequence
+
+from stickslip.extension import Command, Extension
 
 
 class StrongMotionExtension(Extension):
     """Readers of strong-motion files, and the study of sliding under many records."""
 
     name = "strong_motion"
+
+    def commands(self) -> Mapping[str, Sequence[Command]]:
+        """Return the command `slide`."""
+        from stickslip.extensions.strong_motion.commands.slide import slide
+
+        return {"Questions that need many runs": (slide,)}
+
+    def public(self) -> Mapping[str, str]:
+        """Return the study and the class of its result."""
+        home = "stickslip.extensions.strong_motion"
+        return {
+            "studies.SlidingDisplacements": f"{home}.displacements:SlidingDisplacements",
+            "studies.sliding": f"{home}.sliding:sliding",
+        }
 
 
 EXTENSION = StrongMotionExtension()
