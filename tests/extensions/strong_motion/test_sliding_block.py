@@ -81,7 +81,7 @@ def test_it_stops_and_slips_again_within_one_segment():
 def test_it_turns_round_at_once_where_the_load_holds_it_the_other_way():
     load = [0.0, 2.0, -6.0, -6.0, 4.0, 0.0]
     found, exact = answer(load, 0.5, 1.0, 2.0), integrated_exactly(load, 0.5, 1.0, 2.0)
-    assert found[SLIPS] == exact.slips > 2
+    assert found[SLIPS] == exact.slips == 2
     assert found[[DISPLACEMENT, PEAK, VELOCITY]] == pytest.approx([exact.displacement, exact.furthest, exact.fastest], rel=1e-13)
 
 
@@ -166,16 +166,17 @@ def test_a_motion_has_its_two_displacements():
 def test_it_agrees_with_the_engine():
     """A block on a spring that is too loose to be felt, as scenario sliding-block-shaken, at yields around its own."""
     problem = ss.load_scenario("sliding-block-shaken").problem
-    ground, body = problem.ground_acceleration, problem.body
+    body, ground = replace(problem.body, stiffness=1e-9 * problem.body.stiffness), problem.ground_acceleration
     load = -np.array(ground.values)
     interval = float(ground.times[-1]) / (len(load) - 1)
     off = []
     for strength in (0.05, 0.1, 0.17, 0.25):
         law = ss.friction.Coulomb(*[(strength * 9.80665 * body.mass + problem.load) / problem.normal] * 2)
-        run = ss.simulate(replace(problem, friction=law), 30.0, rtol=1e-12)
+        run = ss.simulate(replace(problem, body=body, friction=law), 30.0, rtol=1e-12)
         found = answer(load, interval, strength * 9.80665)
         off.append(abs(float(run.slip(30.0)) / found[DISPLACEMENT] - 1.0))
-    assert np.median(off) < 1e-8
+    assert np.median(off) < 1e-9
+    assert max(off) < 1e-8
 
 
 def test_uncompiled_it_does_the_same(monkeypatch: pytest.MonkeyPatch):
