@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from stickslip.extensions.strong_motion.measures import GRAVITY, StrongMotionMeasures, measures_of
+from stickslip.extensions.strong_motion.record import record
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.show import number
-from stickslip.problem import loading
 from stickslip.problem.loading import LoadingHistory, PiecewiseLinear
 
 UNEVEN = 1e-6
@@ -114,8 +114,7 @@ def as_motion(given: Any, name: str = "", component: str | None = None) -> Groun
     if isinstance(given, GroundMotion):
         return replace(given, name=name) if name else given
     if isinstance(given, str | os.PathLike) or hasattr(given, "stats"):
-        read = getattr(loading, "record")  # noqa: B009  # an extension adds it
-        given = read(given, component=component)
+        given = record(given, component=component)
     if isinstance(given, np.ndarray | list | tuple):
         raise InputError("numbers alone have no interval: give ss.loading.Accelerogram(NUMBERS, interval=SECONDS)")
     if not isinstance(given, LoadingHistory):
