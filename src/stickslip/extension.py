@@ -1,6 +1,6 @@
 """What an extension adds to the core, and which extensions there are.
 
-An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the six questions
+An extension is a package with an object `EXTENSION`, an instance of a subclass of `Extension`. Its methods are the seven questions
 that the core asks; each is asked when its answer is needed, and imports what it needs then, so that a run does not load what it
 does not use. The extensions of stickslip are the folders of `stickslip/extensions`; those of others are named by the entry points
 of the group `stickslip.extensions`. The core knows no extension by its name, and an extension knows another one only if it
@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
+    from stickslip.foundation.record_files import RecordForm
     from stickslip.problem.scenarios import ScenarioTable
     from stickslip.run import Reader, SolverKind
 
@@ -33,6 +34,7 @@ ANSWERS = {
     "solvers": ("solver", "a list of SolverKind"),
     "tables": ("table", "a dict of ScenarioTable by name"),
     "readers": ("reader", "a list of Reader"),
+    "forms": ("record form", "a list of RecordForm"),
     "commands": ("command", "a dict of lists of functions by heading"),
     "figures": ("figure", "a dict of functions by name"),
     "public": ("public name", 'a dict of "module:name" by name'),
@@ -60,6 +62,10 @@ class Extension:
 
     def readers(self) -> Sequence[Reader]:
         """Return readers of files and folders of results, for `show`, `export`, `resume` and `stickslip.open_solution`."""
+        return ()
+
+    def forms(self) -> Sequence[RecordForm]:
+        """Return formats of text for records, each with what knows it by the first lines of a file."""
         return ()
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
@@ -203,13 +209,13 @@ def _asked(extension: Extension, slot: str, fits: Callable[[Any], bool], *kinds:
 
 
 def _is_answer(given: Any, slot: str, fits: Callable[[Any], bool]) -> bool:
-    if slot in ("solvers", "readers"):
+    if slot in ("solvers", "readers", "forms"):
         return isinstance(given, Sequence) and not isinstance(given, str) and all(map(fits, given))
     return isinstance(given, Mapping) and all(isinstance(name, str) and fits(one) for name, one in given.items())
 
 
 def members(slot: str, kind: type[T]) -> Iterator[T]:
-    """Return what all extensions add as "solvers" or "readers"; each is asked when what the ones before it add is used up."""
+    """Return what all extensions add as "solvers", "readers" or "forms"; each is asked when it is needed."""
     return (one for extension in extensions() for one in _asked(extension, slot, lambda given: isinstance(given, kind)))
 
 

@@ -23,6 +23,7 @@ from stickslip.cli import app, mistyped
 from stickslip.cli.installation import extensions_there
 from stickslip.cli.results import DONE, PlainRun
 from stickslip.foundation.errors import InputWarning
+from stickslip.foundation.text_columns import read_file, read_text
 from stickslip.problem import Status
 from tests.docs.pages import ROOT, Block, blocks_of, missing_lines
 
@@ -332,6 +333,7 @@ ASKED: dict[str, Callable[[], object]] = {
     "solvers": lambda: ss.simulate("fig6-slab", 1.0, seed=1),
     "tables": lambda: ss.load_scenario("fig6-slab"),
     "readers": lambda: ss.open_solution("nothing.nc4"),
+    "forms": lambda: read_text("time (s),slip (m)\n0,0\n1,2\n", ("time", "slip"), "points", 5),
     "commands": app._all_groups,
     "figures": lambda: dir(ss.simulate("fig6-slab", 1.0).plot),
     "public": lambda: dir(ss),
@@ -358,6 +360,31 @@ def test_an_extension_that_answers_with_what_is_no_answer_adds_nothing(
     why = "ZeroDivisionError" if "/" in given else rf"TypeError: {slot}\(\) must return a (list|dict) of .*, not "
     with pytest.warns(InputWarning, match=rf"^the extension 'other' cannot say which .*s.* it adds \({why}"):
         assert said() == without
+
+
+def test_a_format_of_a_stranger_is_known_by_its_first_lines_and_its_letters_may_be_old(
+    tmp_path: Path, bad: Callable[[str], None]
+) -> None:
+    """A reader of a block of numbers gives them as an array, and the interval that its header states."""
+    bad(
+        f"""import numpy as np
+from stickslip.foundation.record_files import RecordForm, Sheet
+def sheet(lines, asked):
+    next(lines)
+    step = float(next(lines))
+    slips = np.array([float(line) for line in lines])
+    table = np.column_stack((step * np.arange(len(slips)), slips))
+    return Sheet(asked.header(["time (s)", "slip (mm)"], 1), 1, iter(()), ["a block"], counted="sample", table=table, interval=step)
+{HEAD}    def forms(self): return [RecordForm(lambda first: first[0].startswith("SLIPS"), sheet)]
+{END}"""
+    )
+    path = tmp_path / "of_any_name"
+    path.write_bytes("SLIPS of 5 µm\n0.5\n0\n1\n-4\n".encode("latin-1"))
+    table = read_file(path, ("slip", "time"), (1000, 3))
+    assert {name: numbers.tolist() for name, numbers in table.columns.items()} == {"slip": [0, 1e-3, -4e-3], "time": [0, 0.5, 1]}
+    assert (table.interval, table.notes, table.at(2)) == (0.5, ("a block",), f"{path}, sample 3")
+    with pytest.raises(ss.InputError, match=r"of_any_name, sample 3: more than 2 rows$"):
+        read_file(path, ("slip", "time"), (1000, 2))
 
 
 KEPT = """

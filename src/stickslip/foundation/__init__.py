@@ -9,5 +9,5 @@
 - `atomic_write`, `netcdf_file`, `zarr_folder`, `locks`, `sealed_files`: files and folders that are whole or not there.
 - `record_files`, `text_columns`, `named_columns`, `headings`, `marks`, `columns`, `unit_doubts`: tables of measurements.
 - `lazy_names`, `classes_by_kind`, `code_key`: names and classes that are imported when they are used, and a hash of code.
-- `determined`, `arrays`, `constants`, `place`, `synonyms`, `memory`: what many rooms share.
+- `arrays`, `constants`, `place`, `synonyms`, `memory`: what many rooms share.
 """

@@ -37,6 +37,8 @@ class Table:
     """Sentences on what was passed over."""
     doubts: tuple[str, ...] = ()
     """Sentences on columns without a unit."""
+    interval: float | None = None
+    """Time between samples (s), where the header of a file states it."""
 
     def at(self, i: int) -> str:
         """Return the place of row i for a message."""

@@ -115,17 +115,6 @@ KNOWN_COLUMNS: Mapping[str, HeadingColumn] = {
     "ground_acceleration": HeadingColumn("m/s^2", ("acceleration", "acc"), signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, dots, - and _ make no difference, nor does CamelCase."""
-DRILL_FLOOR: Mapping[str, str] = {
-    **dict.fromkeys(("hkld", "hkla", "hkl", "hook load", "hookload"), "hook load"),
-    **dict.fromkeys(("dbtm", "dept", "depth", "bit depth", "bd", "bit position"), "depth of the bit"),
-    **dict.fromkeys(("dmea", "hole depth", "td", "md", "measured depth"), "depth of the hole"),
-    **dict.fromkeys(("rop", "ropa", "rop avg", "rate of penetration"), "rate of penetration"),
-    **dict.fromkeys(("sppa", "spp", "standpipe pressure", "pump pressure"), "pressure of the mud"),
-    **dict.fromkeys(("bpos", "block position"), "height of the travelling block"),
-    **dict.fromkeys(("mfia", "mfi", "mfo", "flwi", "flow in", "mud flow in", "mud flow out"), "flow of the mud"),
-    **dict.fromkeys(("dwob", "dhwob", "downhole wob"), "weight on the bit, measured there"),
-}
-"""Further columns of the log of a drill floor, by their mnemonics in WITS and in logs while drilling, and what they are."""
 TURNED: Mapping[str, str] = {
     **{"slip": "slip_angle", "slip_rate": "slip_rotation", "load_point": "rotation", "load_rate": "rotation_rate"},
     **{"pull_rate": "rotation_rate", "far_stress": "torque"},

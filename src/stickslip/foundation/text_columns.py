@@ -25,13 +25,11 @@ from stickslip.foundation.errors import InputError, warn
 from stickslip.foundation.headings import FoundColumn, example, find, is_signed
 from stickslip.foundation.marks import marked, sentences
 from stickslip.foundation.named_columns import NamedColumns
-from stickslip.foundation.record_files import form_of
-from stickslip.foundation.record_files.foreign import check_is_text, decoded
+from stickslip.foundation.record_files import FIRST_BYTES, decoded, form_of
+from stickslip.foundation.record_files.foreign import check_is_text
 from stickslip.foundation.record_files.sheet import PREAMBLE, Asked, Lines, Sheet
 from stickslip.foundation.unit_doubts import doubts_of
 
-FIRST_BYTES = 4096
-"""This many bytes tell what a file is."""
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
 NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
@@ -88,7 +86,7 @@ def read_text(
 ) -> Table:
     """Return those of the wanted columns that a text has, as numbers in SI.
 
-    Files of LabVIEW (.lvm), LAS and universal files are known by their first lines. In any other text the first line that is
+    Texts in a format of an extension, such as LabVIEW's, are known by their first lines. In any other text the first line that is
     neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the lines that follow names
     two of them, that line is the header, and those before it are notes. Units stand in the headings, or in a row of their own below
     them. Columns are separated by tabs, semicolons or commas, whichever of them the header has, in this order, or else by blanks.
@@ -118,7 +116,8 @@ def _read(stream: TextIO, asked: Asked, *, raw: bool, skip: bool) -> Table:
     if not len(at_lines):
         at_lines = np.array([sheet.line])
     doubts = doubts_of(chosen, columns, at_header)
-    return Table(columns, asked.place, at_lines, sheet.counted, sheet.header, at_header, (*sheet.notes, *notes), doubts)
+    told = (*sheet.notes, *notes)
+    return Table(columns, asked.place, at_lines, sheet.counted, sheet.header, at_header, told, doubts, sheet.interval)
 
 
 def _lines(stream: TextIO, place: str) -> Iterator[str]:
@@ -150,6 +149,10 @@ class _Rows(NamedTuple):
         """
         at_lines, numbers, most = array("q"), array("d"), self.asked.most
         width, places = len(self.sheet.header), [one.place for one in self.chosen.values()]
+        if (table := self.sheet.table) is not None:
+            if len(table) > most:
+                raise InputError(f"{self.at(most + 1)}: more than {most} rows")
+            return np.arange(1, len(table) + 1), np.ascontiguousarray(table[:, places])
         for at, row in self.sheet.rows:
             if len(at_lines) == most:
                 raise InputError(f"{self.at(at)}: more than {most} rows")

@@ -12,9 +12,9 @@ from scipy.optimize import curve_fit
 from scipy.stats import binom
 
 import stickslip as ss
+from stickslip.extensions.inference.determined import misses_trend
 from stickslip.extensions.inference.points.fit import Fit
 from stickslip.extensions.inference.points.fit_search import leaves, rebuilt, slopes, template
-from stickslip.foundation.determined import misses_trend
 from stickslip.foundation.show import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
 from tests.messages import refused

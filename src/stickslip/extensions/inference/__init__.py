@@ -10,6 +10,7 @@ from stickslip.extension import Command, Extension
 if TYPE_CHECKING:
     from stickslip.extensions.inference.beside import BesideRun as BesideRun
     from stickslip.extensions.inference.beside import RecordBeside
+    from stickslip.foundation.record_files import RecordForm
     from stickslip.problem import Problem
 
 
@@ -24,6 +25,12 @@ class InferenceExtension(Extension):
         from stickslip.extensions.inference.commands.infer import infer
 
         return {"Measured friction": (fit, infer)}
+
+    def forms(self) -> Sequence[RecordForm]:
+        """Return the formats of LabVIEW (.lvm), LAS and universal files."""
+        from stickslip.extensions.inference.record_forms import FORMS
+
+        return FORMS
 
     def public(self) -> Mapping[str, str]:
         """Return what is known as a study, as a law through points, and as a figure of it."""

@@ -117,7 +117,7 @@ def as_motion(given: Any, name: str = "", component: str | None = None) -> Groun
         read = getattr(loading, "record")  # noqa: B009  # an extension adds it
         given = read(given, component=component)
     if isinstance(given, np.ndarray | list | tuple):
-        raise InputError("numbers alone have no interval: give ss.loading.Record(values=NUMBERS, interval=SECONDS)")
+        raise InputError("numbers alone have no interval: give ss.loading.Accelerogram(NUMBERS, interval=SECONDS)")
     if not isinstance(given, LoadingHistory):
         raise InputError(f"a record must be {KINDS}, got {shown(given)}")
     if hasattr(given, "samples") and hasattr(given, "interval"):

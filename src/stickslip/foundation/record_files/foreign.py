@@ -1,4 +1,4 @@
-"""Files that are no text: what their first bytes say they are, and the way from there to text; and how text is decoded."""
+"""Files that are no text: what their first bytes say they are, and the way from there to text."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from typing import NamedTuple
 
 from stickslip.foundation.errors import InputError
 
-_WIDE = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-_OLD_LETTERS = "stickslip-or-latin-1"
+OLD_LETTERS = "stickslip-or-latin-1"
 """What decodes bytes that are not UTF-8, as programs write µ and ° that know neither."""
-_BY_OLD_PROGRAMS = re.compile(rb"(\xef\xbb\xbf)?\s*(LabVIEW Measurement|#[^\n]*\n\s*~V|~V|-1\s)", re.IGNORECASE)
 
 
 def _python(code: str) -> str:
@@ -86,21 +84,10 @@ def check_is_text(begin: bytes) -> None:
         raise InputError(f"{found.name}, which is not read: make CSV of it: {found.way}{needs}")
 
 
-def decoded(begin: bytes) -> tuple[str, str]:
-    """Return the encoding of a text, by its first bytes, and what is done with bytes of another encoding."""
-    return "utf-16" if begin.startswith(_WIDE) else "utf-8-sig", _OLD_LETTERS if _BY_OLD_PROGRAMS.match(begin) else "strict"
-
-
-def text_in(content: bytes, first_bytes: int = 4096) -> str:
-    """Return the text of a whole file. Raises InputError as `check_is_text` does, and UnicodeDecodeError."""
-    check_is_text(content[:first_bytes])
-    return content.decode(*decoded(content[:first_bytes]))
-
-
 def _as_latin_1(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeDecodeError):
         raise error
     return error.object[error.start : error.end].decode("latin-1"), error.end
 
 
-codecs.register_error(_OLD_LETTERS, _as_latin_1)
+codecs.register_error(OLD_LETTERS, _as_latin_1)

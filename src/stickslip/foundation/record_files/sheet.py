@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import MOST_COLUMNS, count_named
 from stickslip.foundation.named_columns import NamedColumns
@@ -18,7 +19,8 @@ class Sheet(NamedTuple):
 
     `null` is the number that the file names as the mark of a missing one. `notes` are sentences about what was passed over; they
     are complete once the rows are read. `counted` is what the rows are counted in. `hint` ends the message on a row with too many
-    cells.
+    cells. `table` has the numbers, shape (rows, columns), where a file holds them as a block that is read at once; `rows` are
+    empty then, and rows are counted from 1. `interval` (s) is that of the samples, where the header of the file states it.
     """
 
     header: list[str]
@@ -28,6 +30,8 @@ class Sheet(NamedTuple):
     null: float | None = None
     counted: str = "line"
     hint: str = ""
+    table: Floats | None = None
+    interval: float | None = None
 
 
 class Lines:
@@ -89,17 +93,31 @@ class Asked(NamedTuple):
         """Return an error at a line."""
         return InputError(f"{self.place}, line {line}: {what}")
 
+    def check_columns(self, count: int, line: int, what: str) -> None:
+        """Raise InputError for too many columns; `what` they are in the file."""
+        if count > MOST_COLUMNS:
+            raise self.fault(line, f"more than {MOST_COLUMNS} {what}")
 
-def number_in(text: str, asked: Asked, line: int, what: str) -> float:
-    """Return a number of a file's own header. Raises InputError."""
-    try:
-        return float(text.strip().replace("D", "E").replace("d", "e"))
-    except ValueError:
-        raise asked.fault(line, f"{what} must be a number") from None
+    def number(self, text: str, line: int, what: str) -> float:
+        """Return a number of a file's own header. Raises InputError."""
+        try:
+            return float(text.strip().replace("D", "E").replace("d", "e"))
+        except ValueError:
+            raise self.fault(line, f"{what} must be a number") from None
+
+    def whole(self, text: str, line: int, what: str) -> int:
+        """Return a whole number of a file's own header, at least 0. Raises InputError."""
+        if not (text.strip().isascii() and text.strip().isdigit() and len(text.strip()) <= 10):
+            raise self.fault(line, f"{what} must be a whole number")
+        return int(text)
 
 
-def whole_in(text: str, asked: Asked, line: int, what: str) -> int:
-    """Return a whole number of a file's own header, at least 0. Raises InputError."""
-    if not (text.strip().isascii() and text.strip().isdigit() and len(text.strip()) <= 10):
-        raise asked.fault(line, f"{what} must be a whole number")
-    return int(text)
+class RecordForm(NamedTuple):
+    """A format of text: what knows it by the first lines of a file, and what reads such a file as a sheet.
+
+    `begins` gets up to 200 lines without their ends, or those of the first 4096 bytes; the first line that a file is known by
+    should be among its first twenty.
+    """
+
+    begins: Callable[[Sequence[str]], bool]
+    sheet: Callable[[Lines, Asked], Sheet]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from stickslip.extensions.inference.certainty.bends import rough_words
 from stickslip.extensions.inference.certainty.directions import IDLE, better_known, null_directions, told, without
+from stickslip.extensions.inference.determined import UNSEEN_CHANGE, covariance_of, sizes_and_correlation, undetermined
 from stickslip.extensions.inference.fit.estimate import Estimate
 from stickslip.extensions.inference.fit.free import Free
 from stickslip.extensions.inference.fit.memory import WHITE, Unevenness, spread_by, spreads_of, unevenness
@@ -19,7 +20,6 @@ from stickslip.extensions.inference.fit.pieces import pieces_of
 from stickslip.extensions.inference.fit.progress import Tell
 from stickslip.extensions.inference.record.noise import cost_of, weights
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.determined import UNSEEN_CHANGE, covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.show import brief
 
 RTOL_OF_DERIVATIVES = 1e-10

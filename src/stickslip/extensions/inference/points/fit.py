@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.extensions.inference.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.extensions.inference.points.fit_search import EXPONENTS, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import in_units

@@ -17,7 +17,7 @@ from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.errors import InputError, warn
-from stickslip.foundation.headings import DRILL_FLOOR, TURNED, find, missing, names_of, quoted
+from stickslip.foundation.headings import TURNED, find, missing, names_of, quoted
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
@@ -35,6 +35,17 @@ SERVING_COLUMNS = (*NORMAL, *reversed(BY_ANGLE), "radius")
 """Columns that serve to compute others."""
 WANTED = ("time", *LOADING, *MEASURED, *SERVING_COLUMNS, *(f"{name}_deviation" for name in MEASURED))
 """All known columns."""
+DRILL_FLOOR: Mapping[str, str] = {
+    **dict.fromkeys(("hkld", "hkla", "hkl", "hook load", "hookload"), "hook load"),
+    **dict.fromkeys(("dbtm", "dept", "depth", "bit depth", "bd", "bit position"), "depth of the bit"),
+    **dict.fromkeys(("dmea", "hole depth", "td", "md", "measured depth"), "depth of the hole"),
+    **dict.fromkeys(("rop", "ropa", "rop avg", "rate of penetration"), "rate of penetration"),
+    **dict.fromkeys(("sppa", "spp", "standpipe pressure", "pump pressure"), "pressure of the mud"),
+    **dict.fromkeys(("bpos", "block position"), "height of the travelling block"),
+    **dict.fromkeys(("mfia", "mfi", "mfo", "flwi", "flow in", "mud flow in", "mud flow out"), "flow of the mud"),
+    **dict.fromkeys(("dwob", "dhwob", "downhole wob"), "weight on the bit, measured there"),
+}
+"""Further columns of the log of a drill floor, by their mnemonics in WITS and in logs while drilling, and what they are."""
 LATER = Quantity("s", "time by which the second clock begins later")
 HEADINGS_NAMED = 6
 """A message names at most this many headings."""

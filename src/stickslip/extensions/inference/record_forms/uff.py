@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
-from stickslip.foundation.headings import MOST_COLUMNS
-from stickslip.foundation.record_files.sheet import Asked, Lines, Sheet, number_in, whole_in
+from stickslip.foundation.record_files import Asked, Lines, Sheet
 
 MOST_NUMBERS = 50_000_000
 """Read at most this many numbers from a file: they are kept until all functions are there."""
@@ -77,8 +76,7 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
             system = _system(lines, asked)
     if not functions:
         raise asked.fault(lines.number, "no dataset 58 with a real function of time")
-    if len(functions) >= MOST_COLUMNS:
-        raise asked.fault(lines.number, f"more than {MOST_COLUMNS} functions")
+    asked.check_columns(len(functions) + 1, lines.number, "functions")
     first = functions[0]
     for other in functions[1:]:
         if not first.fits(other):
@@ -112,10 +110,8 @@ def _function(lines: Lines, asked: Asked) -> _Function | None:
     if len(head) < 11:
         raise asked.fault(lines.number, "a dataset 58 that ends within its header")
     begun = lines.number - 10
-    kind, count, even = (
-        whole_in(head[6][k : k + 10].strip() or "0", asked, begun + 6, "a field of its record 7") for k in (0, 10, 20)
-    )
-    over, kept = (whole_in(head[k][:10].strip() or "0", asked, begun + k, "the type of an axis") for k in (7, 8))
+    kind, count, even = (asked.whole(head[6][k : k + 10].strip() or "0", begun + 6, "a field of its record 7") for k in (0, 10, 20))
+    over, kept = (asked.whole(head[k][:10].strip() or "0", begun + k, "the type of an axis") for k in (7, 8))
     if kind not in _KINDS:
         raise asked.fault(begun + 6, "the type of ordinates must be 2, 4, 5 or 6")
     if kind in _COMPLEX or over != CODE_OF_TIME:
@@ -128,7 +124,7 @@ def _function(lines: Lines, asked: Asked) -> _Function | None:
     clock = "s" if clock.casefold() in _SECONDS else clock
     found = _Function(names, unit, clock, begun)
     if even:
-        found.begin, found.step = (number_in(head[6][k : k + 13], asked, begun + 6, "the abscissa") for k in (30, 43))
+        found.begin, found.step = (asked.number(head[6][k : k + 13], begun + 6, "the abscissa") for k in (30, 43))
         _read(lines, [found.values], count, _KINDS[kind][1:], asked)
     else:
         found.times = array("d")
@@ -150,7 +146,7 @@ def _read(lines: Lines, into: Sequence[array[float]], count: int, widths: Sequen
         if line.strip() == _EDGE:
             raise asked.fault(lines.number, f"a dataset 58 that ends {left} numbers too early")
         for text in _numbers(line, widths)[:left]:
-            into[turn].append(number_in(text, asked, lines.number, "each value"))
+            into[turn].append(asked.number(text, lines.number, "each value"))
             turn = (turn + 1) % len(into)
             left -= 1
 
@@ -179,7 +175,7 @@ def _is_one(cell: str) -> bool:
 def _system(lines: Lines, asked: Asked) -> tuple[str, str] | None:
     """Return the units of length and force of a dataset 164, if they are known."""
     line = next(lines, "")
-    return _SYSTEMS.get(whole_in(line[:10], asked, lines.number, "the code of the units"))
+    return _SYSTEMS.get(asked.whole(line[:10], lines.number, "the code of the units"))
 
 
 def _with_system(unit: str, system: tuple[str, str] | None) -> str:

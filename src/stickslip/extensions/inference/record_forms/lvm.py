@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 from datetime import datetime
 from typing import NamedTuple
 
-from stickslip.foundation.headings import heading_of
-from stickslip.foundation.record_files.sheet import Asked, Lines, Sheet, number_in
+from stickslip.foundation.record_files import Asked, Lines, Sheet
 
 MAGIC = "LabVIEW Measurement"
 """How such a file begins."""
@@ -123,7 +122,7 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     form = form.completed(segment, lines.peek())
     channels, labels, over = form.channels(segment), form.of_channels(segment, "Y_Unit_Label"), segment.listed("X_Dimension")
     headings = [asked.best([name], labels[i] if i < len(labels) else "") for i, name in enumerate(channels)]
-    x = heading_of("time", (segment.listed("X_Unit_Label") or ["s"])[0]) if over[:1] in ([], ["Time"]) else "X_Value"
+    x = f"time ({(segment.listed('X_Unit_Label') or ['s'])[0]})" if over[:1] in ([], ["Time"]) else "X_Value"
     header = asked.header([x, *headings], segment.line, [["X_Value", *channels]])
     notes = list[str]()
     return Sheet(header, segment.line, _rows(lines, form, segment, asked, notes), notes)
@@ -252,7 +251,7 @@ def _steps(form: _Form, segment: _Segment, asked: Asked) -> tuple[float, float]:
     for key, default in (("X0", "0"), ("Delta_X", "")):
         cells = segment.listed(key) or [default]
         filled = [cell for i, cell in enumerate(cells) if i >= len(samples) or samples[i] != "0"]  # others have no row
-        values = {number_in(form.number(cell), asked, segment.line, key) for cell in filled or cells}
+        values = {asked.number(form.number(cell), segment.line, key) for cell in filled or cells}
         if len(values) > 1:
             raise asked.fault(segment.line, f"channels with different {key}: write each to a file of its own")
         found += values

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from stickslip.foundation.headings import MOST_COLUMNS
-from stickslip.foundation.record_files.sheet import Asked, Lines, Sheet, number_in
+from stickslip.foundation.record_files import Asked, Lines, Sheet
 
 _MOST_LINES = 20_000
 """The sections before the numbers have at most this many lines."""
@@ -57,14 +56,13 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     curves = head.sections.get("C", [])
     if not curves:
         raise asked.fault(head.line, "a LAS file without a section ~C, which names its curves")
-    if len(curves) > MOST_COLUMNS:
-        raise asked.fault(head.line, f"more than {MOST_COLUMNS} curves")
+    asked.check_columns(len(curves), head.line, "curves")
     headings = [asked.best([curve.name, curve.about], curve.unit) for curve in curves]
     header = asked.header(headings, head.line, [[one.name for one in curves], [one.about for one in curves]])
     null = head.value("W", "NULL")
     wrapped = head.value("V", "WRAP").upper().startswith("Y")
     rows = _wrapped(lines, len(curves), asked) if wrapped else _rows(lines)
-    missing = number_in(null, asked, head.line, "NULL") if null else None
+    missing = asked.number(null, head.line, "NULL") if null else None
     return Sheet(header, head.line, rows, [], missing, hint="; one row has one line where WRAP is NO")
 
 
