@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from stickslip.extensions.strong_motion.measures import GRAVITY, measures_of
+from stickslip.extensions.strong_motion.measures import measures_of
+from stickslip.foundation.constants import GRAVITY
 from tests.extensions.strong_motion.made import made_motion
 
 
@@ -26,7 +27,7 @@ def test_a_sinusoid_has_its_closed_forms():
     assert found.arias == pytest.approx(math.pi / (2.0 * GRAVITY) * 0.5 * amplitude**2 * lasting, rel=1e-6)
     assert found.cav == pytest.approx(2.0 / math.pi * amplitude * lasting, rel=1e-6)
     assert found.duration == pytest.approx(0.9 * lasting, rel=1e-2)
-    assert found.mean_period == pytest.approx(1.0 / frequency, rel=2e-2)
+    assert found.mean_period == pytest.approx(1.0 / frequency, rel=3e-2)
     assert found.final_velocity == pytest.approx(0.0, abs=1e-9)
     assert found.final_displacement == pytest.approx(amplitude / turning * lasting, rel=1e-6)
 

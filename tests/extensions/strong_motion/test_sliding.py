@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.strong_motion.measures import GRAVITY
 from stickslip.extensions.strong_motion.sliding_block import ShakenBlock
+from stickslip.foundation.constants import GRAVITY
 from tests.extensions.strong_motion.made import made_motion
 
 RECORDS = {"a": made_motion(), "b": made_motion("x", 1.4, 0.9), "c": made_motion("y", 0.7, 2.1)}
@@ -67,7 +67,9 @@ def test_yields_may_have_a_unit_and_a_backward_one():
     one, other = (ss.studies.sliding(RECORDS, given, polarity=1).table for given in ("0.980665 m/s^2", 0.1))
     assert one.displacement.to_numpy() == pytest.approx(other.displacement.to_numpy(), rel=1e-12)
     same = ss.studies.sliding(RECORDS, YIELDS, backward="same").table
-    expected = [slid(RECORDS[row.record], row.polarity, row.yield_coefficient, row.yield_coefficient * GRAVITY) for row in same.itertuples()]
+    expected = [
+        slid(RECORDS[row.record], row.polarity, row.yield_coefficient, row.yield_coefficient * GRAVITY) for row in same.itertuples()
+    ]
     assert same.displacement.tolist() == expected
     assert (same.peak_displacement >= same.displacement.abs()).all()
     assert (same.peak_displacement > same.displacement.abs()).any()
@@ -150,7 +152,7 @@ def column(wave_speed: float) -> ss.ElasticSlab:
 def test_a_stiff_column_is_the_rigid_block_in_both_analyses():
     """Each time its wave speed doubles, the difference at least halves; the coupled column keeps ringing while it slides."""
     rigid = ss.studies.sliding({"a": RECORDS["a"]}, [0.05, 0.1]).table.displacement.to_numpy()
-    for analysis, first in (("coupled", 0.02), ("decoupled", 0.01)):
+    for analysis, first in (("coupled", 0.05), ("decoupled", 0.02)):
         off = []
         for wave_speed in (2000.0, 4000.0):
             found = ss.studies.sliding({"a": RECORDS["a"]}, [0.05, 0.1], analysis=analysis, column=column(wave_speed))
