@@ -24,10 +24,10 @@ from stickslip.extensions.strong_motion.compiled.rigid_block import (
     SLIDING_TIME,
     SLIPS,
 )
-from stickslip.extensions.strong_motion.measures import GRAVITY
 from stickslip.extensions.strong_motion.motion import GroundMotion
 from stickslip.extensions.strong_motion.sliding_block import ShakenBlock
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.errors import InputError
 from stickslip.friction import Coulomb
 from stickslip.problem import Problem
@@ -82,12 +82,12 @@ def rigid_block(asked: SlidingAsked, case: CaseShaken) -> tuple[ShakenBlock, str
     return ShakenBlock(run.load(interval * np.arange(int(lasting / interval))) / mass, interval), FINISHED
 
 
-def mass_of(column: Any) -> float:
-    """Return the mass (kg/m^2) of a column. Raises InputError for a body that is none."""
+def mass_of(column: Any, before: str = "") -> float:
+    """Return the mass (kg/m^2) of a column. Raises InputError, which begins with `before`, for a body that is none."""
     try:
         return float(column.density * column.thickness + column.contact_mass)
     except (AttributeError, TypeError):
-        raise InputError(f"a column must be a slab with one density and thickness, got {type(column).__name__}") from None
+        raise InputError(f"{before}a column must be a slab with one density and thickness, got {type(column).__name__}") from None
 
 
 def _normal_of(column: Any) -> float:

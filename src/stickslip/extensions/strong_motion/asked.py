@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.extensions.strong_motion.measures import GRAVITY
 from stickslip.extensions.strong_motion.motion import GroundMotion
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.conversion import has_unit, to_number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.units import si_factor

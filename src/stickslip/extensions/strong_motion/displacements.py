@@ -12,10 +12,10 @@ import numpy as np
 import pandas as pd
 
 from stickslip.extensions.strong_motion.asked import SlidingAsked, read_length
-from stickslip.extensions.strong_motion.measures import GRAVITY
 from stickslip.extensions.strong_motion.motion import GroundMotion
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import write_table
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.show import number
 from stickslip.run import StudyWithDataset

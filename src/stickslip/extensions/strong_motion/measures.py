@@ -13,10 +13,8 @@ import numpy as np
 from scipy.fft import next_fast_len
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.units import si_factor
+from stickslip.foundation.constants import GRAVITY
 
-GRAVITY = float(si_factor("g", "m/s^2"))
-"""Standard acceleration of gravity (m/s^2)."""
 SHARES = (0.05, 0.95)
 """Shares of the Arias intensity between which the significant duration lies (D5-95)."""
 PERIODS = (0.05, 4.0)

@@ -13,19 +13,21 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.extensions.strong_motion.measures import GRAVITY, StrongMotionMeasures, measures_of
+from stickslip.extensions.strong_motion.measures import StrongMotionMeasures, measures_of
+from stickslip.extensions.strong_motion.obspy_traces import is_trace
 from stickslip.extensions.strong_motion.record import record
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.show import number
-from stickslip.problem.loading import LoadingHistory, PiecewiseLinear
+from stickslip.problem import Accelerogram, LoadingHistory, PiecewiseLinear
 
 UNEVEN = 1e-6
 """Intervals of a history that differ by less than this share count as one."""
 BASELINES = (None, "mean")
 """What may be taken off a record: nothing, or its mean."""
-KINDS = "a file, a record or another history of acceleration with even times, or a trace of obspy"
+KINDS = "a file, a record of ss.loading or another history of acceleration with even times"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +54,13 @@ class GroundMotion:
         peak = number(self.measures.pga / GRAVITY, 4)
         return f"{self.name}: {len(self.acceleration)} samples every {number(self.interval)} s, {peak} g at most"
 
-    def history(self, factor: float) -> LoadingHistory:
-        """Return the acceleration times a factor as a history for a problem; it ends at 0."""
-        times = self.interval * np.arange(len(self.acceleration) + 1)
-        return PiecewiseLinear(times.tolist(), [*(factor * self.acceleration).tolist(), 0.0])
+    @cached_property
+    def _history(self) -> Accelerogram:
+        return Accelerogram(self.acceleration.tolist(), self.interval)
+
+    def history(self, factor: float) -> Accelerogram:
+        """Return the acceleration times a factor as a history for a problem, which is 0 after the last sample."""
+        return self._history.scaled(factor)
 
 
 def motions_of(given: Any, who: str, component: str | None = None, baseline: str | None = None) -> list[GroundMotion]:
@@ -81,7 +86,7 @@ def _named(given: Any, who: str) -> Iterator[tuple[str, Any]]:
         yield from ((str(name), one) for name, one in given.items())
     elif isinstance(given, str | os.PathLike):
         yield from _files(Path(given), who)
-    elif isinstance(given, LoadingHistory | GroundMotion) or hasattr(given, "stats"):
+    elif isinstance(given, LoadingHistory | GroundMotion) or is_trace(given):
         yield "", given
     elif isinstance(given, Iterable) and not isinstance(given, np.ndarray | bytes):
         for one in given:
@@ -113,14 +118,16 @@ def as_motion(given: Any, name: str = "", component: str | None = None) -> Groun
     """Return a record as a ground motion. Raises InputError for what is none."""
     if isinstance(given, GroundMotion):
         return replace(given, name=name) if name else given
-    if isinstance(given, str | os.PathLike) or hasattr(given, "stats"):
-        given = record(given, component=component)
+    if isinstance(given, str | os.PathLike):
+        given = record(Path(given), component=component)
+    if is_trace(given):
+        raise InputError('a trace does not know its unit: give ss.loading.record(TRACE, unit="m/s^2")')
     if isinstance(given, np.ndarray | list | tuple):
         raise InputError("numbers alone have no interval: give ss.loading.Accelerogram(NUMBERS, interval=SECONDS)")
     if not isinstance(given, LoadingHistory):
         raise InputError(f"a record must be {KINDS}, got {shown(given)}")
-    if hasattr(given, "samples") and hasattr(given, "interval"):
-        return _checked(name or str(getattr(given, "name", "")) or "record", np.asarray(given.samples), float(given.interval))
+    if isinstance(given, Accelerogram):
+        return _checked(name or given.origin.partition(", sha256 ")[0] or "record", given.samples, given.interval)
     if not isinstance(given, PiecewiseLinear) or type(given) is not PiecewiseLinear:
         raise InputError(f"a record must have samples in straight lines, got {type(given).__name__}")
     times = np.asarray(given.times, float)

@@ -21,10 +21,10 @@ from stickslip.extensions.strong_motion.compiled.rigid_block import (
     SLIPS,
 )
 from stickslip.extensions.strong_motion.displacements import SlidingDisplacements
-from stickslip.extensions.strong_motion.measures import GRAVITY
 from stickslip.extensions.strong_motion.motion import GroundMotion, motions_of
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.run import TextProgress, telling
 
 PLACES = {
@@ -66,8 +66,8 @@ def sliding(
     Parameters
     ----------
     records : str, Path, record or several of them
-        Files of strong motion, folders of them, records of `ss.loading`, histories of acceleration with even times, or traces of
-        obspy; a dict gives them names.
+        Files of strong motion, folders of them, records of `ss.loading`, or histories of acceleration with even times; a dict gives
+        them names. A trace of ObsPy becomes a record by `ss.loading.record(trace, unit="m/s^2")`.
     yields : float, str or several of them
         Yield coefficients: yield accelerations as parts of g (9.80665 m/s^2), such as 0.1, or with a unit, such as "1 m/s^2".
     polarity : {"both", 1, -1}
@@ -109,7 +109,7 @@ def sliding(
     asked = asked._replace(analysis=read_analysis("sliding", analysis, column), column=column)
     read_length("sliding", unit)
     if column is not None:
-        mass_of(column)
+        mass_of(column, "sliding: ")
     motions = motions_of(records, "sliding", component, baseline)
     tables: list[dict[str, Any]] = []
     cases = len(asked.polarities) * len(asked.levels.values) * len(motions)

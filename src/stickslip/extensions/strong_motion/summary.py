@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, say
 from stickslip.extensions.strong_motion.asked import read_length
-from stickslip.extensions.strong_motion.measures import GRAVITY
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.show import clean, number
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 
 from stickslip.extensions.strong_motion.analyses import CaseShaken, coupled_run, rigid_block
 from stickslip.extensions.strong_motion.asked import SlidingAsked, read_length
-from stickslip.extensions.strong_motion.measures import GRAVITY
 from stickslip.extensions.strong_motion.motion import GroundMotion
 from stickslip.figures.panels import add_legend, letter_panels, panels, zero_line
 from stickslip.figures.style import BLUE, INK, VERMILLION, quantity, styled
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.place import Place
 
 AFTER = 0.05
