@@ -28,7 +28,7 @@ def stream(*traces: SimpleNamespace) -> SimpleNamespace:
 def test_the_samples_of_a_trace_are_taken_in_the_unit_that_is_given(unit: str, size: float) -> None:
     found = samples_of(trace(), unit)
     assert found.values == pytest.approx(size * MOTION.astype(float), rel=1e-15)
-    assert (found.interval, found.name, found.notes) == (0.005, "XX.TST..HNE", ())
+    assert found[1:] == (0.005, "XX.TST..HNE")
 
 
 def test_an_interval_of_single_precision_is_what_was_meant() -> None:
@@ -36,7 +36,7 @@ def test_an_interval_of_single_precision_is_what_was_meant() -> None:
     single = float(np.float32(0.005))
     found = samples_of(trace(delta=single, sampling_rate=1.0 / single), "g")
     assert found.interval == 0.005
-    assert found.notes == ("the interval 0.004999999888 s is 0.005 s in single precision",)
+    assert found.name == "XX.TST..HNE (the interval 0.004999999888 s is 0.005 s in single precision)"
     assert samples_of(trace(delta=None), "g").interval == 0.005
     assert samples_of(trace(delta=1.0 / 300.0, sampling_rate=300.0), "g").interval == 1.0 / 300.0
 
@@ -47,7 +47,7 @@ def test_one_trace_of_a_stream_is_chosen_by_its_channel() -> None:
     assert is_trace(trace())
     assert not is_trace([0.0, 1.0])
     assert not is_trace(MOTION)
-    for name in ("HNN", "hnn", "N"):
+    for name in ("HNN", "hnn", "N", 2, "2"):
         assert samples_of(three, "m/s^2", name).values == pytest.approx(2.0 * MOTION, rel=1e-6)
     with pytest.raises(ss.InputError, match=r"^stream: 3 traces of channels 'HNE', 'HNN', 'HNZ': choose one, as component='HNE'$"):
         samples_of(three, "g")
