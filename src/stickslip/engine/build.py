@@ -24,7 +24,7 @@ from stickslip.engine.input.prepare import law_tables
 from stickslip.engine.lanes.setups import alike
 from stickslip.engine.lanes.vectorised_problem import why_not
 from stickslip.foundation.code_key import PACKAGE, SHIPPED, keys_that_came
-from stickslip.foundation.kernels.code import NAME, announce_by, compiled_sources
+from stickslip.foundation.kernels.code import NAME, announce_by, compiled_sources, kept_of
 from stickslip.foundation.kernels.kernels import Entry
 from stickslip.foundation.sealed_files import read_sealed, write_sealed
 from stickslip.problem.scenarios import load_scenario
@@ -42,7 +42,8 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1, help="how many processes work side by side")
     processes, begun = parser.parse_args().processes, time.perf_counter()
     is_there = (SHIPPED / NAME).is_dir()
-    if is_there and engine_key() in keys_that_came().values():
+    missing = [name for name in entries() if not (SHIPPED / NAME / kept_of(Entry.known[name]).file).exists()] if is_there else []
+    if is_there and not missing and engine_key() in keys_that_came().values():
         say(f"the machine code in {SHIPPED} is up to date")
         return
     if not is_there:
@@ -51,11 +52,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as made:
         os.environ["STICKSLIP_CACHE_DIR"] = made  # where the processes put machine code and keys
         (SHIPPED / "keys").unlink(missing_ok=True)
-        names = [] if is_there else [*LARGE, FORMULAS, *sorted(set(entries()) - set(LARGE))]
+        names = missing if is_there else [*LARGE, FORMULAS, *sorted(set(entries()) - set(LARGE))]
         with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
             for done in as_completed([pool.submit(make, name) for name in [*names, KEYS]]):
                 done.result()
-        ship(Path(made), SHIPPED, "" if is_there else NAME)
+        ship(Path(made), SHIPPED, "" if is_there and not missing else NAME)
     files = [path.stat().st_size for path in (SHIPPED / NAME).iterdir()]
     say(f"{len(files)} files of machine code, {sum(files) / 1e6:.1f} MB, in {time.perf_counter() - begun:.0f} s")
 
@@ -68,7 +69,7 @@ def say(text: str) -> None:
 
 def entries() -> list[str]:
     """Return the names of all entries."""
-    for path in compiled_sources():
+    for path in [*compiled_sources(), *PACKAGE.glob("extensions/*/compiled/*.py")]:
         module = path.relative_to(PACKAGE.parent).with_suffix("").as_posix().replace("/", ".")
         import_module(module.removesuffix(".__init__"))
     return list(Entry.known)
@@ -78,6 +79,7 @@ def make(name: str) -> None:
     """Make the machine code of an entry, or of formulas, or keys; they stay in the cache."""
     if name == KEYS:
         engine_key()
+        _ = [kept_of(Entry.known[one]) for one in entries()]
         return
     announce_by(lambda text: None)
     entries()
@@ -102,9 +104,10 @@ def ship(made: Path, target: Path, name: str) -> None:
     keys = {path.name: (read_sealed(path) or b"").decode() for path in (made / "keys").iterdir()}
     write_sealed(target / "keys", "\n".join(f"{digest} {key}" for digest, key in sorted(keys.items())).encode())
     if name:
-        shutil.copytree(made / f"compiled-{name}", target / "new")
-        (target / "new").chmod(0o755)
-        (target / "new").rename(target / name)  # whoever looks meanwhile sees all or nothing
+        folder = target / name if (target / name).is_dir() else target / "new"
+        shutil.copytree(made / f"compiled-{name}", folder, dirs_exist_ok=True)
+        folder.chmod(0o755)
+        folder.rename(target / name)  # whoever looks meanwhile sees all or nothing
 
 
 if __name__ == "__main__":

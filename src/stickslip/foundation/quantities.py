@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
-from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
@@ -33,7 +32,9 @@ LARGEST, SMALLEST = 1e50, 1e-50
 Within these limits products of several quantities neither overflow nor underflow.
 """
 LARGEST_SERIES = 10_000
-"""A series has at most this many points: a limit for scenario files, which are untrusted."""
+"""A series has at most this many points, unless it says otherwise; a scenario writes so many as a list, and more of them packed."""
+MOST_SAMPLES = 1_000_000
+"""A loading history has at most this many points: each takes 32 bytes as a number, and 24 as a part of the history."""
 
 
 @dataclass(frozen=True)
@@ -132,17 +133,26 @@ class Quantity:
 
 @dataclass(frozen=True)
 class NumberSeries:
-    """Declare a list of numbers of one kind, optionally in ascending order."""
+    """Declare a list of numbers of one kind, optionally in ascending order.
+
+    `least` is the smallest number of entries (two points by default, which a line needs), and `most` the largest. `sampled` numbers
+    are those of a recorder: none of them has a name of its own, and a scenario keeps them packed.
+    """
 
     item: Quantity
     ascending: bool = False
     least: int = 2
-    """Smallest number of entries: two points by default, which a line needs."""
+    most: int = LARGEST_SERIES
+    sampled: bool = False
 
     @property
     def meaning(self) -> str:
         """The meaning of the numbers."""
         return self.item.meaning
+
+    def lists(self, values: Sequence[float]) -> bool:
+        """Return True for numbers that people write, name and change one by one."""
+        return not self.sampled and len(values) <= LARGEST_SERIES
 
     def check(self, owner: str, name: str, value: Any) -> tuple[float, ...]:
         """Return the numbers in SI as a tuple of floats. Raise InputError that names owner, field and index.
@@ -151,16 +161,33 @@ class NumberSeries:
         """
         if has_unit(value) and np.ndim(value.magnitude) == 1:
             value = list(value)
-        if isinstance(value, str | Mapping) or has_unit(value) or not isinstance(value, Iterable) or any(map(_is_list, value)):
-            raise InputError(f"{owner}: {name} must be a list of numbers in {self.item.label}, got {type(value).__name__}")
-        found = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
-        if not self.least <= len(found) <= LARGEST_SERIES:
-            raise InputError(f"{owner}: {name} must have {self.least} to {LARGEST_SERIES} numbers, got {len(found)}")
-        if self.ascending:
-            for i, (one, following) in enumerate(pairwise(found)):
-                if not one < following:
-                    cure = "sort the points" if following < one else "keep one point of each, or their mean"
-                    raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}; {cure}")
+        found = self.at_once(value)
+        if found is None:
+            if isinstance(value, str | Mapping) or has_unit(value) or not isinstance(value, Iterable) or any(map(_is_list, value)):
+                raise InputError(f"{owner}: {name} must be a list of numbers in {self.item.label}, got {type(value).__name__}")
+            found = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
+        if not self.least <= len(found) <= self.most:
+            raise InputError(f"{owner}: {name} must have {self.least} to {self.most} numbers, got {len(found)}")
+        falls = (
+            np.flatnonzero(np.diff(np.asarray(value if type(value) is np.ndarray else found, float)) <= 0.0)
+            if self.ascending
+            else ()
+        )
+        for i in falls[:1]:
+            one, following = found[i], found[i + 1]
+            cure = "sort the points" if following < one else "keep one point of each, or their mean"
+            raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}; {cure}")
+        return found
+
+    def at_once(self, value: Any) -> tuple[float, ...] | None:
+        """Return floats, or an array of plain numbers, if all of them are allowed; else None: look at them one by one."""
+        if type(value) is np.ndarray and value.ndim == 1 and value.dtype.kind in "fiu":
+            array = value.astype(float)
+            found = tuple(array.tolist()) if self.item.allows(array).all() else None
+        elif type(value) in (list, tuple) and set(map(type, value)) <= {float, Given}:
+            found = tuple(value) if self.item.allows(np.array(value, float)).all() else None
+        else:
+            found = None
         return found
 
 

@@ -82,17 +82,21 @@ from stickslip.problem.limits import (
     lumps_by_itself,  # Return True if events are lumped automatically.
 )
 from stickslip.problem.loading import (
+    ALL_HISTORIES,  # Every history that a scenario file may have, those of users in HISTORIES too.
     HISTORIES,  # Every built-in loading history by its name in scenario files.
-    SILENT,  # The tone of a history without oscillation; its frequency of 1 rad/s has no effect, but a frequency must be positive.
     # Unit of the varying quantity: m/s or rad/s for a pull rate or a velocity of the ground, m/s^2 or rad/s^2 for its
     # acceleration, and Pa, N or N m for a far stress or a normal load.
     VARYING,
+    Accelerogram,  # Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
     # A pull rate, far stress, normal load or motion of the ground as a function of time (s) since the start of the run.
     LoadingHistory,
     PiecewiseLinear,  # A straight line from point to point, constant before the first point and after the last.
     Segment,  # A straight part of a history from a time `start` (s) on: a value there, and its change per second.
     Steps,  # Jumps to the next value at each given time, and constant values between them: one velocity step, or several.
     Tone,  # A sinusoid amplitude (in the unit of the values) sin(frequency t + phase), of an angular frequency (rad/s) > 0.
+)
+from stickslip.problem.loading_history import (
+    SILENT,  # The tone of a history without oscillation; its frequency of 1 rad/s has no effect, but a frequency must be positive.
 )
 from stickslip.problem.parameters import (
     # Name of the normal load with the initial load and the far stress in proportion: pressed harder, a contact is as near to
@@ -160,6 +164,7 @@ from stickslip.problem.selection_rule import (
 )
 
 __all__ = [
+    "ALL_HISTORIES",
     "BAD_PARAMETERS",
     "BODY_KINDS",
     "DRIVERS",
@@ -195,6 +200,7 @@ __all__ = [
     "UNDER_WAY",
     "UNSTABLE",
     "VARYING",
+    "Accelerogram",
     "BoundedOptions",
     "Branch",
     "Crowd",

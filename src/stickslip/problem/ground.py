@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.loading import SILENT, LoadingHistory, Tone
+from stickslip.problem.loading_history import SILENT, LoadingHistory, Tone
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +31,14 @@ class Ground:
     def of(cls, velocity: LoadingHistory | None, acceleration: LoadingHistory | None) -> Ground | None:
         """Return the motion that a history of velocity (m/s) or of acceleration (m/s^2) describes; None if there is neither."""
         if acceleration is not None:
-            start, a, jerk = np.array(acceleration.segments).T
+            start, a, jerk = acceleration.parts
             size, frequency, phase = acceleration.tone
             lasting = np.diff(start)
             gained = lasting * (a[:-1] + 0.5 * jerk[:-1] * lasting)
             v = np.append(0.0, np.cumsum(gained)) + size / frequency * math.cos(phase)  # the tone's integral begins at 0
             tone = Tone(size / frequency, frequency, phase - 0.5 * math.pi)
         elif velocity is not None:
-            start, v, a = np.array(velocity.segments).T
+            start, v, a = velocity.parts
             jerk, tone = np.zeros(len(start)), velocity.tone
         else:
             return None

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
-from stickslip.problem.loading import SILENT, Tone
+from stickslip.problem.loading_history import SILENT, Tone
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,5 +52,5 @@ def check_normal_load(history: LoadingHistory, body: BodyOnCharacteristics) -> N
     if not history.lowest > 0.0:
         may = f"must stay above 0 {body.load_unit}, but may fall to {history.lowest:g}"
         raise InputError(f"Problem: normal_load {may}: the contact would open")
-    if history.tone.amplitude != 0.0 and any(one.slope for one in history.segments):
+    if history.tone.amplitude != 0.0 and history.parts[2].any():
         raise InputError("Problem: normal_load: a sinusoid beside slopes is not followed: its straight parts must be constant")

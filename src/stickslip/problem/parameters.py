@@ -214,7 +214,7 @@ def _entries_in(owner: Any, place: str, units: Mapping[str, str] | None = None) 
         declared, value = in_units(given, units or {}), getattr(owner, name)
         if isinstance(declared, Quantity | Choice):
             yield ProblemEntry(f"{place}.{name}", declared, value)
-        elif isinstance(declared, NumberSeries) and value:
+        elif isinstance(declared, NumberSeries) and value and declared.lists(value):
             for i, one in enumerate(value):
                 yield ProblemEntry(f"{place}.{name}[{i}]", declared.item, one)
         elif isinstance(declared, NamedNumbers):

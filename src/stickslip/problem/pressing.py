@@ -8,7 +8,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.drivers.segments import scaled
-from stickslip.problem.loading import SILENT, Tone
+from stickslip.problem.loading_history import SILENT, Tone
 from stickslip.problem.problem import Problem
 
 
@@ -26,6 +26,5 @@ def pressing_of(problem: Problem) -> Pressing:
     history = problem.normal_load
     if history is None:
         return Pressing(np.zeros(1), np.zeros(1), np.zeros(1), SILENT)
-    segments, tone = scaled(history, 1.0 / problem.normal)
-    start, value, slope = np.array(segments).T
+    (start, value, slope), tone = scaled(history, 1.0 / problem.normal)
     return Pressing(start, value - 1.0, slope, tone)

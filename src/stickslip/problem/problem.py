@@ -275,7 +275,7 @@ class Problem(ShownAsTable, ProblemFields):
         if self.normal_load is None:
             return self.states
         tone = self.normal_load.tone
-        grows = self.normal_load.segments[0].slope + tone.amplitude * tone.frequency * math.cos(tone.phase)
+        grows = float(self.normal_load.parts[2, 0]) + tone.amplitude * tone.frequency * math.cos(tone.phase)
         return (*self.states, 0.0, grows / self.normal)
 
     @property

@@ -4,6 +4,8 @@ from stickslip.extensions.inference.inference import Inference, ranking
 from stickslip.extensions.inference.record.record import Record
 from stickslip.extensions.schemes.benchmarks import judge_series
 from stickslip.extensions.schemes.schemes import Schemes, schemes
+from stickslip.extensions.strong_motion.displacements import SlidingDisplacements
+from stickslip.extensions.strong_motion.sliding import sliding
 from stickslip.extensions.studies.analogy import Analogy, analogy
 from stickslip.extensions.studies.compare import Comparison, compare
 from stickslip.extensions.studies.ensemble import Ensemble, ensemble
@@ -21,6 +23,7 @@ __all__ = [
     "Inference",
     "Record",
     "Schemes",
+    "SlidingDisplacements",
     "analogy",
     "catalogue_statistics",
     "compare",
@@ -33,5 +36,6 @@ __all__ = [
     "ranking",
     "schemes",
     "severity",
+    "sliding",
     "steady",
 ]

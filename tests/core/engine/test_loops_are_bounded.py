@@ -17,6 +17,7 @@ from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWrite
 from stickslip.engine.series import polynomial
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings
 from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.code_key import PACKAGE
 from stickslip.foundation.kernels.code import compiled_sources
 from stickslip.friction.piecewise import PiecewiseLaw
 from tests.core.engine.compiled import compiled
@@ -51,7 +52,7 @@ Functions = Iterator[tuple[str, ast.FunctionDef]]
 
 def compiled_functions() -> Functions:
     """Yield the name of the file and the syntax tree of every compiled function."""
-    for path in compiled_sources():
+    for path in [*compiled_sources(), *PACKAGE.glob("extensions/*/compiled/*.py")]:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef) and any(name_of(one) in COMPILERS for one in node.decorator_list):
                 yield path.name, node

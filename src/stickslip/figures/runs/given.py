@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import MAY_VARY, LoadingHistory
+from stickslip.problem import MAY_VARY, LoadingHistory, Segment
 
 if TYPE_CHECKING:
     from stickslip.problem import Problem
@@ -43,10 +43,12 @@ def _straight(history: LoadingHistory, start: float, end: float, turns: float) -
 
     The points are dense enough to add a tone that makes the given number of `turns` between the two times.
     """
-    segments = history.segments
-    edges = [start, *(one.start for one in segments[1:] if start < one.start < end), end]
-    first = sum(one.start <= start for one in segments[1:])
-    parts = list(zip(segments[first:], pairwise(edges), strict=False))
-    dense = [np.linspace(low, high, 2 + int(POINTS_OF_TONE * turns * (high - low) / (end - start))) for _, (low, high) in parts]
-    values = [one.at(time) for (one, _), time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
+    begins = history.parts[0, 1:]
+    edges = [start, *begins[(start < begins) & (begins < end)].tolist(), end]
+    first = int(np.searchsorted(begins, start, side="right"))
+    parts = [Segment(*one) for one in history.parts[:, first : first + len(edges) - 1].T.tolist()]
+    dense = [
+        np.linspace(low, high, 2 + int(POINTS_OF_TONE * turns * (high - low) / (end - start))) for low, high in pairwise(edges)
+    ]
+    values = [one.at(time) for one, time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
     return np.concatenate(dense), np.concatenate(values)

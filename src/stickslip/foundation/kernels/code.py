@@ -43,29 +43,13 @@ COMPILED_FOLDERS = (
 )
 """Folders of the package whose files all enter the key, because they hold compiled functions or write them."""
 COMPILED_FILES = (
-    "engine/compiled_formula.py",
-    "engine/creep/pattern.py",
-    "engine/input/branch_table.py",
-    "engine/loop.py",
-    "engine/on_demand.py",
-    "contact/fold_rates.py",
-    "contact/slopes.py",
-    "contact/turn_search.py",
-    "foundation/constants.py",
-    "foundation/phasors.py",
-    "friction/formula/at_points.py",
-    "friction/formula/on_boxes.py",
-    "friction/formula/on_cells.py",
-    "friction/formula/tape.py",
-    "friction/formula/expression.py",
-    "solution/observables/layer_records.py",
-    "solution/observables/layer_replay.py",
-    "engine/history/history.py",
-    "engine/history/machine_motion.py",
-    "engine/history/phase_index.py",
-    "engine/history/slip_events.py",
-    "problem/run_codes.py",
-    "engine/history/turning_points.py",
+    *("engine/compiled_formula.py", "engine/creep/pattern.py", "engine/input/branch_table.py", "engine/loop.py"),
+    *("engine/on_demand.py", "engine/history/history.py", "engine/history/machine_motion.py", "engine/history/phase_index.py"),
+    *("engine/history/slip_events.py", "engine/history/turning_points.py", "problem/run_codes.py"),
+    *("contact/fold_rates.py", "contact/slopes.py", "contact/turn_search.py", "foundation/constants.py", "foundation/phasors.py"),
+    *("friction/formula/at_points.py", "friction/formula/on_boxes.py", "friction/formula/on_cells.py"),
+    *("friction/formula/tape.py", "friction/formula/expression.py"),
+    *("solution/observables/layer_records.py", "solution/observables/layer_replay.py"),
 )
 """Other files that hold compiled functions, or constants that compiled functions use; tests/test_rooms.py checks the list."""
 NOT_COMPILED = ("code.py", "lock.py")
@@ -192,9 +176,15 @@ _engines: list[Any] = []
 """Machine code of entries, which lives as long as the process."""
 
 
+def kept_of(entry: Any) -> Kept:
+    """Return the file of machine code of an entry; those of an extension have the key of its folder `compiled`, beside SOURCES."""
+    own = PACKAGE.parent.joinpath(*entry.__module__.split(".")).parent
+    return Kept(entry.name, key_of_files(sorted(own.glob("*.py"))) if own.name == "compiled" else "")
+
+
 def address_of_entry(entry: Any) -> int:
     """Return the address of the machine code of an entry of the engine, which is made now if neither package nor cache has it."""
-    kept = Kept(entry.name)
+    kept = kept_of(entry)
     code = kept.read()
     if code is None:
         code = made_now(entry)

@@ -10,9 +10,9 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.drivers.driver import far_at_first, inflow_of
 from stickslip.problem.drivers.lossy import LossyDriver
-from stickslip.problem.drivers.segments import arriving, in_parts, straight
+from stickslip.problem.drivers.segments import arriving, scaled, straight
 from stickslip.problem.inflow import Inflow
-from stickslip.problem.loading import SILENT, Segment
+from stickslip.problem.loading_history import SILENT
 from stickslip.problem.problem import Problem
 
 
@@ -23,7 +23,7 @@ class ChangingDriver(LossyDriver):
 
     def varying_inflow(self, problem: Problem) -> Inflow:
         """Return the inflow through the driver as it changes, with the share that it sends back in each segment."""
-        (pull, pull_tone), (far, far_tone) = (in_parts(value) for value in (problem.pull_rate, problem.far_stress))
+        (pull, pull_tone), (far, far_tone) = (scaled(value, 1.0) for value in (problem.pull_rate, problem.far_stress))
         body, steps, bears = problem.body, np.array(problem.driver_steps), problem.body.first_share
         start = np.unique(np.concatenate([pull[0], far[0], steps[:, 0]]))
         share = steps[np.searchsorted(steps[:, 0], start, side="right") - 1, 1]
@@ -33,8 +33,7 @@ class ChangingDriver(LossyDriver):
         value = of_pull * pulled[0] + of_far * (beyond + bears * problem.far_stress_rate * start)
         slope = of_pull * pulled[1] + of_far * bears * (stressed[1] + problem.far_stress_rate)
         tone, gain = (far_tone, of_far * bears) if pull_tone is SILENT else (pull_tone, of_pull)
-        segments = [Segment(*one) for one in zip(start, value, slope, strict=True)]
-        return replace(arriving(segments, tone, body.inflow_delay, problem), reflection=share, gain=gain)
+        return replace(arriving(np.array([start, value, slope]), tone, body.inflow_delay, problem), reflection=share, gain=gain)
 
     def first_phases(self, problem: Problem, first: float) -> Floats:
         """Return the phases (s) of the first round trip at which segments begin, perhaps with another share."""

@@ -17,7 +17,7 @@ from stickslip.problem.drivers.segments import arriving
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.inflow import Inflow
 from stickslip.problem.kinds import DRIVER_KINDS
-from stickslip.problem.loading import SILENT, Segment, Tone
+from stickslip.problem.loading_history import SILENT, Tone
 from stickslip.problem.problem import Problem
 
 
@@ -80,7 +80,7 @@ class Driver(ABC):
         if problem.loading_varies:
             return self.varying_inflow(problem)
         value, slope = steady_inflow(problem)
-        return arriving([Segment(0.0, value, slope)], SILENT, 0.0, problem)
+        return arriving(np.array([[0.0], [value], [slope]]), SILENT, 0.0, problem)
 
     def at_first(self, problem: Problem) -> tuple[float, float]:
         """Return the rate (m/s) of a driver that moves when the first wave of the run leaves it, and the force of its gain (Pa)."""

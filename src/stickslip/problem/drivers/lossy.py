@@ -12,7 +12,7 @@ from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.inflow import Inflow
-from stickslip.problem.loading import LoadingHistory, Segment
+from stickslip.problem.loading_history import LoadingHistory
 from stickslip.problem.problem import Problem
 
 
@@ -43,13 +43,13 @@ class LossyDriver(Driver):
         body, far = problem.body, problem.far_stress
         gain = self.gain(body)
         if isinstance(far, LoadingHistory):
-            segments, tone = scaled(far, gain)
+            (start, value, slope), tone = scaled(far, gain)
             steady = gain * (body.driver_impedance * problem.first_pull_rate - problem.strength)
         else:
-            segments, tone = scaled(problem.pull_rate, gain * body.driver_impedance)
+            (start, value, slope), tone = scaled(problem.pull_rate, gain * body.driver_impedance)
             steady = gain * (far_at_first(problem) if far is None else far - problem.strength)
         growth = gain * problem.far_stress_rate
-        sent = [Segment(s.start, s.value + steady + growth * s.start, s.slope + growth) for s in segments]
+        sent = np.array([start, value + steady + growth * start, slope + growth])
         return arriving(sent, tone, body.inflow_delay, problem)
 
     def loading_rate(self, problem: ProblemFields) -> float:

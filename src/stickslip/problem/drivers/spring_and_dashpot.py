@@ -16,7 +16,7 @@ from stickslip.problem.drivers.segments import arriving, scaled
 from stickslip.problem.drivers.spring import InflowOfSpring, Spring
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.inflow import Inflow
-from stickslip.problem.loading import SILENT, LoadingHistory, Segment, Tone
+from stickslip.problem.loading_history import SILENT, LoadingHistory, Tone
 from stickslip.problem.problem import Problem
 
 NO_JUMP_OF_PULL = 1e-14
@@ -29,13 +29,13 @@ class SpringAndDashpot(Spring):
     def varying_inflow(self, problem: Problem) -> Inflow:
         """Return the growth of the load (N/s), K V + c dV/dt; the jumps of V are `steps`."""
         stiffness, damping = problem.body.stiffness, as_on_spring(problem.body).driver_damping
-        pull, tone = scaled(problem.pull_rate, 1.0)
-        segments = [Segment(s.start, stiffness * s.value + damping * s.slope, stiffness * s.slope) for s in pull]
+        (start, value, slope), tone = scaled(problem.pull_rate, 1.0)
+        grows = np.array([start, stiffness * value + damping * slope, stiffness * slope])
         if tone is not SILENT:
             amplitude, frequency, phase = tone
             by_rate = damping * frequency
             tone = Tone(amplitude * math.hypot(stiffness, by_rate), frequency, phase + math.atan2(by_rate, stiffness))
-        return arriving(segments, tone, 0.0, problem, InflowOfSpring)
+        return arriving(grows, tone, 0.0, problem, InflowOfSpring)
 
     def loading_rate(self, problem: ProblemFields) -> float:
         """Return K V + c dV/dt at the start (N/s)."""
@@ -43,14 +43,14 @@ class SpringAndDashpot(Spring):
         if not isinstance(pull, LoadingHistory):
             return found
         amplitude, frequency, phase = pull.tone
-        grows = pull.segments[0].slope + amplitude * frequency * math.cos(phase)
+        grows = float(pull.parts[2, 0]) + amplitude * frequency * math.cos(phase)
         return found + as_on_spring(problem.body).driver_damping * grows
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
         """Return the times (s) at which V jumps, and c times its jumps (N)."""
         if not isinstance(problem.pull_rate, LoadingHistory):
             return []
-        start, value, slope = np.array(problem.pull_rate.segments).T
+        start, value, slope = problem.pull_rate.parts
         jump = value[1:] - (value[:-1] + slope[:-1] * np.diff(start))
         jump[np.abs(jump) <= NO_JUMP_OF_PULL * np.abs(value).max()] = 0.0
         force = as_on_spring(problem.body).driver_damping * jump

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import Given
+from stickslip.foundation.packed import packed, unpacked
 from stickslip.foundation.quantities import (
     Choice,
     Count,
@@ -82,10 +83,16 @@ def read_entry(value: Any, entry: Field, place: DocumentPlace, law: Callable[[di
     if isinstance(entry, Quantity | Count):
         return entry.check(file, str(place), value)
     if isinstance(entry, NumberSeries):
+        if isinstance(value, str):
+            try:
+                value = unpacked(value, entry.item.unit, entry.most)
+            except InputError as error:
+                raise InputError(f"{file}: {place} must be a list of numbers in {entry.item.label}, got {error}") from None
         if not isinstance(value, list):
             unit = entry.item.label
             raise InputError(f"{file}: {place} must be a list of numbers in {unit} or of texts with units, got {shown(value)}")
-        return tuple(entry.item.check(file, f"{place}[{i}]", one) for i, one in enumerate(value))
+        found = entry.at_once(value)
+        return found if found is not None else tuple(entry.item.check(file, f"{place}[{i}]", one) for i, one in enumerate(value))
     if isinstance(entry, NamedNumbers):
         return _named(value, place)
     if isinstance(entry, LawField):
@@ -139,7 +146,8 @@ def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
     if isinstance(value, tuple):
-        return [as_written(one) for one in value]
+        is_packed = isinstance(entry, NumberSeries) and not entry.lists(value)
+        return packed(value) if is_packed else [as_written(one) for one in value]
     return to_table(value) if isinstance(entry, LawField) else as_written(value)
 
 

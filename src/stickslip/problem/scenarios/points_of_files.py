@@ -13,11 +13,11 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import column_given
 from stickslip.foundation.headings import KNOWN_COLUMNS, TURNED, find, missing
 from stickslip.foundation.named_columns import NamedColumns
-from stickslip.foundation.quantities import LARGEST_SERIES
+from stickslip.foundation.quantities import MOST_SAMPLES
 from stickslip.foundation.record_files import text_in
 from stickslip.foundation.text_columns import read_text
 
-LARGEST_DATA_FILE = 5_000_000
+LARGEST_DATA_FILE = 50_000_000
 """Size (bytes) of the largest data file that is read: scenarios are untrusted."""
 ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
 """Environment variable whose value 1 allows data files outside the folder of the scenario."""
@@ -51,7 +51,9 @@ def read_points(
         columns = {column: columns[column] for column in (along, value)}
     try:
         given = NamedColumns(named or {}, shows=False)
-        text = _text(name, folder)
+        text = text_in(content_of(name, folder))
+    except UnicodeDecodeError:
+        raise InputError(f"{where} {shown(name)}: not a text file in UTF-8") from None
     except InputError as error:
         raise InputError(f"{where} {shown(name)}: {error}") from None
     return _points_in(text, columns, f"{where}: {shown(name)}", given)
@@ -63,7 +65,7 @@ def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedCol
     `file` is the name of the text in messages.
     """
     *others, value = columns
-    table = read_text(text, tuple(columns), file, LARGEST_SERIES, named=named)
+    table = read_text(text, tuple(columns), file, MOST_SAMPLES, named=named)
     found = [column for column in others if column in table.columns]
     if value not in table.columns:
         raise InputError(f"{table.at_header}: no column '{value}' in the header; {missing(table.header, value)}")
@@ -81,7 +83,7 @@ def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedCol
     return points
 
 
-def _text(name: str, folder: Path | None) -> str:
+def content_of(name: str, folder: Path | None) -> bytes:
     """Return the content of a data file. Raises InputError with a message that is meant to follow its name."""
     if folder is None:
         raise InputError("only a scenario in a file can name another file; write the points as lists")
@@ -94,8 +96,6 @@ def _text(name: str, folder: Path | None) -> str:
             raise InputError(f"the file must be in the folder of the scenario; {hint}")
         if not path.is_file():
             raise InputError("no such file beside the scenario")
-        return text_in(read_bounded(path, LARGEST_DATA_FILE))
+        return read_bounded(path, LARGEST_DATA_FILE)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError("not a text file in UTF-8") from None

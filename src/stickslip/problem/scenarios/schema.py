@@ -21,11 +21,12 @@ from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_un
 from stickslip.foundation.synonyms import same
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
+from stickslip.problem.accelerogram import Accelerogram
 from stickslip.problem.bodies import BODIES
 from stickslip.problem.bodies.on_bit import WEIGHT_ON_BIT
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import MAY_VARY, STEADY
-from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
+from stickslip.problem.loading import ALL_HISTORIES, HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_options import RunOptions
 from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry
@@ -42,6 +43,8 @@ TABLES = ("body", "friction", "loading", "initial", "run")
 SOFT_TORQUE, WITH_SOFT_TORQUE = "soft_torque", "with_soft_torque"
 """The key of a string that stands for the three numbers of its drive, and the method of a body that has it."""
 DRIVE = ("driver_impedance", "driver_inertia", "driver_integral_gain")
+RECORDED = "loading.ground_acceleration"
+"""The table that is a record if it names a file and no kind."""
 ONE_WAY = "true: the contact never slips backwards"
 """Meaning of the key one_way."""
 NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
@@ -251,6 +254,8 @@ def read_table(
     """Check one table and return it, with the points from a data file if the table names one. Raises InputError."""
     columns = columns_of(table, kind, heading)
     if columns and "file" in raw:
+        if kind is Accelerogram:
+            return _read_keys(keys_of(table, kind, states), _recorded(table, raw, source), source, table)
         from stickslip.problem.scenarios.points_of_files import read_points  # few scenarios name a file
 
         name = raw["file"]
@@ -267,6 +272,16 @@ def read_table(
     return _read_keys(keys_of(table, kind, states), raw, source, table)
 
 
+def _recorded(table: str, raw: dict[str, Any], source: Source) -> dict[str, Any]:
+    """Return the content of a table that names the file of a record. Raises InputError."""
+    from stickslip.problem.scenarios.record_of_file import fields_beside_file  # few scenarios name a file
+
+    where = f"{source.file}: [{table}] file"
+    if not isinstance(raw["file"], str):
+        raise InputError(f"{where} must be text in quotes, got {shown(raw['file'])}")
+    return fields_beside_file(raw, source.folder, where)
+
+
 def columns_of(table: str, kind: type, heading: str = "") -> dict[str, str]:
     """Return the columns of a data file that may replace lists in a table, each with the key of its list.
 
@@ -279,7 +294,9 @@ def columns_of(table: str, kind: type, heading: str = "") -> dict[str, str]:
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     """Return the class that `kind` names in a table. Raises InputError if it is missing or unknown."""
-    kind, registered = content.get("kind"), REGISTERED[table.partition(".")[0]]
+    kind, registered = content.get("kind"), ALL_HISTORIES if table == RECORDED else REGISTERED[table.partition(".")[0]]
+    if "kind" not in content and "file" in content and table == RECORDED:
+        return Accelerogram
     if "kind" not in content:
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {some_of(registered, listed=LISTED)}")
     if not isinstance(kind, str) or kind not in registered:

@@ -19,7 +19,7 @@ from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.drivers.driver import loading_rate
 from stickslip.problem.fields import HISTORIES_ONLY
-from stickslip.problem.loading import HISTORIES
+from stickslip.problem.loading import ALL_HISTORIES, HISTORIES
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.entries import Source, describe, key_of, to_table
@@ -215,7 +215,7 @@ def _table(table: str, kind: type, example: dict[str, Any], load_unit: str, stat
             inner += [
                 "",
                 f"# {describe(entry)}, as it varies in time",
-                *_table(f"{table}.{name}", HISTORIES[value["kind"]], value, load_unit),
+                *_table(f"{table}.{name}", ALL_HISTORIES[value["kind"]], value, load_unit),
             ]
         elif isinstance(entry, LawField) and value:
             inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value, load_unit)]

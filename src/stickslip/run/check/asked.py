@@ -32,6 +32,10 @@ class CheckOfKind(ABC):
     def numbers(self, problem: Problem) -> list[Fact]:
         """Return what follows from the numbers of the body, its driver and its loading."""
 
+    def mass_on_ground(self, body: BodyOnCharacteristics) -> float | None:
+        """Return the mass (kg, or kg/m^2) that ground sets in motion where nothing but the contact holds it; None if more does."""
+        return None
+
     def pulses(self, problem: Problem) -> list[Fact]:
         """Return the period of pulses under friction that oscillates along slip, where the load of the start makes them."""
         return []

@@ -42,6 +42,7 @@ from stickslip.problem import (
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.scenarios import Scenario, doubts, key_of, quantities_in
 from stickslip.run.check.asked import CHECK_KINDS, Fact
+from stickslip.run.check.ground import facts_of_ground, warnings_of_ground
 from stickslip.run.check.stability import stability_of, start_of, wait_of
 from stickslip.run.check.starts import chosen_starts
 
@@ -195,7 +196,7 @@ def _derived(problem: Problem) -> list[Fact]:
         start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
     if problem.has_initial_rate:
         start.append(Fact("v0", problem.rate, problem.unit_of("slip_rate"), "slip rate at the start"))
-    return [*of_body.numbers(problem), *start, *_steady(problem), *of_body.pulses(problem)]
+    return [*of_body.numbers(problem), *start, *_steady(problem), *of_body.pulses(problem), *facts_of_ground(problem)]
 
 
 def _steady(problem: Problem) -> list[Fact]:
@@ -255,6 +256,7 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     found += CHECK_KINDS[problem.body.structure].warnings(scenario, contact)
+    found += warnings_of_ground(problem)
     rule = problem.rule
     if why := problem.why_not_run or folds_not_followed(problem):
         found.append(f"it cannot be run: {why}")

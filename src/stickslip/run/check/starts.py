@@ -13,6 +13,7 @@ from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import MAY_VARY, LoadingHistory, Problem
 from stickslip.run.check.asked import CHECK_KINDS
+from stickslip.run.check.ground import chosen_of_ground
 
 
 def chosen_starts(problem: Problem) -> list[str]:
@@ -44,5 +45,4 @@ def _before(problem: Problem) -> Iterator[str]:
     if varying:
         has = "have their values" if len(varying) > 1 else "has its value"
         yield f"before the start the {' and the '.join(varying)} {has} of 0 s"
-    if problem.ground is not None and not problem.body.has_belt:
-        yield "before the start the ground is at rest"
+    yield from chosen_of_ground(problem)

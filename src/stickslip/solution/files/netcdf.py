@@ -34,7 +34,7 @@ from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
 from stickslip.foundation.netcdf_file import FullDiskError, Tables, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem import ENOUGH_EVENTS, HISTORIES, MAY_VARY, STATUSES, LoadingHistory, Problem, Status, default_event_rate
+from stickslip.problem import ALL_HISTORIES, ENOUGH_EVENTS, MAY_VARY, STATUSES, LoadingHistory, Problem, Status, default_event_rate
 from stickslip.problem import names as rule_names
 from stickslip.problem.scenarios import read_scenario
 from stickslip.solution.evaluation import Curve, Readings
@@ -213,7 +213,7 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
     Raises InputError for a loading history that is not registered, because the file could not be read back.
     """
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
-        if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
+        if isinstance(loading, LoadingHistory) and ALL_HISTORIES.get(loading.kind) is not type(loading):
             name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
     variables = _history(solution)

@@ -22,7 +22,7 @@ def value_at(given: float | LoadingHistory, time: Floats, inside: Floats) -> Flo
     """Return what may vary in time at times (s), by the straight parts that hold at the times `inside`; constant before 0 s."""
     if not isinstance(given, LoadingHistory):
         return np.full(np.shape(time), given)
-    start, value, slope = np.array(given.segments).T
+    start, value, slope = given.parts
     n = np.maximum(np.searchsorted(start, inside, side="right") - 1, 0)
     amplitude, frequency, phase = given.tone
     since = np.maximum(time, 0.0)
@@ -33,7 +33,7 @@ def pulled(problem: Problem, time: Floats) -> Floats:
     """Return how far (m) the driver has been pulled since the start at times (s)."""
     if not isinstance(problem.pull_rate, LoadingHistory):
         return np.asarray(problem.pull_rate * time)
-    start, value, slope = np.array(problem.pull_rate.segments).T
+    start, value, slope = problem.pull_rate.parts
     amplitude, frequency, phase = problem.pull_rate.tone
     lasting = np.diff(start)
     whole = np.append(0.0, np.cumsum(lasting * (value[:-1] + 0.5 * slope[:-1] * lasting)))
@@ -47,7 +47,7 @@ def squared_pull(problem: Problem, time: Floats) -> Floats:
     """Return the integral (m^2/s) of the square of the pull rate from the start to times (s >= 0)."""
     if not isinstance(problem.pull_rate, LoadingHistory):
         return np.asarray(problem.pull_rate * problem.pull_rate * time)
-    start, value, slope = np.array(problem.pull_rate.segments).T
+    start, value, slope = problem.pull_rate.parts
     amplitude, frequency, phase = problem.pull_rate.tone
 
     def within(n: Any, since: Floats) -> Floats:
@@ -103,8 +103,8 @@ def of_ground(problem: Problem, time: Floats, inside: Floats) -> tuple[Floats, F
 def breaks_at_contact(problem: Problem) -> Floats:
     """Return the times (s) when breaks of loading and ground, and changes of the driver, are felt at the contact."""
     given = [one for one in (problem.pull_rate, problem.far_stress) if isinstance(one, LoadingHistory)]
-    starts = [one.start for history in given for one in history.segments] + [start for start, _ in problem.driver_steps]
-    found = [np.array(starts) + way for way in observables_of(problem).ways(problem)]
+    starts = np.concatenate([*(one.parts[0] for one in given), np.array([start for start, _ in problem.driver_steps])])
+    found = [starts + way for way in observables_of(problem).ways(problem)]
     if problem.ground is not None:
         found += [problem.ground.start + late for late in (0.0, problem.body.round_trip_time)]
     times = np.unique(np.concatenate(found))

@@ -47,7 +47,7 @@ class NormalLoads(NamedTuple):
         load, store, normal = history.problem.normal_load, history.store, history.problem.normal
         assert load is not None
         begins = store.trip[n] * history.round_trip_time + store.phase_from[n]
-        start, value, slope = np.array(load.segments).T
+        start, value, slope = load.parts
         of = segment_of(load, history, n)
         amplitude, frequency, phase = load.tone
         apart, slopes = _others(load, history, n, of)
@@ -114,7 +114,7 @@ def _others(load: LoadingHistory, history: History, n: NDArray[np.intp], of: NDA
 
     The engine cuts pieces where segments begin. A piece that nevertheless holds the start of a segment is in the wrong place.
     """
-    store, (start, value, slope) = history.store, np.array(load.segments).T
+    store, (start, value, slope) = history.store, load.parts
     begins = store.trip[n] * history.round_trip_time + store.phase_from[n]
     ends = begins + store.speed[n] + store.bend[n]
     near = near_break(history, ends)
@@ -135,7 +135,7 @@ def segment_of(load: LoadingHistory, history: History, n: NDArray[np.intp]) -> N
     segment whose growth of the normal load it has.
     """
     store = history.store
-    start, value, slope = np.array(load.segments).T
+    start, value, slope = load.parts
     middle = store.trip[n] * history.round_trip_time + store.phase_from[n] + 0.5 * store.speed[n] + 0.25 * store.bend[n]
     near = near_break(history, middle)
     early, late = (np.maximum(np.searchsorted(start, middle + by, side="right") - 1, 0) for by in (-near, near))

@@ -274,8 +274,8 @@ SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
             "Problem: ground_acceleration must be in rad/s^2, got a history of values in m/s^2",
         ),
         (
-            lambda: PiecewiseLinear(np.arange(1e6), np.zeros(10**6)),  # type: ignore[arg-type]
-            "PiecewiseLinear: times must have 2 to 10000 numbers, got 1000000",
+            lambda: PiecewiseLinear(np.arange(1e6 + 1.0), np.zeros(10**6 + 1)),  # type: ignore[arg-type]
+            "PiecewiseLinear: times must have 2 to 1000000 numbers, got 1000001",
         ),
         (
             lambda: replace(SHAKEN, friction=ss.friction.RateAndState(0.6, 0.01, 0.008, 1e-4), initial_state=1.0, one_way=True),

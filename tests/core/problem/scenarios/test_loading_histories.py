@@ -158,6 +158,7 @@ def test_mistakes_in_a_data_file_are_refused_in_one_line(
     csv: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("stickslip.problem.scenarios.points_of_files.MOST_SAMPLES", 10_000)  # a million rows take seconds
     with pytest.raises(InputError) as caught:
         read_csv(Path(), csv)
     assert str(caught.value) == f"my.toml: [loading.pull_rate] file{message}"

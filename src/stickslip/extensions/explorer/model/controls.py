@@ -18,7 +18,7 @@ from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.problem import HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, features, names
+from stickslip.problem import ALL_HISTORIES, HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, features, names
 from stickslip.problem.bodies import BODIES
 from stickslip.problem.scenarios import (
     ONE_WAY,
@@ -206,7 +206,7 @@ class _Tables:
             history = self.setting.value(f"loading.{name}")
             if isinstance(history, Mapping):
                 yield self.of(
-                    f"loading.{name}", HISTORIES[history["kind"]], (), f"{name.capitalize().replace('_', ' ')} that varies"
+                    f"loading.{name}", ALL_HISTORIES[history["kind"]], (), f"{name.capitalize().replace('_', ' ')} that varies"
                 )
         start = "steady" if self.starts_steadily else "load" if self.setting.value("initial.excess") is None else "excess"
         in_motion = self.problem.has_initial_rate and self.problem.first_pull_rate != 0.0

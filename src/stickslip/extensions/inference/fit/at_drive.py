@@ -63,7 +63,7 @@ def about_drive(problem: Problem, record: Record, sensor: str, start: str | None
 
 def doubts_of_rate(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
     """Yield sentences on a load point that hardly moves like a machine."""
-    segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
+    segments = rate.parts[1] if isinstance(rate, LoadingHistory) else np.array([rate])
     ways = np.sign(np.diff(segments))
     ways = ways[ways != 0.0]
     if len(segments) > MANY_RATES and np.count_nonzero(ways[1:] != ways[:-1]) > MOST_TURNS:

@@ -33,7 +33,7 @@ def felt(problem: Problem, duration: float, step: float) -> Floats:
     if isinstance(problem.pull_rate, LoadingHistory):
         found.append(changes_of(problem.pull_rate, duration) + problem.body.time_to_driver)
     if isinstance(problem.normal_load, LoadingHistory):
-        times = np.array([one.start for one in problem.normal_load.segments])
+        times = problem.normal_load.parts[0]
         before = problem.normal_load.at(np.maximum(np.nextafter(times, -np.inf), 0.0))
         found.append(times[np.abs(problem.normal_load.at(times + step) - before) > PRESSED * np.abs(before)])
     return np.sort(np.concatenate(found))

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import cast
 
 from stickslip.contact import growth_on_layers
-from stickslip.foundation.constants import RIGID
+from stickslip.foundation.constants import DEAD_LOAD, RIGID
 from stickslip.foundation.names import TURNS
 from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyOnCharacteristics, OfLayers
@@ -56,6 +56,12 @@ class _CheckOfLayered(CheckOfWaves):
     def first_echo(self, body: BodyOnCharacteristics) -> float:
         """Return when the first wave comes back: from a driver, or where layers differ."""
         return min(_first_echo(one) for one in of_layers(body).stacks)
+
+    def mass_on_ground(self, body: BodyOnCharacteristics) -> float | None:
+        """Return the mass of layers with free tops."""
+        stacks = of_layers(body).stacks
+        mass = sum(one.time * sum(one.cell_impedances) for one in stacks)
+        return mass + body.inertia if all(one.reflection == DEAD_LOAD for one in stacks) else None
 
     def growth(self, body: BodyOnCharacteristics, by_slip: float) -> float:
         return growth_on_layers(of_layers(body), -body.normal_load * by_slip)

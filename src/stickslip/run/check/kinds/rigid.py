@@ -28,6 +28,10 @@ class CheckOfRigid(CheckOfKind):
             *CHECK_DRIVERS[problem.driver_kind].facts(problem, ""),
         ]
 
+    def mass_on_ground(self, body: BodyOnCharacteristics) -> float:
+        """Return the mass: its spring hangs on the ground, and is not stretched before it slips."""
+        return body.inertia
+
     def stability(self, problem: Problem, by_slip: float, by_rate: float) -> str:
         """Return whether spring and friction hold a small swing, and whether damping and friction end it."""
         body = problem.body

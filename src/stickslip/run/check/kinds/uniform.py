@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from stickslip.contact import Uniqueness
+from stickslip.foundation.constants import DEAD_LOAD
 from stickslip.problem import Problem
 from stickslip.problem.bodies import BodyOnCharacteristics, as_waves
 from stickslip.run.check.asked import CHECK_DRIVERS, Fact
@@ -30,6 +31,10 @@ class _CheckOfUniform(CheckOfWaves):
             *driver.facts(problem, "h/c"),
             Fact(f"{symbol} V/h", body.stiffness * problem.first_pull_rate, load_rate, "rate of loading at first"),
         ]
+
+    def mass_on_ground(self, body: BodyOnCharacteristics) -> float | None:
+        """Return the mass of a body with a free top, and of its contact."""
+        return 0.5 * body.impedance * as_waves(body).two_way_time + body.inertia if body.reflection == DEAD_LOAD else None
 
     def modulus(self, body: BodyOnCharacteristics) -> float:
         return as_waves(body).modulus
