@@ -187,7 +187,8 @@ class ProblemFields(CheckedArguments):
     def _check_driver(self, history: LoadingHistory) -> None:
         body, name = self.body, "Problem: driver_reflection"
         if not body.driver_may_change:
-            why = "which sends no waves to its driver: give a slab or a string"
+            why = "whose top stays free" if body.time_to_driver else "which sends no waves to its driver"
+            why += ": give a slab or a string"
             raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
         self._refuse_machine(f"{name} is not followed for", "leave driver_reflection out")
         if not history.is_stepped:
@@ -281,10 +282,15 @@ class ProblemFields(CheckedArguments):
         """The names of the histories that act on the body: a far stress behind a driver that stays rigid does not."""
         return tuple(name for name in self._varying if name != "far_stress" or not self.is_driven_rigidly)
 
+    @property
+    def _driver_moves(self) -> bool:
+        """True if a machine, or a damper, has a motion of its own."""
+        return self.body.has_machine or self.body.is_damped
+
     @cached_property
     def varies(self) -> bool:
-        """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or is a machine."""
-        return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self.body.has_machine
+        """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or moves by itself."""
+        return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self._driver_moves
 
     @cached_property
     def driver_steps(self) -> tuple[tuple[float, float], ...]:
