@@ -14,7 +14,16 @@ from .extensions.sweeps.sweep import sweep
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
 from .problem import Problem, selection
-from .problem.bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
+from .problem.bodies import (
+    ElasticSlab,
+    LayeredSlab,
+    RotatingBlock,
+    SectionedString,
+    SoilColumn,
+    SpringBlock,
+    TorsionalString,
+    TwoSlabs,
+)
 from .problem.scenarios.scenario import load_scenario, scenarios
 from .run.catalogue import catalogue
 from .run.open_solution import open_solution
@@ -33,6 +42,7 @@ __all__ = [
     "Problem",
     "RotatingBlock",
     "SectionedString",
+    "SoilColumn",
     "Solution",
     "SpringBlock",
     "TorsionalString",
