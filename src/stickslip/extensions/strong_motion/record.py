@@ -7,11 +7,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 from stickslip.foundation.arguments import as_path, for_users, shown
-from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Accelerogram
-from stickslip.problem.scenarios.points_of_files import LARGEST_DATA_FILE
-from stickslip.problem.scenarios.record_of_file import VALUE, fields_in
+from stickslip.problem.scenarios.record_of_file import fields_of_file
 
 WHO = "record"
 
@@ -69,30 +67,17 @@ def record(
     >>> ss.loading.record("made.csv").about
     '4 samples every 10 ms, 0.2 g at most'
     """
-    if component is not None and columns is not None and VALUE in columns:
-        raise InputError(f"{WHO}: component and columns both say which column is {VALUE}: give one of them")
+    if component is not None and columns is not None and "ground_acceleration" in columns:
+        raise InputError(f"{WHO}: component and columns both say which column is {'ground_acceleration'}: give one of them")
     if isinstance(source, str | Path):
         if unit is not None:
-            cure = f'that of a column goes with columns, as {{"{VALUE}": "3 (gal)"}}'
+            cure = 'that of a column goes with columns, as {"ground_acceleration": "3 (gal)"}'
             raise InputError(f"{WHO}: unit is for objects of ObsPy; {cure}")
-        named = dict(columns or {}) | ({} if component is None else {VALUE: str(component)})
-        fields = _of_file(as_path(f"{WHO}: source", source), named, baseline)
+        named = dict(columns or {}) | ({} if component is None else {"ground_acceleration": str(component)})
+        fields = fields_of_file(as_path(f"{WHO}: source", source), named, baseline)
     else:
         fields = _of_trace(source, component, unit, baseline)
     return Accelerogram(**fields, scale=scale, polarity=polarity)
-
-
-def _of_file(path: Path, named: Mapping[str, Any], baseline: str | None) -> dict[str, Any]:
-    name = str(path) if str(path).isprintable() else ascii(str(path))
-    try:
-        content = read_bounded(path, LARGEST_DATA_FILE)
-    except FileNotFoundError:
-        raise InputError(f"{name}: no such file") from None
-    except OSError as error:
-        raise InputError(f"{name}: cannot be read: {error.strerror}") from None
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-    return fields_in(content, path.name, name, named, baseline)
 
 
 def _of_trace(source: Any, component: str | int | None, unit: str | None, baseline: str | None) -> dict[str, Any]:
@@ -104,7 +89,5 @@ def _of_trace(source: Any, component: str | int | None, unit: str | None, baseli
         raise InputError(
             f"{WHO}: source must be {wanted}, got {shown(source)}; arrays make one as ss.loading.Accelerogram(values, interval)"
         )
-    values, interval, name, notes = samples_of(source, unit, None if component is None else str(component))
-    return {"values": values, "interval": interval, "origin": "; ".join((name, *notes))} | (
-        {} if baseline is None else {"offset": float(values.mean())}
-    )
+    values, interval, name = samples_of(source, unit, None if component is None else str(component))
+    return {"values": values, "interval": interval, "origin": name} | ({} if baseline is None else {"offset": float(values.mean())})

@@ -83,7 +83,7 @@ def read_entry(value: Any, entry: Field, place: DocumentPlace, law: Callable[[di
         return entry.check(file, str(place), value)
     if isinstance(entry, NumberSeries):
         if isinstance(value, str):
-            from stickslip.foundation.packed import unpacked  # few scenarios have so many numbers
+            from stickslip.problem.scenarios.packed import unpacked  # few scenarios have so many numbers
 
             try:
                 value = unpacked(value, entry.item.unit, entry.most)
@@ -149,7 +149,7 @@ def _written(value: Any, entry: Field) -> Any:
     if isinstance(value, tuple):
         if not isinstance(entry, NumberSeries) or entry.lists(value):
             return [as_written(one) for one in value]
-        from stickslip.foundation.packed import packed
+        from stickslip.problem.scenarios.packed import packed
 
         return packed(value)
     return to_table(value) if isinstance(entry, LawField) else as_written(value)

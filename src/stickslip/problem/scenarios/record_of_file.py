@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.columns import Table
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import column_given
@@ -20,7 +21,7 @@ from stickslip.foundation.show import brief
 from stickslip.foundation.text_columns import read_text
 from stickslip.problem.accelerogram import LONGEST_ORIGIN, Accelerogram
 from stickslip.problem.even_times import interval_of
-from stickslip.problem.scenarios.points_of_files import content_of
+from stickslip.problem.scenarios.points_of_files import LARGEST_DATA_FILE, content_of
 
 VALUE = "ground_acceleration"
 BASELINES = ("mean",)
@@ -43,6 +44,20 @@ def fields_beside_file(raw: Mapping[str, Any], folder: Path | None, where: str) 
     if both := next((key for key in found if key in raw), None):
         raise InputError(f"{where} and {both} exclude each other")
     return {"kind": Accelerogram.kind} | {key: value for key, value in raw.items() if key not in BESIDE_FILE} | found
+
+
+def fields_of_file(path: Path, columns: Mapping[str, Any], baseline: str | None) -> dict[str, Any]:
+    """Return the fields of a record in a file, wherever it is. Raises InputError."""
+    name = str(path) if str(path).isprintable() else ascii(str(path))
+    try:
+        content = read_bounded(path, LARGEST_DATA_FILE)
+    except FileNotFoundError:
+        raise InputError(f"{name}: no such file") from None
+    except OSError as error:
+        raise InputError(f"{name}: cannot be read: {error.strerror}") from None
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    return fields_in(content, path.name, name, columns, baseline)
 
 
 def fields_in(

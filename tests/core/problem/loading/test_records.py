@@ -13,11 +13,11 @@ import stickslip as ss
 from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import Given
-from stickslip.foundation.packed import packed, unpacked
 from stickslip.foundation.quantities import MOST_SAMPLES
 from stickslip.problem.accelerogram import Accelerogram
 from stickslip.problem.even_times import interval_of
 from stickslip.problem.loading import PiecewiseLinear, Steps
+from stickslip.problem.scenarios.packed import packed, unpacked
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
 from stickslip.run.check.asked import Fact
 from stickslip.run.check.examine import examine
