@@ -76,7 +76,7 @@ def _by_width(texts: Sequence[str], columns: Columns) -> Floats:
     if "_" in text:
         raise ValueError("no number")
     cells = np.frombuffer(text.encode("ascii"), f"S{width}")
-    return cells[cells != b" " * width].astype(float)
+    return np.asarray(cells[cells != b" " * width], dtype=float)
 
 
 def samples(
