@@ -122,12 +122,12 @@ def _read(stream: TextIO, asked: Asked, *, raw: bool, skip: bool) -> Table:
 
 def _lines(stream: TextIO, place: str) -> Iterator[str]:
     """Yield the lines of a text without their ends. Raises InputError for one that is too long, before it is read to its end."""
-    number = 0
-    while line := stream.readline(LONGEST_LINE + 2):
+    number, longest, read = 0, LONGEST_LINE + 1, stream.readline
+    while line := read(longest + 1):
         number += 1
-        if len(line) > LONGEST_LINE + 1:
+        if len(line) > longest:
             raise InputError(f"{place}, line {number}: longer than {LONGEST_LINE} characters: not a table of points")
-        yield line.rstrip("\n")
+        yield line[:-1] if line[-1] == "\n" else line
 
 
 class _Rows(NamedTuple):

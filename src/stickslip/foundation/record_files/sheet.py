@@ -53,6 +53,14 @@ class Lines:
     def _next(self) -> str:
         return self.begin[self.number] if self.number < len(self.begin) else next(self.more)
 
+    def rest(self) -> list[str]:
+        """Return all lines that are left, at once."""
+        found = [] if self.peeked is None else [self.peeked]
+        found += [*self.begin[self.number + len(found) :], *self.more]
+        self.peeked = None
+        self.number += len(found)
+        return found
+
     def peek(self) -> str:
         """Return the next line, which stays the next one; nothing at the end."""
         if self.peeked is None:

@@ -208,6 +208,7 @@ REFUSED = {
     ),
     "no interval": (files.at2(fourth="NPTS= {count:6d}, DT=   .0000 SEC,"), "the sampling interval must be above 0"),
     "two intervals": (files.plain(head="g\ndt = 0.01 s, sampling rate 50 Hz"), "it states two intervals, 0.01 s and 0.02 s"),
+    "two records in a file": (2 * files.at2(), "an AT2 file of PEER: text follows its samples: write each record to a file"),
     "K-NET that breaks off": (files.knet(seconds=30), "its header says 3000 samples, but 1003 follow"),
     "one sample": (files.at2(MOTION[:1]), "at least two samples are needed, got 1"),
 }  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -14,6 +14,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.record_files import Asked, Lines
 
 _FORMAT = re.compile(r"\(\s*(\d{1,3})\s*[a-z]\s*(\d{1,3})(?:\.\d+)?", re.IGNORECASE)
+
+
+_WORD = re.compile(r"[a-z]{3}", re.IGNORECASE)
 
 
 class Columns(NamedTuple):
@@ -31,7 +34,7 @@ class Columns(NamedTuple):
 
 def rest(lines: Lines) -> list[str]:
     """Return the lines that are left, without those at the end that are blank."""
-    found = list(lines)
+    found = lines.rest()
     while found and not found[-1].strip():
         found.pop()
     return found
@@ -54,7 +57,7 @@ def numbers(texts: Sequence[str], columns: Columns | None = None, count: int | N
     except ValueError:
         if columns is None:
             raise
-    return np.fromiter(map(_number, _cells(texts, columns)), float)
+    return _by_width(texts, columns)
 
 
 def _apart(texts: Sequence[str]) -> Floats:
@@ -66,17 +69,14 @@ def _apart(texts: Sequence[str]) -> Floats:
     return np.fromiter(map(float, text.split()), float)
 
 
-def _number(text: str) -> float:
+def _by_width(texts: Sequence[str], columns: Columns) -> Floats:
+    """Return the numbers in columns of one width; blank ones are passed over."""
+    width, last = columns.width, columns.width * columns.across
+    text = "".join([text[:last].ljust(last) for text in texts]).upper().replace("D", "E")
     if "_" in text:
         raise ValueError("no number")
-    return float(text.replace("D", "E"))
-
-
-def _cells(texts: Sequence[str], columns: Columns) -> Iterator[str]:
-    """Yield the cells of lines that are not blank."""
-    width, last = columns.width, columns.width * columns.across
-    for text in texts:
-        yield from (cell for k in range(0, last, width) if (cell := text[k : k + width].strip()))
+    cells = np.frombuffer(text.encode("ascii"), f"S{width}")
+    return np.asarray(cells[cells != b" " * width], dtype=float)
 
 
 def samples(
@@ -86,8 +86,13 @@ def samples(
     try:
         found = numbers(texts, columns, count)
     except ValueError:
-        at = line + next((i for i, text in enumerate(texts, 1) if not _is_of_numbers(text, columns)), 0)
-        raise layout.fault(asked, at, "each sample must be a number") from None
+        before = next(i for i, text in enumerate(texts) if not _is_of_numbers(text, columns))
+        if _WORD.search(texts[before]):  # the next header
+            samples(layout, asked, line, texts[:before], count=count, columns=columns)
+            raise layout.fault(
+                asked, line + before + 1, "text follows its samples: write each record to a file of its own"
+            ) from None
+        raise layout.fault(asked, line + before + 1, "each sample must be a number") from None
     layout.check_count(asked, line, count, len(found))
     return found
 

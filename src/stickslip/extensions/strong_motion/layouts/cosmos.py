@@ -87,19 +87,9 @@ def _acceleration(lines: Lines, asked: Asked) -> tuple[Component, int]:
                 if unit in UNITS
                 else COSMOS_LAYOUT.unit(asked, at, unit or line.lower().partition("units")[2].partition("format")[0])
             )
-            values = samples(COSMOS_LAYOUT, asked, at, _until_end(lines, count, columns), count=count, columns=columns)
+            values = samples(COSMOS_LAYOUT, asked, at, next_block(lines, count, columns), count=count, columns=columns)
             return Component(values, unit), at
     raise COSMOS_LAYOUT.fault(asked, lines.number, "no block of accelerations")
-
-
-def _until_end(lines: Lines, count: int, columns: Columns) -> list[str]:
-    """Return the lines of a block, or those before it ends too early."""
-    found = list[str]()
-    for _ in range(-(-count // columns.across)):
-        if lines.peek().lower().startswith("end-of-data") or _BLOCK_LINE.match(said_in(lines.peek())):
-            break
-        found += next_block(lines, 1, columns)
-    return found
 
 
 def _skip_to_next(lines: Lines) -> None:

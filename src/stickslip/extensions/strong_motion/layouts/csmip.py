@@ -52,8 +52,8 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
         steps.append(_step(line, asked, at))
         written = _UNITS_OF_BLOCK.search(line)
         unit = CSMIP_LAYOUT.unit(asked, at, (written[1] or written[2]) if written else "")
-        texts = [text for text in next_block(lines, count, columns) if "/" not in text and _BLOCK_LINE.match(said_in(text)) is None]
-        components.append(Component(samples(CSMIP_LAYOUT, asked, at, texts, count=count, columns=columns), unit, name))
+        values = samples(CSMIP_LAYOUT, asked, at, next_block(lines, count, columns), count=count, columns=columns)
+        components.append(Component(values, unit, name))
     if not components:
         raise CSMIP_LAYOUT.fault(
             asked, lines.number, "no line that says how many points of acceleration follow, and their interval"

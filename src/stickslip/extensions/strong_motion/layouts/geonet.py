@@ -41,8 +41,7 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
         stated = next((int(found[1]) for text in texts if (found := _POINTS.search(text))), counts[0])
         if stated != counts[0] and not corrected:
             raise GEONET_LAYOUT.fault(asked, at, f"its text says {stated} points, but its numbers {counts[0]}")
-        block = [text for text in next_block(lines, counts[0], _COLUMNS) if not _FIRST_LINE.match(said_in(text))]
-        values = samples(GEONET_LAYOUT, asked, at, block, count=counts[0], columns=_COLUMNS)
+        values = samples(GEONET_LAYOUT, asked, at, next_block(lines, counts[0], _COLUMNS), count=counts[0], columns=_COLUMNS)
         for count in counts[1:]:
             next_block(lines, count, _COLUMNS)
         direction = next((found[1] for text in texts if (found := _COMPONENT.match(text))), "")

@@ -16,6 +16,7 @@ from stickslip.foundation.record_files import Asked, Lines, Sheet
 
 SLAMMER_LAYOUT = RecordLayout("the headings of pySLAMMER", "a record of pySLAMMER")
 _HEADINGS = re.compile(r"#?\s*time\s*\(\s*s(ec)?\s*\)\s*[,; ]\s*acc\w*\s*\(\s*g'?s\s*\)\s*", re.IGNORECASE)
+_BLANKS_FOR = str.maketrans(",;\t", "   ")
 _MOST_LINES = 5
 """The headings are among this many lines."""
 _EVEN = 1e-6
@@ -33,7 +34,9 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
         if _HEADINGS.fullmatch(line):
             break
     at = lines.number
-    texts = [re.sub("[,;\t]", " ", text) for text in rest(lines) if not text.lstrip().startswith("#")]
+    texts = "\n".join(rest(lines)).translate(_BLANKS_FOR).split("\n")
+    if any("#" in text for text in texts):
+        texts = [text for text in texts if not text.lstrip().startswith("#")]
     table = samples(SLAMMER_LAYOUT, asked, at, texts, count=2 * len(texts)).reshape(-1, 2)
     steps = np.diff(table[:, 0])
     if len(steps) and steps.min() > 0.0 and np.ptp(steps) <= _EVEN * steps.max():
