@@ -85,7 +85,7 @@ def rigid_block(asked: SlidingAsked, case: CaseShaken) -> tuple[ShakenBlock, str
 def mass_of(column: Any, before: str = "") -> float:
     """Return the mass (kg/m^2) of a column. Raises InputError, which begins with `before`, for a body that is none."""
     try:
-        return float(column.density * column.thickness + column.contact_mass)
+        return float(column.density * column.thickness + getattr(column, "contact_mass", 0.0))
     except (AttributeError, TypeError):
         raise InputError(f"{before}a column must be a slab with one density and thickness, got {type(column).__name__}") from None
 
