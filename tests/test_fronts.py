@@ -13,7 +13,7 @@ import pytest
 import stickslip
 
 PACKAGE = Path(stickslip.__file__).parent
-USERS = {"", "studies", "figures", "friction"}
+USERS = {"", "studies", "figures", "friction", "loading"}
 """Folders whose stubs are pages for users: tests/test_public_names.py looks at them."""
 STUBS = {stub.parent.relative_to(PACKAGE).as_posix().removeprefix("."): stub for stub in sorted(PACKAGE.rglob("__init__.pyi"))}
 FRONTS = {folder: stub for folder, stub in STUBS.items() if folder not in USERS}

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -34,6 +34,7 @@ SLABS = {
     "lossy": ss.ElasticSlab(**SLAB, driver_impedance=3e6),
     "machine": ss.ElasticSlab(**SLAB, driver_impedance=3e6, driver_inertia=2e6),
 }
+COLUMN = ss.SoilColumn(**SLAB, damping_ratio=0.05)
 PULLED = ss.Problem(ss.SpringBlock(1.0, 20.0, 10.0), LAW, pull_rate=0.3, initial_excess=0.1)
 SHAKEN = PiecewiseLinear([0.0, 1.0, 2.0], [0.0, 0.1, 0.0])
 FREED = Steps([0.0, 5.0], [-1.0, 0.5])
@@ -41,6 +42,7 @@ DRIVEN = {
     "spring": PULLED,
     "spring_and_dashpot": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0, driver_damping=2.0)),
     **{kind: ss.Problem(slab, LAW, **RUN) for kind, slab in SLABS.items()},
+    "damper": ss.Problem(COLUMN, LAW, **RUN),
     "changing": ss.Problem(SLABS["rigid"], LAW, **RUN, far_stress=6e7, driver_reflection=FREED),
 }
 """A problem with each kind of driver."""
@@ -105,6 +107,10 @@ def about(problem: ss.Problem) -> dict[str, Any]:
         "trip": np.zeros(1),
         "offset": np.zeros(1),
         "trips": np.ones(1),
+        "phases": np.array([0.5 * turn]),
+        "segments": SimpleNamespace(),
+        "start": np.zeros(1),
+        "middle": np.array([0.5 * turn]),
     }
 
 

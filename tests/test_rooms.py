@@ -16,7 +16,7 @@ from stickslip.engine.history.status import RUN_CODE
 
 PACKAGE = Path(stickslip.__file__).parent
 HOUSE = House(PACKAGE)
-FACES = {"__init__.py", "__main__.py", "extension.py", "studies"}
+FACES = {"__init__.py", "__main__.py", "extension.py", "loading", "studies"}
 """What stands in no room: the public names, the start of the command line, and what the core knows of extensions."""
 HEAVY = {
     "jinja2": {"figures"},

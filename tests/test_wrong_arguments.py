@@ -154,7 +154,7 @@ def test_files_are_named_by_texts_or_paths(tmp_path: Path) -> None:
 
 
 NO_BODY = (
-    "Problem: body must be SpringBlock or ElasticSlab or LayeredSlab or TwoSlabs or RotatingBlock or BlockOnBelt or"
+    "Problem: body must be SpringBlock or ElasticSlab or SoilColumn or LayeredSlab or TwoSlabs or RotatingBlock or BlockOnBelt or"
     " BlockOnDisc or TorsionalString or SectionedString, got "
 )
 NO_LAW = 'Problem: friction must be a friction law, a function of u and v, or a text such as "0.3 + 0.5/(1 + v)", got '

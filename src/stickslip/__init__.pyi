@@ -2,7 +2,7 @@
 
 # What slides, what resists it, what drives it
 # Many runs
-from . import figures, friction, studies
+from . import figures, friction, loading, studies
 from .contact.uniqueness import uniqueness
 
 # One run
@@ -13,8 +13,17 @@ from .extensions.sweeps.sweep import sweep
 # One run
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
-from .problem import Problem, loading, selection
-from .problem.bodies import ElasticSlab, LayeredSlab, RotatingBlock, SectionedString, SpringBlock, TorsionalString, TwoSlabs
+from .problem import Problem, selection
+from .problem.bodies import (
+    ElasticSlab,
+    LayeredSlab,
+    RotatingBlock,
+    SectionedString,
+    SoilColumn,
+    SpringBlock,
+    TorsionalString,
+    TwoSlabs,
+)
 from .problem.scenarios.scenario import load_scenario, scenarios
 from .run.catalogue import catalogue
 from .run.open_solution import open_solution
@@ -33,6 +42,7 @@ __all__ = [
     "Problem",
     "RotatingBlock",
     "SectionedString",
+    "SoilColumn",
     "Solution",
     "SpringBlock",
     "TorsionalString",

@@ -162,7 +162,7 @@ class _Steady:
         of it. A contact with mass may overshoot: then no rate may be unstable.
         """
         problem = self.problem
-        swings = problem.body.inertia or problem.body.has_machine
+        swings = problem.body.inertia or problem.body.has_machine or problem.body.is_damped
         if self.varies or (problem.friction.states and not self._starts_steadily) or (swings and changes):
             return False
         if problem.friction.sticks and not math.isclose(problem.strength, abs(self.traction(CRAWL)), rel_tol=SAME):

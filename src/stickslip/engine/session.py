@@ -135,7 +135,8 @@ class Session(Generic[Options]):
     @property
     def rounding_note(self) -> str:
         """One line on steps with a law hidden by rounding, and on merged waves and strips; an empty string if there are none."""
-        merged = merging_note(float(self.state.merged_in_all + self.state.merged_now), self.problem.load_unit)
+        where = " in the layers" if self.count.slots > 0 else ""
+        merged = merging_note(float(self.state.merged_in_all + self.state.merged_now), self.problem.load_unit, where)
         strips = strips_note(float(self.state.shifted), self.problem.unit_of("slip"))
         rounding = rounding_note(int(self.count.rough), float(self.state.roughest))
         return "; ".join(note for note in (rounding, merged, strips) if note)

@@ -2,6 +2,10 @@
 
 from stickslip.problem import features, loading
 from stickslip.problem import selection_rule as selection
+from stickslip.problem.accelerogram import (
+    ALL_HISTORIES,  # Every history that a scenario file may have, those of users in HISTORIES too.
+    Accelerogram,  # Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
+)
 from stickslip.problem.bodies.soft_torque import (
     sent_back,  # Return the size of the share (1) that the drive sends back of a wave with a period (s).
     tuned_period,  # Return the period (s) at which inertia and integral gain of a drive cancel; NaN if it has not both.
@@ -82,12 +86,10 @@ from stickslip.problem.limits import (
     lumps_by_itself,  # Return True if events are lumped automatically.
 )
 from stickslip.problem.loading import (
-    ALL_HISTORIES,  # Every history that a scenario file may have, those of users in HISTORIES too.
     HISTORIES,  # Every built-in loading history by its name in scenario files.
     # Unit of the varying quantity: m/s or rad/s for a pull rate or a velocity of the ground, m/s^2 or rad/s^2 for its
     # acceleration, and Pa, N or N m for a far stress or a normal load.
     VARYING,
-    Accelerogram,  # Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
     # A pull rate, far stress, normal load or motion of the ground as a function of time (s) since the start of the run.
     LoadingHistory,
     PiecewiseLinear,  # A straight line from point to point, constant before the first point and after the last.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Self
@@ -16,6 +17,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, Text, declare, quantity
 from stickslip.foundation.show import brief
+from stickslip.problem.loading import HISTORIES
 from stickslip.problem.loading_history import LoadingHistory, Segment, fixed
 
 LONGEST_ORIGIN = 300
@@ -34,6 +36,7 @@ class Accelerogram(LoadingHistory):
     kind = "accelerogram"
     example: ClassVar = {"values": [0.0, "0.1 g", "-0.2 g", "0.05 g", 0.0], "interval": "0.01 s"}
     columns: ClassVar = {"time": "times", "value": "values"}
+    is_recorded: ClassVar[bool] = True
 
     values: Numbers = declare(NumberSeries(Quantity(ACCELERATION, "samples"), most=MOST_SAMPLES, sampled=True))
     interval: Number = quantity("s", "time between two samples", above=0)
@@ -79,3 +82,9 @@ class Accelerogram(LoadingHistory):
         values = self.samples
         begins, slopes = np.append(values[:-1], 0.0), np.append(np.diff(values) / self.interval, 0.0)
         return fixed(np.array([self.interval * np.arange(len(values)), begins, slopes]))
+
+
+OF_GROUND: dict[str, type[LoadingHistory]] = {Accelerogram.kind: Accelerogram}
+"""Histories that are motions of the ground and nothing else."""
+ALL_HISTORIES = ChainMap(HISTORIES, OF_GROUND)
+"""Every history that a scenario file may have, those of users in HISTORIES too."""

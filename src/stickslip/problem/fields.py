@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,12 +18,13 @@ from stickslip.foundation.names import KINDS_OF_BODY, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.belt import check_belt, ground_of_belt
 from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics
-from stickslip.problem.ground import Ground
 from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
+
+if TYPE_CHECKING:
+    from stickslip.problem.ground import Ground
 
 HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driver_reflection")
 """Fields of a problem that are a loading history or nothing."""
@@ -150,6 +151,8 @@ class ProblemFields(CheckedArguments):
         if self.normal_load is not None:
             check_normal_load(self.normal_load, self.body)
         if self.body.has_belt:
+            from stickslip.problem.belt import check_belt
+
             other = next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
             check_belt(type(self.body).__name__, self.ground, other)
         elif self.ground is not None:
@@ -187,7 +190,8 @@ class ProblemFields(CheckedArguments):
     def _check_driver(self, history: LoadingHistory) -> None:
         body, name = self.body, "Problem: driver_reflection"
         if not body.driver_may_change:
-            why = "which sends no waves to its driver: give a slab or a string"
+            why = "whose top stays free" if body.time_to_driver else "which sends no waves to its driver"
+            why += ": give a slab or a string"
             raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
         self._refuse_machine(f"{name} is not followed for", "leave driver_reflection out")
         if not history.is_stepped:
@@ -281,10 +285,15 @@ class ProblemFields(CheckedArguments):
         """The names of the histories that act on the body: a far stress behind a driver that stays rigid does not."""
         return tuple(name for name in self._varying if name != "far_stress" or not self.is_driven_rigidly)
 
+    @property
+    def _driver_moves(self) -> bool:
+        """True if a machine, or a damper, has a motion of its own."""
+        return self.body.has_machine or self.body.is_damped
+
     @cached_property
     def varies(self) -> bool:
-        """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or is a machine."""
-        return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self.body.has_machine
+        """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or moves by itself."""
+        return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self._driver_moves
 
     @cached_property
     def driver_steps(self) -> tuple[tuple[float, float], ...]:
@@ -339,7 +348,13 @@ class ProblemFields(CheckedArguments):
     def ground(self) -> Ground | None:
         """The motion of the ground; None if it is at rest."""
         if self.body.has_belt:
+            from stickslip.problem.belt import ground_of_belt  # few problems have one
+
             return ground_of_belt(self.pull_rate)
+        if self.ground_velocity is None and self.ground_acceleration is None:
+            return None
+        from stickslip.problem.ground import Ground
+
         return Ground.of(self.ground_velocity, self.ground_acceleration)
 
     @cached_property

@@ -10,7 +10,6 @@ from stickslip.foundation.given import PLACE, Given, Units, display_name, shown_
 from stickslip.foundation.names import KINDS_OF_BODY, si_unit
 from stickslip.foundation.quantities import LawField, NumberSeries, Quantity, fields_of
 from stickslip.foundation.units import si_factor
-from stickslip.problem.accelerogram import ACCELERATION
 from stickslip.problem.loading import VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 
@@ -103,7 +102,9 @@ def _units(values: list[Any]) -> list[str]:
 def _numbers(value: Any) -> list[Any]:
     """Return the numbers in a field: one, those of a series, or those of a loading history that are in its unit."""
     if isinstance(value, LoadingHistory):
-        varying = [name for name, (entry, _) in fields_of(type(value)).items() if _unit_of(entry) in (VARYING, ACCELERATION)]
+        varying = [
+            name for name, (entry, _) in fields_of(type(value)).items() if _unit_of(entry) in (VARYING, *VARYING.split(" or "))
+        ]
         return [one for name in varying for one in _numbers(getattr(value, name))]
     if isinstance(value, list | tuple):
         return list(value)

@@ -8,10 +8,9 @@ To add one, add its class to this file and to HISTORIES.
 from __future__ import annotations
 
 import math
-from collections import ChainMap
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -19,9 +18,7 @@ from typing_extensions import override
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.lazy_names import other_names
 from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, declare, quantity
-from stickslip.problem.accelerogram import Accelerogram
 from stickslip.problem.loading_history import VARYING, LoadingHistory, Segment, Tone, fixed
 
 
@@ -133,17 +130,9 @@ HISTORIES: dict[str, type[LoadingHistory]] = {
     history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide)
 }
 """Every built-in loading history by its name in scenario files."""
-OF_GROUND: dict[str, type[LoadingHistory]] = {Accelerogram.kind: Accelerogram}
-"""Histories that are motions of the ground and nothing else."""
-ALL_HISTORIES = ChainMap(HISTORIES, OF_GROUND)
-"""Every history that a scenario file may have, those of users in HISTORIES too."""
-
 __all__ = [
-    "ALL_HISTORIES",
     "HISTORIES",
-    "OF_GROUND",
     "VARYING",
-    "Accelerogram",
     "HoldAndSlide",
     "LoadingHistory",
     "PiecewiseLinear",
@@ -152,6 +141,3 @@ __all__ = [
     "Steps",
     "Tone",
 ]
-
-if not TYPE_CHECKING:  # with it, type checkers would accept any name
-    __getattr__ = other_names(__name__)

@@ -68,6 +68,9 @@ class LoadingHistory(Declared, ABC):
     example: ClassVar[dict[str, Any]]
     """Plausible values of the fields, in the form of a scenario file."""
 
+    is_recorded: ClassVar[bool] = False
+    """True for samples of a recorder, which come from a file in a format of their own."""
+
     unit: str = VARYING
     """Unit of the values, such as "m/s" or "Pa", if they were given with one; plain numbers fit all."""
 

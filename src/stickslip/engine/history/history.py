@@ -19,7 +19,7 @@ from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem, driver_of
 
 if TYPE_CHECKING:
-    from stickslip.engine.history.machine_motion import MachineMotion
+    from stickslip.engine.history.machine_motion import MotionInParts
 
 Side = Literal["left", "right"]
 
@@ -296,11 +296,13 @@ class History:
         return np.clip(2.0 * local / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
 
     @cached_property
-    def machine(self) -> MachineMotion:
-        """The motion of the driver, if it is a machine."""
-        from stickslip.engine.history.machine_motion import machine_motion  # of few runs
+    def machine(self) -> MotionInParts:
+        """The motion of the driver, if it is a machine or a damper."""
+        from stickslip.engine.history.damper_motion import damper_motion  # of few runs
+        from stickslip.engine.history.machine_motion import machine_motion
 
-        return machine_motion(self.problem, self.store, self.duration)
+        motion = damper_motion if self.problem.body.is_damped else machine_motion
+        return motion(self.problem, self.store, self.duration)
 
     # ---- values at positions ------------------------------------------------------------------------------------------------
 

@@ -8,10 +8,11 @@ Times are seconds since the start of the run.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from stickslip.foundation.kernels.kernels import entry
 from stickslip.problem import EDGE, Inflow, Problem, driver_of, inflow_of, pace_of, pull_of, settled_rate, wave_before
 
 FINEST = 0.5
-"""Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
+"""WavesLeft of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
 EARLY = 1e-9
 """Times up to this share of themselves before the start of a motion are at the start, by rounding."""
 MOTION_NODES, MOTION_WEIGHTS = (values / 2.0 for values in np.polynomial.legendre.leggauss(TERMS + 1))
@@ -68,38 +69,36 @@ def walk(series: Floats3, pace: Floats2, machine: MachineNumbers, start: Floats1
 
 
 @dataclass(frozen=True, eq=False)
-class MachineMotion:
-    """The motion of a machine in parts of time; in each, rate and forces are polynomials in xi on [0, 1]."""
+class MotionInParts(ABC):
+    """The motion of a driver in parts of time; in each, its rate is a polynomial in xi on [0, 1]."""
 
-    start: Floats  # s: when a part begins at the machine
+    start: Floats  # s: when a part begins at the driver
     speed: Floats  # s: time since then is speed xi + bend xi^2
     bend: Floats
     rate: Floats  # m/s, (parts, TERMS)
-    motor: Floats  # Pa: stress with which gains and far stress move the slab and the mass
-    pull: Floats  # m/s
+    mass: float  # kg/m^2
     problem: Problem
 
     def at(self, time: Floats) -> Floats:
-        """Return the rate of the machine (m/s) at times (s)."""
+        """Return the rate of the driver (m/s) at times (s)."""
         n, xi = self._placed(time)
         return horner(self.rate[n], xi)
 
     def way(self, low: Floats, high: Floats) -> Floats:
-        """Return how far (m) the machine moves between times (s)."""
+        """Return how far (m) the driver moves between times (s)."""
         return self._until(self.rate, self._ways, high) - self._until(self.rate, self._ways, low)
 
     def kinetic(self, time: float) -> float:
-        """Return the kinetic energy of the machine (J/m^2) at a time (s)."""
-        return 0.5 * self.problem.body.driver_inertia * float(self.at(np.array([time]))[0]) ** 2
+        """Return the kinetic energy of the mass (J/m^2) at a time (s)."""
+        return 0.5 * self.mass * float(self.at(np.array([time]))[0]) ** 2
 
     def work(self, begin: float, end: float) -> float:
-        """Return the work (J/m^2) of gains and far stress on the machine between two times (s)."""
-        return self._integrated(lambda n, xi: horner(self.motor[n], xi) * horner(self.rate[n], xi), begin, end)
+        """Return the work (J/m^2) on the driver that moves its mass, between two times (s)."""
+        return self.kinetic(end) - self.kinetic(begin)
 
+    @abstractmethod
     def dissipated(self, begin: float, end: float) -> float:
-        """Return the energy (J/m^2) that the proportional gain takes up between two times (s)."""
-        gain = self.problem.body.driver_impedance
-        return gain * self._integrated(lambda n, xi: (horner(self.rate[n], xi) - horner(self.pull[n], xi)) ** 2, begin, end)
+        """Return the energy (J/m^2) that the driver takes up between two times (s)."""
 
     @cached_property
     def _ways(self) -> Floats:
@@ -119,7 +118,8 @@ class MachineMotion:
         pace = speed + np.sqrt(np.maximum(speed * speed + 4.0 * bend * since, 0.0))
         return n, np.minimum(2.0 * since / np.where(pace > 0.0, pace, 1.0), 1.0)
 
-    def _integrated(self, density: Callable[[NDArray[np.intp], Floats], Floats], begin: float, end: float) -> float:
+    def integrated(self, density: Callable[[NDArray[np.intp], Floats], Floats], begin: float, end: float) -> float:
+        """Return the integral of a function of parts and of places in them between two times (s)."""
         (first, last), (low, high) = self._placed(np.array([begin, end]))
         n = np.arange(first, last + 1)
         from_xi, to_xi = np.where(n == first, low, 0.0), np.where(n == last, high, 1.0)
@@ -130,6 +130,23 @@ class MachineMotion:
         return float((values.sum(axis=1) * (to_xi - from_xi)).sum())
 
 
+@dataclass(frozen=True, eq=False)
+class MachineMotion(MotionInParts):
+    """The motion of a machine, and the forces on it, which are polynomials, too."""
+
+    motor: Floats  # Pa: stress with which gains and far stress move the slab and the mass
+    pull: Floats  # m/s
+
+    def work(self, begin: float, end: float) -> float:
+        """Return the work (J/m^2) of gains and far stress on the machine between two times (s)."""
+        return self.integrated(lambda n, xi: horner(self.motor[n], xi) * horner(self.rate[n], xi), begin, end)
+
+    def dissipated(self, begin: float, end: float) -> float:
+        """Return the energy (J/m^2) that the proportional gain takes up between two times (s)."""
+        gain = self.problem.body.driver_impedance
+        return gain * self.integrated(lambda n, xi: (horner(self.rate[n], xi) - horner(self.pull[n], xi)) ** 2, begin, end)
+
+
 def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMotion:
     """Return the motion of the machine of a problem, to h/c after the end of a run.
 
@@ -137,7 +154,7 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     """
     body, trip_time = problem.body, problem.round_trip_time
     machine = MachineNumbers(body.driver_inertia, body.driver_impedance + body.impedance, body.driver_integral_gain)
-    parts = _parts_of(problem, store)
+    parts = parts_of(problem, store, pace_of(body))
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
     rests = np.flatnonzero(gap > 1e-9 * trip_time)
     parts = parts.with_rests(rests, gap[rests])
@@ -160,7 +177,7 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     rate[rest, 0] = settled[rest]
     drive = _series(driven, arrives, parts) + push - body.driver_impedance * rate
     drive[:, 0] += problem.strength
-    return MachineMotion(parts.left + 0.5 * trip_time, parts.speed, parts.bend, rate, drive, pull, problem)
+    return MachineMotion(parts.left + 0.5 * trip_time, parts.speed, parts.bend, rate, body.driver_inertia, problem, drive, pull)
 
 
 def _start_in(problem: Problem, store: Store, machine: MachineNumbers) -> tuple[Floats, float]:
@@ -189,7 +206,7 @@ def _start_in(problem: Problem, store: Store, machine: MachineNumbers) -> tuple[
     return np.array([rate, push]), time - trip_time
 
 
-class _Parts(NamedTuple):
+class WavesLeft(NamedTuple):
     """Parts of waves that left the contact: when (s), dt/dxi at first, half its change, the wave (Pa) in powers of xi; rests."""
 
     left: Floats
@@ -198,16 +215,16 @@ class _Parts(NamedTuple):
     wave: Floats
     rest: NDArray[np.bool_]
 
-    def with_rests(self, after: NDArray[np.intp], lasting: Floats) -> _Parts:
+    def with_rests(self, after: NDArray[np.intp], lasting: Floats) -> WavesLeft:
         """Return the same with a part for each rest (s) that was leaped over after one of the parts."""
         ends = self.left[after] + self.speed[after] + self.bend[after]
-        added = _Parts(ends, lasting, np.zeros(len(after)), np.zeros((len(after), TERMS)), np.ones(len(after), bool))
-        return _Parts(*(np.insert(one, after + 1, other, axis=0) for one, other in zip(self, added, strict=True)))
+        added = WavesLeft(ends, lasting, np.zeros(len(after)), np.zeros((len(after), TERMS)), np.ones(len(after), bool))
+        return WavesLeft(*(np.insert(one, after + 1, other, axis=0) for one, other in zip(self, added, strict=True)))
 
-    def from_time(self, since: float) -> _Parts:
+    def from_time(self, since: float) -> WavesLeft:
         """Return the parts of waves that left from a time (s) on; the first one may be cut."""
         n = max(int(np.searchsorted(self.left, since + EDGE * max(abs(since), self.speed.max()), side="right")) - 1, 0)
-        kept = _Parts(self.left[n:].copy(), self.speed[n:].copy(), self.bend[n:].copy(), self.wave[n:].copy(), self.rest[n:])
+        kept = WavesLeft(self.left[n:].copy(), self.speed[n:].copy(), self.bend[n:].copy(), self.wave[n:].copy(), self.rest[n:])
         late = max(since - kept.left[0], 0.0)
         speed, bend = kept.speed[0], kept.bend[0]
         pace = speed + math.sqrt(speed * speed + 4.0 * bend * late)
@@ -217,8 +234,11 @@ class _Parts(NamedTuple):
         return kept
 
 
-def _parts_of(problem: Problem, store: Store) -> _Parts:
-    """Return the waves that left the contact, from h/c before the start on, cut where the loading breaks, and into short parts."""
+def parts_of(problem: Problem, store: Store, pace: float) -> WavesLeft:
+    """Return the waves that left the contact, from h/c before the start on, cut where the loading breaks, and into short parts.
+
+    The driver changes by its own size at a pace (1/s).
+    """
     body, trip_time = problem.body, problem.round_trip_time
     half = 0.5 * trip_time
     first = np.zeros((1, TERMS))
@@ -228,7 +248,7 @@ def _parts_of(problem: Problem, store: Store) -> _Parts:
     speed, bend = np.append(half, store.speed), np.append(0.0, store.bend)
     wave = np.concatenate([first, 2.0 * body.impedance * store.rate - store.load])
     tone = inflow_of(problem).tone
-    fastest = max(pace_of(body), tone.frequency if tone.amplitude != 0.0 else 0.0)
+    fastest = max(pace, tone.frequency if tone.amplitude != 0.0 else 0.0)
     cuts = np.ceil(fastest * (np.abs(speed) + 2.0 * np.abs(bend)) / FINEST).astype(int).clip(1)
     which = np.repeat(np.arange(len(left)), cuts)
     begin = np.concatenate([np.arange(count) / count for count in cuts])
@@ -243,7 +263,7 @@ def _parts_of(problem: Problem, store: Store) -> _Parts:
     end = np.append(begin[1:], 1.0)
     end[np.append(np.diff(which) > 0, True)] = 1.0
     width = end - begin
-    return _Parts(
+    return WavesLeft(
         left[which] + begin * (speed[which] + begin * bend[which]),
         (speed[which] + 2.0 * bend[which] * begin) * width,
         bend[which] * width**2,
@@ -252,18 +272,23 @@ def _parts_of(problem: Problem, store: Store) -> _Parts:
     )
 
 
-def _series(flow: Inflow, arrives: Floats, parts: _Parts) -> Floats:
+def _series(flow: Inflow, arrives: Floats, parts: WavesLeft) -> Floats:
     """Return an inflow as polynomials in xi along parts that arrive at the contact at given times (s)."""
-    middle = arrives + 0.5 * (parts.speed + parts.bend)
-    n = flow.segment(middle)
+    n = flow.segment(arrives + 0.5 * (parts.speed + parts.bend))
+    begins = flow.value[n] + flow.slope[n] * (arrives - flow.start[n])
+    return series_along((begins, flow.slope[n], np.zeros(len(n))), flow.tone, arrives, parts)
+
+
+def series_along(straight: Sequence[Floats], tone: tuple[Any, float, Any], arrives: Floats, parts: WavesLeft) -> Floats:
+    """Return a parabola in time (value, slope, curve) and a tone as polynomials in xi along parts that arrive at times (s)."""
+    (value, slope, curve), (amplitude, frequency, phase) = straight, tone
     series = np.zeros((len(arrives), TERMS))
-    series[:, 0] = flow.value[n] + flow.slope[n] * (arrives - flow.start[n])
-    series[:, 1], series[:, 2] = flow.slope[n] * parts.speed, flow.slope[n] * parts.bend
-    if flow.tone.amplitude != 0.0:
-        sine, cosine = np.zeros_like(series), np.zeros_like(series)
-        angle = flow.tone.frequency * arrives + flow.tone.phase
-        sine[:, 0], cosine[:, 0] = flow.tone.amplitude * np.sin(angle), flow.tone.amplitude * np.cos(angle)
-        turn, bent = flow.tone.frequency * parts.speed, 2.0 * flow.tone.frequency * parts.bend
+    series[:, 0], series[:, 1], series[:, 2] = value, slope * parts.speed, slope * parts.bend + curve * parts.speed**2
+    series[:, 3], series[:, 4] = 2.0 * curve * parts.speed * parts.bend, curve * parts.bend**2
+    if np.any(amplitude):
+        sine, cosine, angle = np.zeros_like(series), np.zeros_like(series), frequency * arrives + phase
+        sine[:, 0], cosine[:, 0] = amplitude * np.sin(angle), amplitude * np.cos(angle)
+        turn, bent = frequency * parts.speed, 2.0 * frequency * parts.bend
         for k in range(TERMS - 1):
             before = (sine[:, k - 1], cosine[:, k - 1]) if k else (0.0, 0.0)
             sine[:, k + 1] = (turn * cosine[:, k] + bent * before[1]) / (k + 1)

@@ -60,13 +60,11 @@ def rounding_note(steps: int, share: float) -> str:
     )
 
 
-def merging_note(change: float, unit: str) -> str:
-    """Return one line on the changes of waves in layers by merging, in sum (Pa, N or N m); empty if nothing was merged."""
+def merging_note(change: float, unit: str, where: str) -> str:
+    """Return one line on the changes of waves by merging, in sum (Pa, N or N m); empty if nothing was merged. `where` may be ""."""
     if change == 0.0:
         return ""
-    return (
-        f"pieces of waves in the layers were merged, which changed the waves by {change:.1g} {unit} at most, added up over the run"
-    )
+    return f"pieces of waves{where} were merged, which changed the waves by {change:.1g} {unit} at most, added up over the run"
 
 
 def strips_note(shift: float, unit: str) -> str:

@@ -202,8 +202,8 @@ def loading_of(problem: Problem) -> at.Floats:
     segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, problem.ground is not None), strict=True)
     middle = start + 0.5 * np.diff(np.append(start, start[-1] + problem.round_trip_time))  # whatever the rounding of the starts
     of = inflow.segment(middle)
-    segments.reflection, segments.tone = inflow.reflection[of], inflow.gain[of] * inflow.tone.amplitude
-    segments.tone_phase = inflow.tone.phase
+    driver_of(problem).put(problem, segments, start, middle)
+    segments.tone, segments.tone_phase = inflow.gain[of] * inflow.tone.amplitude, inflow.tone.phase
     segments.jump[1:] = np.diff(segments.reflection) != 0.0
     ground.put(segments, start)
     for time, step in driver_of(problem).steps(problem):

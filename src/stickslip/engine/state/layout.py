@@ -67,6 +67,8 @@ class Params(MemoryRecord):
     driver_impedance: float  # Pa s/m: its proportional gain
     driver_gain: float  # Pa/m: its integral gain
     driver_spring: float  # Pa/m: stiffness of all layers before it, of a body of layers
+    damper_pace: float  # 1/s: how fast the damper of a column takes up what it meets (`waves.damper`); 0 of any other driver
+    damper_share: float  # 1: share of a sharp front that it sends back
     pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
     slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
@@ -188,7 +190,7 @@ class Counts(MemoryRecord):
     joined: int  # 1 if both sides move with the contact, as the two parts of a bowed string; 0 if slip is between them
     wave_shift: int  # row of waves of piece n: n + wave_shift, modulo their number
     folds_follow_slip: int  # 1 if the branches change with slip
-    merging: int  # 1 if pieces of the waves in layers are merged in this round trip (`waves.merged_pieces`)
+    merging: int  # 1 if pieces of waves are merged in this round trip (`waves.merged_pieces`)
     merged: int  # number of pieces whose waves are the present piece of load, if they were merged; else 0
     merged_from: int  # first of them, in creep beside rest (`waves.merged_creep`)
     merged_as: int  # their form (`waves.merged_pieces`)
@@ -347,7 +349,9 @@ class Task(IntEnum):
     LOOK_BELOW_ZERO = 25
     """Find whether friction falls below zero in an explicit step."""
     PLAN_MERGING = 26
-    """Decide whether pieces of the waves in layers are merged in the round trip that begins."""
+    """Decide whether pieces of waves are merged in the round trip that begins."""
+    GATHER_WAVES = 27
+    """Bring the wave that left a uniform body with a piece of the history, and with those behind it that merge with it."""
 
 
 # ---- records in tables ------------------------------------------------------------------------------------------------------
@@ -407,7 +411,9 @@ class LoadingSegment(MemoryRecord):
     tone_phase: float  # rad: phase of the tone at t = 0
     shakes: float  # 1 while the ground under a slab or layers moves, or its motion is on its way back in a slab, else 0
     reflection: float  # 1: `Params.reflection` while the segment holds
-    ground: float  # m/s: velocity of the ground under layers there, but for its tone (`waves.shaken_ladder`)
+    ground: (
+        float  # m/s: velocity of the ground under layers there, but for its tone (`waves.shaken_ladder`); for a damper `joining`
+    )
     ground_slope: float  # m/s^2: how fast it grows
     ground_curve: float  # m/s^3: half its second derivative
     ground_tone: float  # m/s: amplitude of its tone, ground_tone sin(tone_frequency t + ground_phase)

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.pieces import phase_at
 from stickslip.engine.contact.pressing import tone_series
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.engine.waves.damper import damp
 from stickslip.engine.waves.driver_at_rest import settled_rate
-from stickslip.engine.waves.varying_forcing import cut
+from stickslip.engine.waves.varying_forcing import shorten
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead
 
@@ -33,6 +33,8 @@ HALVINGS_OF_LOAD = 60
 @kernel
 def drive(run: Run) -> float:
     """Add what the machine sends to the wave that a rigid driver would send back; return the share of the piece that is kept."""
+    if run.params.damper_pace > 0.0:
+        return damp(run)
     leap(run)
     pace, met, doubled = pace_of(run), wave_at_driver(run), 2.0 * impedance_at_driver(run)
     share = 1.0 / max(math.ceil(pace * (abs(run.state.speed) + 2.0 * abs(run.state.bend))), 1.0)
@@ -90,13 +92,6 @@ def pace_of(run: Run) -> float:
         return params.driver_gain / (params.driver_impedance + before)
     damped = (params.driver_impedance + before) / params.driver_inertia
     return damped + math.sqrt(params.driver_gain / params.driver_inertia)
-
-
-@kernel
-def shorten(run: Run, share: float) -> None:
-    """Keep only the given share of the piece of load, from its start."""
-    if share < 1.0:
-        cut(run, 0.0, share, run.state.phase_from, phase_at(run, share))
 
 
 @kernel

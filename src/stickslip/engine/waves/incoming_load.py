@@ -92,8 +92,13 @@ def bring_echo(run: Run) -> None:
         jumps = call_part(run.ladder, run, Task.CROSS_CELLS, 0.0) == 1.0
         run.counts.arriving = Cause.ECHO if jumps else Cause.NO_CAUSE
         return
-    for k in range(TERMS):
-        run.load[k] = share * (2.0 * params.impedance * rate[k] - load[k])
+    if run.counts.varies == 1 and (run.counts.merging == 1 or run.counts.merged > 0):
+        call_part(run.loading_history, run, Task.GATHER_WAVES, float(source))
+        for k in range(TERMS):
+            run.load[k] *= share
+    else:
+        for k in range(TERMS):
+            run.load[k] = share * (2.0 * params.impedance * rate[k] - load[k])
     first = left
     if run.counts.sparse == 1 and run.counts.merged > 0:
         first = run.history[run.counts.merged_from]

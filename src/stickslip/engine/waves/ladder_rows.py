@@ -26,6 +26,23 @@ def row_of(run: Run, n: int) -> int:
 
 
 @kernel
+def kept_wave(run: Run, n: int, cell: int) -> Floats:
+    """Return the wave (Pa) that left with piece n of the history in a cell; of a uniform body the one wave, in run.machine_pull."""
+    if run.counts.slots > 0:
+        return wave_in(run, row_of(run, n), cell)
+    wave, rate, load, doubled = run.machine_pull, run.history[n].rate, run.history[n].load, 2.0 * run.params.impedance
+    for k in range(TERMS):
+        wave[k] = doubled * rate[k] - load[k]
+    return wave
+
+
+@kernel
+def brought_wave(run: Run, cell: int) -> Floats:
+    """Return the wave (Pa) that is brought to the contact in a cell; of a uniform body the piece of load."""
+    return wave_in(run, AIR, cell) if run.counts.slots > 0 else run.load
+
+
+@kernel
 def side_of(run: Run, side: int) -> tuple[int, int]:
     """Return the first cell of a side of the contact (0 or 1), and the one behind its last."""
     return (0, run.counts.first_side) if side == 0 else (run.counts.first_side, run.counts.cells)

@@ -19,7 +19,7 @@ import math
 from stickslip.engine.series.polynomial import copy, total
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.ladder_rows import AIR, row_of, wave_in
+from stickslip.engine.waves.ladder_rows import AIR, kept_wave, row_of, wave_in
 from stickslip.engine.waves.merged_series import (
     IN_TIME,
     MEAN,
@@ -61,12 +61,16 @@ def plan_merging(run: Run) -> None:
     """
     counts, state = run.counts, run.state
     pieces = counts.previous_to - counts.previous_from
+    if counts.slots == 0:
+        counts.merged = 0
     if counts.merge_at == 0:
         counts.merge_at = counts.trip + PAUSE
     if counts.merging == 1:
         counts.merging, counts.merge_above = 0, pieces + pieces // 4 if pieces > CROWD else 0
         state.merged_in_all += state.merged_now
         state.merged_now = 0.0
+    elif counts.slots == 0 and run.params.damper_pace == 0.0 and pieces <= CROWD:
+        return  # where the echoes of kinks do not shrink, they are left as they are while they are few
     elif counts.merge_above == 0 and pieces > MANY:
         counts.merge_above = pieces + pieces // 4 + 8
     elif (pieces > MANY and pieces > counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
@@ -84,7 +88,7 @@ def swing_of_waves(run: Run) -> float:
     for cell in range(counts.cells):
         low, high = math.inf, -math.inf
         for n in range(counts.previous_from, counts.previous_to):
-            value = wave_in(run, row_of(run, n), cell)[0]
+            value = kept_wave(run, n, cell)[0]
             low, high = min(low, value), max(high, value)
         largest = max(largest, high - low)
     return largest
@@ -110,10 +114,21 @@ def gather(run: Run, source: int) -> None:
         average(run, WaveGroup(source, counts.merged, MEAN))
     elif counts.merged > 0:
         merge(run, WaveGroup(source, counts.merged, counts.merged_as))
-    if counts.merged == 0:
+    if counts.slots == 0:
+        bring_wave(run, source)
+    elif counts.merged == 0:
         copy(wave_in(run, row_of(run, source), 0), wave_in(run, AIR, 0), counts.slots * TERMS)
     else:
         lay_out(run, WaveGroup(source, counts.merged, counts.merged_as))
+
+
+@kernel
+def bring_wave(run: Run, source: int) -> None:
+    """Bring the wave of a uniform body: that of one piece of the history, or one series for several, which is in the load."""
+    if run.counts.merged == 0:
+        copy(kept_wave(run, source, 0), run.load, TERMS)
+    else:
+        lay_out(run, WaveGroup(source, run.counts.merged, run.counts.merged_as))
 
 
 @kernel
@@ -177,8 +192,8 @@ def follows(run: Run, n: int) -> bool:
     if now.trip != before.trip or now.phase_from != before.phase_to:
         return False
     weight = min(weight_of(run, n), weight_of(run, n - 1))
-    for cell in range(run.counts.cells):
-        step = wave_in(run, row_of(run, n), cell)[0] - total(wave_in(run, row_of(run, n - 1), cell))
+    for cell in range(max(run.counts.cells, 1)):
+        step = kept_wave(run, n, cell)[0] - total(kept_wave(run, n - 1, cell))
         if weight * abs(step) > run.state.merge_within + rounding_at(run, n, cell):
             return False
     return True

@@ -17,7 +17,7 @@ import numpy as np
 from stickslip.engine.series.polynomial import evaluate, fill, mean_of, total
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.ladder_rows import AIR, row_of, wave_in
+from stickslip.engine.waves.ladder_rows import AIR, brought_wave, kept_wave, wave_in
 from stickslip.foundation.kernels.kernels import kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
@@ -85,7 +85,7 @@ def weight_of(run: Run, n: int) -> float:
 @kernel
 def rounding_at(run: Run, n: int, cell: int) -> float:
     """Return the rounding (Pa) of the wave in a cell where piece n of the history begins."""
-    return WAVE_ROUNDING * (abs(run.params.reference) + abs(wave_in(run, row_of(run, n), cell)[0]))
+    return WAVE_ROUNDING * (abs(run.params.reference) + abs(kept_wave(run, n, cell)[0]))
 
 
 @kernel
@@ -102,13 +102,13 @@ def lay_out(run: Run, group: WaveGroup) -> None:
 @kernel
 def average(run: Run, group: WaveGroup) -> None:
     """Write the means in time of the waves of a group into the air."""
-    for slot in range(run.counts.slots):
+    for slot in range(max(run.counts.slots, 1)):
         pushed = lasted = 0.0
         for n in range(group.source, group.source + group.many):
             width, piece = width_of(run, n), run.history[n]
-            pushed += width * mean_of(wave_in(run, row_of(run, n), slot), piece.speed, piece.bend, width)
+            pushed += width * mean_of(kept_wave(run, n, slot), piece.speed, piece.bend, width)
             lasted += width
-        wave = wave_in(run, AIR, slot)
+        wave = brought_wave(run, slot)
         fill(wave, 0.0)
         wave[0] = pushed / lasted
 
@@ -119,12 +119,12 @@ def merge(run: Run, group: WaveGroup) -> float:
     ends, of_point, places = room_for(ENDS), room_for(PIECE_POINTS), room_for(PIECE_POINTS)
     place_points(run, group, ends, of_point, places)
     error = 0.0
-    for cell in range(run.counts.cells):
+    for cell in range(max(run.counts.cells, 1)):
         if not describe(run, group, cell, of_point, places):
             return math.inf
         if group.form == IN_TIME:
-            wave = wave_in(run, AIR, cell)
-            wave[1] += total(wave_in(run, row_of(run, group.source + group.many - 1), cell)) - total(wave)
+            wave = brought_wave(run, cell)
+            wave[1] += total(kept_wave(run, group.source + group.many - 1, cell)) - total(wave)
         error = max(error, distance(run, group, cell, ends))
         if not error <= run.state.merge_within + rounding_at(run, group.source, cell):
             return math.inf
@@ -170,10 +170,10 @@ def place_of(run: Run, group: WaveGroup, i: int, xi: float, ends: Floats) -> flo
 @kernel
 def describe(run: Run, group: WaveGroup, cell: int, of_point: Floats, places: Floats) -> bool:
     """Write the new series of the wave in a cell into the air; return False if it has too many terms."""
-    values, terms, wave = room_for(PIECE_POINTS), room_for(PIECE_POINTS), wave_in(run, AIR, cell)
-    begin = wave_in(run, row_of(run, group.source), cell)[0]
+    values, terms, wave = room_for(PIECE_POINTS), room_for(PIECE_POINTS), brought_wave(run, cell)
+    begin = kept_wave(run, group.source, cell)[0]
     for k in range(PIECE_POINTS):
-        values[k] = evaluate(wave_in(run, row_of(run, group.source + int(of_point[k])), cell), places[k]) - begin
+        values[k] = evaluate(kept_wave(run, group.source + int(of_point[k]), cell), places[k]) - begin
     noise = KEPT_ABOVE * run.state.merge_within + 0.25 * rounding_at(run, group.source, cell)
     highest = 0
     for j in range(PIECE_POINTS):
@@ -193,9 +193,9 @@ def describe(run: Run, group: WaveGroup, cell: int, of_point: Floats, places: Fl
 @kernel
 def distance(run: Run, group: WaveGroup, cell: int, ends: Floats) -> float:
     """Return the largest difference (Pa) between the new series of the wave in a cell and the old ones, by their weight."""
-    wave, largest = wave_in(run, AIR, cell), 0.0
+    wave, largest = brought_wave(run, cell), 0.0
     for i in range(group.many):
-        old, apart = wave_in(run, row_of(run, group.source + i), cell), 0.0
+        old, apart = kept_wave(run, group.source + i, cell), 0.0
         for k in range(CHECKS):
             apart = max(apart, abs(evaluate(wave, place_of(run, group, i, CHECK_PLACES[k], ends)) - evaluate(old, CHECK_PLACES[k])))
         largest = max(largest, weight_of(run, group.source + i) * apart)

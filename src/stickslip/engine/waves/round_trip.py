@@ -116,4 +116,6 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     run.counts.trip_segment = run.counts.segment
     if run.counts.cells > 0:
         call_part(run.ladder, run, Task.PLAN_MERGING, 0.0)
+    elif run.counts.varies == 1 and run.params.reflection != 0.0:
+        call_part(run.loading_history, run, Task.PLAN_MERGING, 0.0)
     return Stop.NONE

@@ -11,12 +11,13 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
-from stickslip.engine.contact.pieces import span_of_load, xi_at
+from stickslip.engine.contact.pieces import phase_at, span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at, tone_series
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
+from stickslip.engine.waves.merged_pieces import gather, plan_merging
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
 from stickslip.foundation.phasors import dirichlet
@@ -49,7 +50,7 @@ def take_loading(run: Run) -> None:
         call_part(run.ladder, run, Task.SEND_IN, 0.0)
     elif run.counts.driven == 0:
         add_loading(run)
-    elif run.counts.trip > 0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
+    elif run.counts.trip > 0 or run.state.phase_from >= 0.5 * run.params.round_trip_time or run.params.damper_pace > 0.0:
         kept = call_part(run.driver, run, Task.DRIVE, 0.0)
         if kept < 1.0:
             end, phase_to = begin + kept * (end - begin), run.state.phase_to
@@ -101,6 +102,13 @@ def cut(run: Run, begin: float, end: float, phase: float, phase_to: float) -> No
     run.state.speed = (run.state.speed + 2.0 * run.state.bend * begin) * width
     run.state.bend *= width * width
     run.state.phase_from, run.state.phase_to = phase, phase_to
+
+
+@kernel
+def shorten(run: Run, share: float) -> None:
+    """Keep only the given share of the piece of load, from its start."""
+    if share < 1.0:
+        cut(run, 0.0, share, run.state.phase_from, phase_at(run, share))
 
 
 @kernel
@@ -298,6 +306,10 @@ def loading_history(memory: int, task: int, number: float) -> float:
         return float(trips_withstood(borrow(memory), number))
     if task == Task.TAKE_LOADING:
         take_loading(borrow(memory))
+    elif task == Task.GATHER_WAVES:
+        gather(borrow(memory), int(number))
+    elif task == Task.PLAN_MERGING:
+        plan_merging(borrow(memory))
     else:
         press_ahead(borrow(memory), number)
     return 0.0

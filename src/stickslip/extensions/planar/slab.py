@@ -29,7 +29,7 @@ FEWEST_NODES = 8
 """Smallest number of nodes along an axis of the contact."""
 OTHER_BODIES = {
     "rigid": "a block has no waves",
-    "uniform": "a string is a line",
+    "uniform": "a string is a line, and the top of a column is free",
     "layered": "layers are followed in 1D only",
 }
 """Why a contact has no other body than a slab, by the structure of that body."""

@@ -32,7 +32,7 @@ class StrongMotionExtension(Extension):
         """Return the study and the class of its result."""
         home = "stickslip.extensions.strong_motion"
         return {
-            "problem.loading.record": f"{home}.record:record",
+            "loading.record": f"{home}.record:record",
             "studies.SlidingDisplacements": f"{home}.displacements:SlidingDisplacements",
             "studies.sliding": f"{home}.sliding:sliding",
         }

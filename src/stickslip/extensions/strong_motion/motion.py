@@ -21,7 +21,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.show import number
-from stickslip.problem.loading import Accelerogram, LoadingHistory, PiecewiseLinear
+from stickslip.problem import Accelerogram, LoadingHistory, PiecewiseLinear
 
 UNEVEN = 1e-6
 """Intervals of a history that differ by less than this share count as one."""

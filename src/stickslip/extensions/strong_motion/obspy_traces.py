@@ -15,12 +15,11 @@ from stickslip.foundation.errors import InputError
 
 
 class TraceSamples(NamedTuple):
-    """The samples of a trace (m/s^2), their interval (s), the name of the trace, and sentences on what was done."""
+    """The samples of a trace (m/s^2), their interval (s), and its name, with what was done to the interval."""
 
     values: Floats
     interval: float
     name: str
-    notes: tuple[str, ...]
 
 
 def is_trace(given: Any) -> bool:
@@ -31,7 +30,7 @@ def is_trace(given: Any) -> bool:
     return isinstance(traces, Sequence) and all(hasattr(one, "stats") for one in traces)
 
 
-def samples_of(given: Any, unit: str | None = None, component: str | None = None) -> TraceSamples:
+def samples_of(given: Any, unit: str | None = None, component: str | int | None = None) -> TraceSamples:
     """Return the samples of a trace, or of the trace of a stream that `component` names by its channel.
 
     Parameters
@@ -41,7 +40,7 @@ def samples_of(given: Any, unit: str | None = None, component: str | None = None
     unit
         The unit of the samples, as "m/s^2", "g" or "gal": a trace does not know it, and may be in counts.
     component
-        The channel, as "HNE", or its last letter.
+        The channel, as "HNE", or its last letter, or the number of the trace, from 1 on.
 
     Raises
     ------
@@ -67,19 +66,21 @@ def samples_of(given: Any, unit: str | None = None, component: str | None = None
     if len(bad):
         raise InputError(f"trace {name}: sample {bad[0] + 1} of {len(values)} is {values[bad[0]]:g}: fill the gap first")
     notes = list[str]()
-    return TraceSamples(values * UNITS[written], _interval(stats, name, len(values), notes), name, tuple(notes))
+    interval = _interval(stats, name, len(values), notes)
+    return TraceSamples(values * UNITS[written], interval, name + "".join(f" ({note})" for note in notes))
 
 
-def _one_of(given: Any, component: str | None) -> Any:
+def _one_of(given: Any, component: str | int | None) -> Any:
     """Return the trace, or the one of a stream. Raises InputError if none or several fit."""
     traces = [given] if hasattr(given, "data") and hasattr(given, "stats") else list(getattr(given, "traces", ()))
     if not traces:
         raise InputError(f"a trace, or a stream with one, is needed, got {shown(given)}")
     channels = [str(getattr(one.stats, "channel", "")) for one in traces]
+    wanted = None if component is None else str(component).upper()
     fitting = [
         one
-        for one, channel in zip(traces, channels, strict=True)
-        if component is None or component.upper() in (channel.upper(), channel.upper()[-1:])
+        for i, (one, channel) in enumerate(zip(traces, channels, strict=True), 1)
+        if wanted is None or wanted in (channel.upper(), channel.upper()[-1:], str(i))
     ]
     if len(fitting) == 1:
         return fitting[0]

@@ -104,5 +104,7 @@ def _of_trace(source: Any, component: str | int | None, unit: str | None, baseli
         raise InputError(
             f"{WHO}: source must be {wanted}, got {shown(source)}; arrays make one as ss.loading.Accelerogram(values, interval)"
         )
-    values, interval, name = samples_of(source, unit, component)
-    return {"values": values, "interval": interval, "origin": name} | ({} if baseline is None else {"offset": float(values.mean())})
+    values, interval, name, notes = samples_of(source, unit, None if component is None else str(component))
+    return {"values": values, "interval": interval, "origin": "; ".join((name, *notes))} | (
+        {} if baseline is None else {"offset": float(values.mean())}
+    )

@@ -7,6 +7,7 @@ from stickslip.problem.bodies.register import BODIES
 from stickslip.problem.bodies.rigid.blocks import RotatingBlock, SpringBlock, as_block
 from stickslip.problem.bodies.rigid.on_belt import BlockOnBelt, BlockOnDisc
 from stickslip.problem.bodies.rigid.on_spring import as_on_spring
+from stickslip.problem.bodies.uniform.column import SoilColumn
 from stickslip.problem.bodies.uniform.slab import ElasticSlab, as_slab
 from stickslip.problem.bodies.uniform.string import TorsionalString
 
@@ -23,6 +24,7 @@ __all__ = [
     "OfLayers",
     "RotatingBlock",
     "SectionedString",
+    "SoilColumn",
     "SpringBlock",
     "TorsionalString",
     "TwoSlabs",

@@ -116,8 +116,13 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def is_damped(self) -> bool:
+        """True if a damper at the free top takes energy of the waves, in a motion of its own."""
+        ...
+
+    @property
     def driver_inertia(self) -> float:
-        """The mass of such a driver (kg/m^2)."""
+        """The mass of a machine (kg/m^2)."""
         ...
 
     @property
@@ -323,6 +328,11 @@ class WithOneDriver(WithNormalLoad):
     drivers: int = 1
     first_share: float = 1.0
     has_ground: bool = True
+
+    @property
+    def is_damped(self) -> bool:
+        """False: no damper takes energy of the waves."""
+        return False
 
     def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
         """Return all load that the driver sends, and its growth."""

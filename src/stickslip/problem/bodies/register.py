@@ -10,6 +10,7 @@ BODIES: ClassesByKind[BodyOnCharacteristics] = ClassesByKind(
     {
         "spring-block": "rigid.blocks.SpringBlock",
         "elastic-slab": "uniform.slab.ElasticSlab",
+        "soil-column": "uniform.column.SoilColumn",
         "layered-slab": "layered.slabs.LayeredSlab",
         "two-slabs": "layered.slabs.TwoSlabs",
         "rotating-block": "rigid.blocks.RotatingBlock",

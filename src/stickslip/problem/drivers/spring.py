@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +13,12 @@ from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.driver import Driver
 from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
-from stickslip.problem.ground import Ground
 from stickslip.problem.inflow import Inflow
 from stickslip.problem.loading import Tone
 from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from stickslip.problem.ground import Ground
 
 
 @dataclass(frozen=True, eq=False)

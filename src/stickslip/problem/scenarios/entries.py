@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import Given
-from stickslip.foundation.packed import packed, unpacked
 from stickslip.foundation.quantities import (
     Choice,
     Count,
@@ -84,6 +83,8 @@ def read_entry(value: Any, entry: Field, place: DocumentPlace, law: Callable[[di
         return entry.check(file, str(place), value)
     if isinstance(entry, NumberSeries):
         if isinstance(value, str):
+            from stickslip.foundation.packed import unpacked  # few scenarios have so many numbers
+
             try:
                 value = unpacked(value, entry.item.unit, entry.most)
             except InputError as error:
@@ -146,8 +147,11 @@ def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
     if isinstance(value, tuple):
-        is_packed = isinstance(entry, NumberSeries) and not entry.lists(value)
-        return packed(value) if is_packed else [as_written(one) for one in value]
+        if not isinstance(entry, NumberSeries) or entry.lists(value):
+            return [as_written(one) for one in value]
+        from stickslip.foundation.packed import packed
+
+        return packed(value)
     return to_table(value) if isinstance(entry, LawField) else as_written(value)
 
 

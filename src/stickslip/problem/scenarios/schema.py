@@ -21,12 +21,11 @@ from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_un
 from stickslip.foundation.synonyms import same
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.problem.accelerogram import Accelerogram
 from stickslip.problem.bodies import BODIES
 from stickslip.problem.bodies.on_bit import WEIGHT_ON_BIT
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import MAY_VARY, STEADY
-from stickslip.problem.loading import ALL_HISTORIES, HISTORIES, VARYING, LoadingHistory
+from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_options import RunOptions
 from stickslip.problem.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry
@@ -254,7 +253,7 @@ def read_table(
     """Check one table and return it, with the points from a data file if the table names one. Raises InputError."""
     columns = columns_of(table, kind, heading)
     if columns and "file" in raw:
-        if kind is Accelerogram:
+        if getattr(kind, "is_recorded", False):
             return _read_keys(keys_of(table, kind, states), _recorded(table, raw, source), source, table)
         from stickslip.problem.scenarios.points_of_files import read_points  # few scenarios name a file
 
@@ -294,10 +293,12 @@ def columns_of(table: str, kind: type, heading: str = "") -> dict[str, str]:
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     """Return the class that `kind` names in a table. Raises InputError if it is missing or unknown."""
-    kind, registered = content.get("kind"), ALL_HISTORIES if table == RECORDED else REGISTERED[table.partition(".")[0]]
-    if "kind" not in content and "file" in content and table == RECORDED:
-        return Accelerogram
-    if "kind" not in content:
+    kind, registered = content.get("kind"), REGISTERED[table.partition(".")[0]]
+    if table == RECORDED and not (isinstance(kind, str) and kind in registered):
+        from stickslip.problem.accelerogram import ALL_HISTORIES, Accelerogram  # few scenarios have a record
+
+        registered, kind = ALL_HISTORIES, Accelerogram.kind if kind is None and "file" in content else kind
+    if kind is None:
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {some_of(registered, listed=LISTED)}")
     if not isinstance(kind, str) or kind not in registered:
         raise InputError(f"{file}: [{table}] kind {shown(kind)} is unknown; {nearest(str(kind), registered, listed=LISTED)}")

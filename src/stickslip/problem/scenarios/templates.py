@@ -16,10 +16,11 @@ from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
 from stickslip.foundation.show import brief, clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
+from stickslip.problem.accelerogram import ALL_HISTORIES
 from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.drivers.driver import loading_rate
 from stickslip.problem.fields import HISTORIES_ONLY
-from stickslip.problem.loading import ALL_HISTORIES, HISTORIES
+from stickslip.problem.loading import HISTORIES
 from stickslip.problem.problem import Problem
 from stickslip.problem.scenarios import library
 from stickslip.problem.scenarios.entries import Source, describe, key_of, to_table

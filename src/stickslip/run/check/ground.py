@@ -15,10 +15,15 @@ DRIFT = 0.1
 """Ground that ends at more than this share of its largest velocity (1) is worth a question: records end at rest."""
 
 
+def ground_given(problem: Problem) -> Ground | None:
+    """Return the motion of the ground that a problem was given; a belt is none."""
+    return None if problem.ground_acceleration is None and problem.ground_velocity is None else problem.ground
+
+
 def facts_of_ground(problem: Problem) -> list[Fact]:
     """Return the yield acceleration, the peak of the ground, how often it passes the yield, and where the ground ends."""
-    ground = problem.ground
-    if ground is None or problem.body.has_belt:
+    ground = ground_given(problem)
+    if ground is None:
         return []
     facts = [*_yields(problem, ground)]
     if ground.tone.amplitude == 0.0:
@@ -58,18 +63,19 @@ def _passed(ground: Ground, sign: float, least: float) -> int:
 
 def chosen_of_ground(problem: Problem) -> Iterator[str]:
     """Yield what is taken for granted of the ground before and after its history."""
-    if problem.ground is None or problem.body.has_belt:
+    ground = ground_given(problem)
+    if ground is None:
         return
     yield "before the start the ground is at rest"
     if isinstance(problem.ground_acceleration, Accelerogram):
-        end, kept = problem.ground_acceleration.duration, float(problem.ground.velocity[-1])
+        end, kept = problem.ground_acceleration.duration, float(ground.velocity[-1])
         yield f"after the record, {brief(end, 's')}, the acceleration is 0, and the ground keeps {brief(kept, 'm/s', 3)}"
 
 
 def warnings_of_ground(problem: Problem) -> list[str]:
     """Return a warning for ground that does not end at rest, as that of a record with an instrument's offset does."""
-    ground = problem.ground
-    if ground is None or problem.body.has_belt or problem.ground_acceleration is None or ground.tone.amplitude != 0.0:
+    ground = ground_given(problem)
+    if ground is None or problem.ground_acceleration is None or ground.tone.amplitude != 0.0:
         return []
     end, fastest, last = float(ground.start[-1]), float(np.abs(ground.velocity).max()), float(ground.velocity[-1])
     if not abs(last) > DRIFT * fastest:

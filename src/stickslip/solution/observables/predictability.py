@@ -140,5 +140,5 @@ def attributes_of(prediction: Predictability | None) -> dict[str, str | float]:
 
 def is_followed(problem: Problem) -> bool:
     """Return True if the growth of a disturbance is known for this problem."""
-    lone = problem.body.is_uniform and not (problem.body.has_machine or problem.driver_changes)
+    lone = problem.body.is_uniform and not (problem.body.has_machine or problem.body.is_damped or problem.driver_changes)
     return is_algebraic(problem) and lone and not problem.folds_move

@@ -15,8 +15,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import Given
 from stickslip.foundation.packed import packed, unpacked
 from stickslip.foundation.quantities import MOST_SAMPLES
+from stickslip.problem.accelerogram import Accelerogram
 from stickslip.problem.even_times import interval_of
-from stickslip.problem.loading import Accelerogram, PiecewiseLinear, Steps
+from stickslip.problem.loading import PiecewiseLinear, Steps
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
 from stickslip.run.check.asked import Fact
 from stickslip.run.check.examine import examine

@@ -240,7 +240,7 @@ def test_an_offset_is_told_and_kept() -> None:
     counts = np.round((MOTION * files.GAL - 5.0) / files.FACTOR).astype(int).tolist()
     table = read(files.knet(counts))
     assert acceleration(table).mean() * files.GAL == pytest.approx(-5.0, abs=1e-3)
-    assert re.fullmatch(r"the mean is -5 gal, 1\.7 % of the peak: an offset is kept as it is", table.notes[1])
+    assert re.fullmatch(r"the mean of the samples is -5 gal, 1\.7 % of the peak", table.notes[1])
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.engine.input.asked import InputOfBody, Shaken
 from stickslip.engine.input.first_pieces import pieces_of
 from stickslip.engine.state import layout as at
-from stickslip.problem import Problem, driver_of, inflow_of, steady_inflow, wave_before
+from stickslip.problem import Problem, driver_of, steady_inflow, wave_before
 
 
 class InputOfUniform(InputOfBody):
@@ -49,7 +49,7 @@ class InputOfUniform(InputOfBody):
         half = 0.5 * trip
         slope = body.impedance * problem.initial_shear / half
         phases = driver.first_phases(problem, half)
-        share = inflow_of(problem).reflection_at(phases)
+        share = driver.first_share(problem, phases)
         back = share * (slope * (trip - phases) - wave_before(problem))
         jump = jumps(problem, back[0] + driver.first_sent(problem, half), problem.excess + slope * half)
         sudden = [0.0, float(jump), *np.zeros(len(phases) - 1)]

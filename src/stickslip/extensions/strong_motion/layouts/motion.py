@@ -183,4 +183,4 @@ def _offset(one: Component) -> list[str]:
     mean, peak = float(np.mean(one.samples)), float(np.max(np.abs(one.samples)))
     if abs(mean) <= OFFSET_TOLD * peak:
         return []
-    return [f"the mean is {mean:.4g} {one.unit}, {100.0 * abs(mean) / peak:.2g} % of the peak: an offset is kept as it is"]
+    return [f"the mean of the samples is {mean:.4g} {one.unit}, {100.0 * abs(mean) / peak:.2g} % of the peak"]

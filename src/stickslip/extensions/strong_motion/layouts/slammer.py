@@ -39,6 +39,6 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     if len(steps) and steps.min() > 0.0 and np.ptp(steps) <= _EVEN * steps.max():
         step = float(f"{(table[-1, 0] - table[0, 0]) / len(steps):.9g}")
         made = sheet_of(SLAMMER_LAYOUT, asked, at, step, [Component(table[:, 1], "g")])
-        return made._replace(table=table)
+        return made._replace(table=table, interval=made.interval if table[0, 0] == 0.0 else None)
     header = asked.header(["time (s)", "ground_acceleration (g)"], at)
     return Sheet(header, at, iter(()), [], counted="sample", table=table)
