@@ -49,7 +49,7 @@ HEADINGS: Mapping[str, tuple[str, str]] = {
     "last_stop": ("last stop", "s"),
     "status": ("status", ""),
 }
-"""The words of the field for the columns of the table, and the units in which files have them."""
+"""The words of the field for the columns of the table, and their units in files."""
 DRIFTING = 0.2
 """The ground that still moves at this share of its peak velocity, when a record ends, is told."""
 FEW_NAMED = 3
