@@ -241,6 +241,15 @@ def test_the_mean_is_taken_off_only_if_that_is_asked():
     assert abs(as_it_is[0] / expected[0] - 1.0) > 0.05
 
 
+def test_ground_that_does_not_come_to_rest_is_told():
+    motion = RECORDS["a"]
+    offset = ss.loading.Accelerogram((motion.acceleration + 0.05).tolist(), 0.01)
+    drift = [one for one in ss.studies.sliding({"far": offset}, 0.1).notes if "baseline" in one]
+    assert len(drift) == 1
+    assert "at the end of far (up to" in drift[0]
+    assert not any("baseline" in one for one in ss.studies.sliding({"far": offset}, 0.1, baseline="mean").notes)
+
+
 def test_records_of_one_name_are_told_apart():
     found = ss.studies.sliding([made_motion("same"), made_motion("same", 2.0), made_motion("other")], 0.1)
     assert found.records.record.tolist() == ["same (1)", "same (2)", "other"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from stickslip.extensions.strong_motion.asked import SlidingAsked
 from stickslip.extensions.strong_motion.compiled.rigid_block import (
-    COLUMNS,
+    ANSWER_COLUMNS,
     DISPLACEMENT,
     FIRST_START,
     LAST_STOP,
@@ -40,9 +40,9 @@ FINISHED = "finished"
 SAMPLES_PER_INTERVAL = 10
 """The mean acceleration of a column, which is smooth between the kinks of a record, is taken at so many times in each interval."""
 RINGING = 20.0
-"""How long (round trips of a wave in the column) it is followed after the record, beside the time in which the block can stop."""
+"""How long (round trips of a wave in the column) it is followed after the record, beside the time that the block needs to stop."""
 NEVER_YIELDS = 1e3
-"""Strength of a contact that must not slip, as a multiple of what the peak acceleration of the ground can ask of the mass."""
+"""Strength of a contact that must not slip, as a multiple of the force on the mass at the peak acceleration of the ground."""
 
 
 class CaseShaken(NamedTuple):
@@ -85,7 +85,7 @@ def rigid_block(asked: SlidingAsked, case: CaseShaken) -> tuple[ShakenBlock, str
 def mass_of(column: Any, before: str = "") -> float:
     """Return the mass (kg/m^2) of a column. Raises InputError, which begins with `before`, for a body that is none."""
     try:
-        return float(column.density * column.thickness + column.contact_mass)
+        return float(column.density * column.thickness + getattr(column, "contact_mass", 0.0))
     except (AttributeError, TypeError):
         raise InputError(f"{before}a column must be a slab with one density and thickness, got {type(column).__name__}") from None
 
@@ -116,7 +116,7 @@ def _run(column: Any, friction: float, load: float, case: CaseShaken, lasting: f
 
 
 def _coupled(asked: SlidingAsked, case: CaseShaken, tell: Callable[[str], Any]) -> SlidingAnswer:
-    rows, status = np.full((len(asked.forward), COLUMNS), math.nan), []
+    rows, status = np.full((len(asked.forward), ANSWER_COLUMNS), math.nan), []
     for n, coefficient in enumerate(asked.forward.tolist()):
         tell(f"{case.motion.name}, yield {coefficient:.4g} g")
         run = coupled_run(asked, case, n)
@@ -127,7 +127,7 @@ def _coupled(asked: SlidingAsked, case: CaseShaken, tell: Callable[[str], Any]) 
 
 
 def _row_of(run: Solution) -> Floats:
-    row, events = np.full(COLUMNS, math.nan), run.catalogue(0.0)
+    row, events = np.full(ANSWER_COLUMNS, math.nan), run.catalogue(0.0)
     places = run.slip(np.append(run.breaks, run.history.span[1]))
     row[DISPLACEMENT], row[PEAK_DISPLACEMENT] = places[-1], np.abs(places).max()
     row[PEAK_VELOCITY], row[SLIPS], row[SLIDING_TIME] = 0.0, len(events), 0.0

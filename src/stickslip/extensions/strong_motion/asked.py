@@ -21,14 +21,14 @@ POLARITIES: Mapping[Any, tuple[int, ...]] = {1: (1,), -1: (-1,), "both": (1, -1)
 ANALYSES = ("rigid", "coupled", "decoupled")
 """Kinds of analysis: a rigid block, a column that deforms while it slides, and one that deforms before its motion moves a block."""
 LENGTHS = ("m", "cm", "mm", "in", "ft")
-"""Units in which displacements may be shown; velocities are in the same unit per second."""
+"""Units of displacements as they are shown; velocities are in the same unit per second."""
 ABOVE_ZERO = 'must be above 0: a part of g, such as 0.1, or with a unit, such as "0.1 g"'
 """What a yield coefficient and a peak acceleration must be."""
 SAME = "same"
 """Stands for backward yield coefficients that are those forward."""
 
 
-class Levels(NamedTuple):
+class ShakingLevels(NamedTuple):
     """How strongly records shake: factors on them, or peak accelerations (g) to which they are scaled."""
 
     values: tuple[float, ...]
@@ -51,7 +51,7 @@ class SlidingAsked(NamedTuple):
     backward: Floats
     """Yield coefficients (of g) of backward slip; infinite where there is none."""
     polarities: tuple[int, ...]
-    levels: Levels
+    levels: ShakingLevels
     analysis: str
     column: Any
 
@@ -88,11 +88,11 @@ def read_asked(who: str, yields: Any, backward: Any, polarity: Any, *, scale: An
         raise InputError(f"{who}: polarity must be 1 (the record as it comes), -1 or 'both', got {shown(polarity)}")
     if scale is not None and scale_to_pga is not None:
         raise InputError(f"{who}: give scale or scale_to_pga, not both")
-    levels = Levels((1.0,), is_pga=False)
+    levels = ShakingLevels((1.0,), is_pga=False)
     if scale_to_pga is not None:
-        levels = Levels(tuple(read_coefficients(scale_to_pga, f"{who}: scale_to_pga").tolist()), is_pga=True)
+        levels = ShakingLevels(tuple(read_coefficients(scale_to_pga, f"{who}: scale_to_pga").tolist()), is_pga=True)
     elif scale is not None:
-        levels = Levels(_factors(scale, f"{who}: scale"), is_pga=False)
+        levels = ShakingLevels(_factors(scale, f"{who}: scale"), is_pga=False)
     return SlidingAsked(forward, _backward(backward, forward, who), POLARITIES[polarity], levels, "rigid", None)
 
 
@@ -136,7 +136,7 @@ def read_analysis(who: str, analysis: Any, column: Any) -> str:
 
 
 def read_length(who: str, unit: Any) -> float:
-    """Return the size (m) of the unit in which displacements are shown. Raises InputError, which begins with `who`."""
+    """Return the size (m) of a unit of displacements. Raises InputError, which begins with `who`."""
     if unit not in LENGTHS:
         raise InputError(f"{who}: unit must be one of {', '.join(LENGTHS)}, got {shown(unit)}; {nearest(str(unit), LENGTHS)}")
     return float(si_factor(unit, "m"))

@@ -49,7 +49,11 @@ HEADINGS: Mapping[str, tuple[str, str]] = {
     "last_stop": ("last stop", "s"),
     "status": ("status", ""),
 }
-"""The words of the field for the columns of the table, and the units in which files have them."""
+"""The words of the field for the columns of the table, and their units in files."""
+DRIFTING = 0.2
+"""The ground that still moves at this share of its peak velocity, when a record ends, is told."""
+FEW_NAMED = 3
+"""Name at most this many records in a sentence."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -143,6 +147,12 @@ class SlidingDisplacements(StudyWithDataset):
             found.append(
                 f"{sliding} of {len(table)} cases still slide when the column was left ringing: a column with damping ends"
             )
+        drifting = [one for one in self.motions if abs(one.measures.final_velocity) > DRIFTING * one.measures.pgv]
+        if drifting:
+            which = ", ".join(one.name for one in drifting[:FEW_NAMED]) + (" and others" if len(drifting) > FEW_NAMED else "")
+            worst = max(abs(one.measures.final_velocity) / one.measures.pgv for one in drifting)
+            moving = f"the ground does not come to rest at the end of {which} (up to {100 * worst:.0f} % of its PGV)"
+            found.append(f"{moving}: an instrument's offset? baseline 'mean' takes it off")
         return tuple(found)
 
     def to_csv(self, path: str | Path) -> Path:

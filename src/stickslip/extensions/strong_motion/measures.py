@@ -20,7 +20,7 @@ SHARES = (0.05, 0.95)
 PERIODS = (0.05, 4.0)
 """Periods (s) over which the mean period is taken: frequencies of 20 to 0.25 Hz."""
 COARSEST_FREQUENCIES = 0.05
-"""Largest distance (Hz) of the frequencies from which the mean period is taken; shorter records are padded with zeros."""
+"""Largest distance (Hz) between the frequencies of the mean period; shorter records are padded with zeros."""
 HALVINGS = 60
 """Number of halvings of a segment, after which a time in it is exact."""
 
@@ -115,7 +115,7 @@ def _peak_displacement(acceleration: Floats, velocity: Floats, displacement: Flo
 
 
 def _time_of(wanted: float, acceleration: Floats, squares: Floats, interval: float) -> float:
-    """Return the time (s) at which the integral of the squared acceleration reaches a value."""
+    """Return when (s) the integral of the squared acceleration reaches a value."""
     n = min(max(int(np.searchsorted(squares, wanted)) - 1, 0), len(acceleration) - 2)
     value, slope = float(acceleration[n]), float(acceleration[n + 1] - acceleration[n]) / interval
     missing, low, high = wanted - float(squares[n]), 0.0, interval

@@ -27,7 +27,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import GRAVITY
 from stickslip.run import TextProgress, telling
 
-PLACES = {
+ANSWER_PLACES = {
     "displacement": DISPLACEMENT,
     "peak_displacement": PEAK_DISPLACEMENT,
     "peak_velocity": PEAK_VELOCITY,
@@ -129,7 +129,7 @@ def _table_of(asked: SlidingAsked, motion: GroundMotion, factor: float, level: f
     alike |= {name: getattr(measured, name) for name in OF_RECORD}
     own: dict[str, Floats] = {"yield_coefficient": asked.forward, "backward_coefficient": asked.backward}
     own["yield_ratio"] = asked.forward * GRAVITY / measured.pga if measured.pga else np.full(len(asked.forward), np.inf)
-    own |= {name: found.rows[:, place] for name, place in PLACES.items()}
+    own |= {name: found.rows[:, place] for name, place in ANSWER_PLACES.items()}
     return alike | own | {"status": found.status}
 
 

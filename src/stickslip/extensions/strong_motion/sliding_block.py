@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from stickslip.extensions.strong_motion.compiled.rigid_block import (
     ACCELERATION,
+    ANSWER_COLUMNS,
+    BLOCK_PLACE,
     CHANGE,
-    COLUMNS,
     PIECES,
-    PLACE,
     SAMPLES_OF_A_BLOCK,
     SLIPS,
     START,
@@ -45,7 +45,7 @@ class BlockMotion:
         """Return the displacement (m) relative to the ground at times (s) of any shape, 0 or later."""
         piece, s = self._since(t)
         slope = 0.5 * piece[..., ACCELERATION] + s * piece[..., CHANGE] / 6.0
-        return np.asarray(piece[..., PLACE] + s * (piece[..., VELOCITY] + s * slope))
+        return np.asarray(piece[..., BLOCK_PLACE] + s * (piece[..., VELOCITY] + s * slope))
 
     def velocity(self, t: ArrayLike) -> Floats:
         """Return the velocity (m/s) relative to the ground at times (s) of any shape, 0 or later."""
@@ -70,13 +70,13 @@ class ShakenBlock:
     def slide(self, forward: Floats, backward: Floats | float = math.inf) -> Floats:
         """Return the answers for yield accelerations (m/s^2), a row each; by default the block never slides backward."""
         yields = np.ascontiguousarray(np.column_stack(np.broadcast_arrays(np.asarray(forward, float), backward)), float)
-        answers = np.zeros((len(yields), COLUMNS))
+        answers = np.zeros((len(yields), ANSWER_COLUMNS))
         slide_blocks(self._prepared, yields, answers, NOTHING)
         return answers
 
     def motion(self, forward: float, backward: float = math.inf) -> BlockMotion:
         """Return the motion under one pair of yield accelerations (m/s^2)."""
         slips = int(self.slide(np.array([forward]), backward)[0, SLIPS])
-        pieces, answers = np.zeros((len(self.load) + MOST_IN_A_SLIP * (slips + 1), CHANGE + 1)), np.zeros((1, COLUMNS))
+        pieces, answers = np.zeros((len(self.load) + MOST_IN_A_SLIP * (slips + 1), CHANGE + 1)), np.zeros((1, ANSWER_COLUMNS))
         slide_blocks(self._prepared, np.array([[forward, backward]]), answers, pieces)
         return BlockMotion(pieces[: int(answers[0, PIECES])])

@@ -78,8 +78,8 @@ def slide(
       stickslip slide records -y 0.1 --analysis coupled --body sliding-slab-shaken \
         --set "body.thickness=30 m"
 
-    With one-way slip the two polarities of a record have two answers, of which
-    one may be twice the other. The first file that cannot be read ends the
+    With one-way slip the two polarities of a record have two answers, and one
+    may be twice the other. The first file that cannot be read ends the
     command, before anything is written.
 
     Exit code: 0 done, 1 an analysis failed, 2 unusable input, 130 interrupted.

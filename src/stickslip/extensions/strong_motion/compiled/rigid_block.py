@@ -21,9 +21,9 @@ yield accelerations once, so that there is one stop, or a stop, a slip backward,
 """
 DISPLACEMENT, PEAK_DISPLACEMENT, PEAK_VELOCITY, PEAK_TIME, SLIPS, SLIDING_TIME, FIRST_START, LAST_STOP, PIECES = range(9)
 """Columns of the answer: m, m (largest magnitude), m/s (magnitude), s, 1, s, s, s, and the number of pieces that are kept."""
-COLUMNS = 9
+ANSWER_COLUMNS = 9
 """Number of columns of the answer."""
-START, PLACE, VELOCITY, ACCELERATION, CHANGE = range(5)
+START, BLOCK_PLACE, VELOCITY, ACCELERATION, CHANGE = range(5)
 """Columns of a piece of motion: s, m, m/s, m/s^2, m/s^3."""
 
 
@@ -106,7 +106,7 @@ def keep(kept: KeptMotion, time: float, velocity: float, acceleration: float, ch
     n = int(kept.answer[PIECES])
     if n < len(kept.pieces):
         kept.pieces[n, START] = time
-        kept.pieces[n, PLACE] = kept.answer[DISPLACEMENT]
+        kept.pieces[n, BLOCK_PLACE] = kept.answer[DISPLACEMENT]
         kept.pieces[n, VELOCITY] = velocity
         kept.pieces[n, ACCELERATION] = acceleration
         kept.pieces[n, CHANGE] = change

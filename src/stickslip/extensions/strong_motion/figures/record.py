@@ -18,10 +18,10 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.place import Place
 
-AFTER = 0.05
+SHARE_AFTER = 0.05
 """Share of the length of a record that is drawn after it, if the block has stopped."""
 POINTS = 20_000
-"""Number of times at which velocity and displacement are drawn, at least."""
+"""Least number of points of the curves of velocity and displacement."""
 OF_POLARITY = {1: BLUE, -1: VERMILLION}
 """Colours of the two polarities."""
 
@@ -31,7 +31,7 @@ def shaken_data(asked: SlidingAsked, motion: GroundMotion, factors: list[float],
     scale = abs(factors[0])
     sample = motion.interval * np.arange(len(motion.acceleration))
     curves = [_motion(asked, CaseShaken(motion, factor), n) for factor in factors]
-    end = max([(1.0 + AFTER) * motion.lasts, *(stop for _, stop in curves)])
+    end = max([(1.0 + SHARE_AFTER) * motion.lasts, *(stop for _, stop in curves)])
     time = np.linspace(0.0, end, max(POINTS, 2 * len(sample)))
     found = [curve(time) for curve, _ in curves]
     contents = {
