@@ -19,7 +19,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem, driver_of, tone_of
 
-GAP = 1e-9
+LONG_GAP = 1e-9
 """Longer than this share of a round trip (1), time between two pieces is a rest that was leaped over."""
 
 
@@ -47,7 +47,7 @@ def damper_motion(problem: Problem, store: Store, duration: float) -> DamperMoti
     trip, pace = problem.round_trip_time, body.pace_of_damper
     parts = parts_of(problem, store, pace)
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
-    rests = np.flatnonzero(gap > GAP * trip)
+    rests = np.flatnonzero(gap > LONG_GAP * trip)
     parts, first = parts.with_rests(rests, gap[rests]), body.impedance * driver_of(problem).at_first(problem)[0]
     if store.trip[0] != 0 or store.phase_from[0] != 0.0:
         raise InputError("the motion of the damper of a column is not known in a part of a run that has forgotten what came before")
@@ -65,7 +65,7 @@ def damper_motion(problem: Problem, store: Store, duration: float) -> DamperMoti
 
 
 def _filtered(met: Floats, parts: WavesLeft, pace: float, first: float = 0.0) -> Floats:
-    """Return the series of what passes the filter, which begins each part with the same value (Pa)."""
+    """Return the series that passes the filter, beginning each part with the same value (Pa)."""
     met = np.broadcast_to(met, (len(parts.left), TERMS))
     slow, apart = np.zeros_like(met), np.zeros(len(met))
     slow[:, 0] = first

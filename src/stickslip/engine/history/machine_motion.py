@@ -134,7 +134,7 @@ class MotionInParts(ABC):
 class MachineMotion(MotionInParts):
     """The motion of a machine, and the forces on it, which are polynomials, too."""
 
-    motor: Floats  # Pa: stress with which gains and far stress move the slab and the mass
+    motor: Floats  # Pa: stress of gains and far stress on the slab and the mass
     pull: Floats  # m/s
 
     def work(self, begin: float, end: float) -> float:

@@ -83,7 +83,7 @@ class DamperOfColumn(LossyDriver):
         segments.reflection = DEAD_LOAD
 
     def changes_within(self, problem: Problem) -> float:
-        """Return the time (s) in which the filter answers."""
+        """Return how long (s) the filter takes to answer."""
         body: Any = problem.body
         return 1.0 / float(body.pace_of_damper)
 
