@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import MAY_VARY, LoadingHistory, Segment
+from stickslip.problem import MAY_VARY, LoadingHistory
 
 if TYPE_CHECKING:
     from stickslip.problem import Problem
@@ -46,9 +46,9 @@ def _straight(history: LoadingHistory, start: float, end: float, turns: float) -
     begins = history.parts[0, 1:]
     edges = [start, *begins[(start < begins) & (begins < end)].tolist(), end]
     first = int(np.searchsorted(begins, start, side="right"))
-    parts = [Segment(*one) for one in history.parts[:, first : first + len(edges) - 1].T.tolist()]
+    parts = history.parts[:, first : first + len(edges) - 1].T.tolist()
     dense = [
         np.linspace(low, high, 2 + int(POINTS_OF_TONE * turns * (high - low) / (end - start))) for low, high in pairwise(edges)
     ]
-    values = [one.at(time) for one, time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
+    values = [value + slope * (time - begin) for (begin, value, slope), time in zip(parts, dense, strict=True)]
     return np.concatenate(dense), np.concatenate(values)
