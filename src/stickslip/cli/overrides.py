@@ -13,12 +13,13 @@ import typer
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import show_in
-from stickslip.problem import Problem, read_option, units_given
+from stickslip.problem import Accelerogram, Problem, read_option, units_given
 from stickslip.problem.scenarios import (
     LARGEST_SCENARIO_FILE,
     Scenario,
     check_rule,
     check_solved_by_core,
+    fields_of_file,
     load_scenario,
     read_scenario,
     read_typed,
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 CALLED = {"max_events": "events"}
 """Options of a run whose name on the command line is that of scenario files."""
+GROUND = "loading.ground_acceleration"
+"""What --set takes the file of a record for."""
 STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
 
@@ -51,9 +54,22 @@ def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, a
         if several is not None:
             cure = "`stickslip sweep` runs a range: --vary NAME=LOW..HIGH:POINTS"
             raise InputError(f"{where}: {shown(several)} takes one value; {cure}")
-        loaded = with_values(loaded, values, where)
+        if GROUND in values:
+            loaded = _on_ground_of(loaded, values.pop(GROUND), where)
+        loaded = with_values(loaded, values, where) if values else loaded
     show_in(units_given(loaded.problem))
     return loaded
+
+
+def _on_ground_of(scenario: Scenario, file: float | str, where: str) -> Scenario:
+    """Return a scenario whose ground moves as the record in a file says. Raises InputError."""
+    if not isinstance(file, str):
+        raise InputError(f"{where}: {GROUND} must be the file of a record, got {file:g}")
+    record = Accelerogram(**fields_of_file(Path(file), {}, None))
+    title = f"{scenario.heading}: {Path(file).name}" if scenario.heading else Path(file).name
+    return replace(
+        scenario, problem=replace(scenario.problem, ground_acceleration=record, ground_velocity=None), title=title, description=""
+    )
 
 
 def _load(scenario: str) -> Scenario:

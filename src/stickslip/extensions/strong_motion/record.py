@@ -9,7 +9,7 @@ from typing import Any, Literal
 from stickslip.foundation.arguments import as_path, for_users, shown
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Accelerogram
-from stickslip.problem.scenarios.record_of_file import fields_of_file
+from stickslip.problem.scenarios import fields_of_file
 
 WHO = "record"
 

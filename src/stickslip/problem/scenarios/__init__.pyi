@@ -19,6 +19,9 @@ from stickslip.problem.scenarios.parameter_paths import (
     values_in,  # Yield every parameter that has a value in the file of a scenario, with the value (SI).
     with_values,  # Return a scenario with other values of some parameters, as `Scenario.with_values` does; `where` begins messages.
 )
+from stickslip.problem.scenarios.record_of_file import (
+    fields_of_file,  # Return the fields of a record in a file, wherever it is.
+)
 from stickslip.problem.scenarios.scenario import (
     LARGEST_TEXT,  # Largest number of characters of a scenario, as in a file of results, which holds the points of data files, too.
     UNNAMED,  # Name of a scenario that has none of its own.
@@ -85,6 +88,7 @@ __all__ = [
     "doubts",
     "entries_in",
     "example_of",
+    "fields_of_file",
     "find_parameter",
     "is_scenario_name",
     "key_of",

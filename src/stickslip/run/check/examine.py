@@ -256,7 +256,7 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     found += CHECK_KINDS[problem.body.structure].warnings(scenario, contact)
-    found += warnings_of_ground(problem)
+    found += warnings_of_ground(scenario)
     rule = problem.rule
     if why := problem.why_not_run or folds_not_followed(problem):
         found.append(f"it cannot be run: {why}")

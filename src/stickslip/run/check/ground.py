@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.show import brief
 from stickslip.problem import Accelerogram, Ground, Problem
+from stickslip.problem.scenarios import Scenario
 from stickslip.run.check.asked import CHECK_KINDS, Fact
 
 DRIFT = 0.1
@@ -72,11 +73,17 @@ def chosen_of_ground(problem: Problem) -> Iterator[str]:
         yield f"after the record, {brief(end, 's')}, the acceleration is 0, and the ground keeps {brief(kept, 'm/s', 3)}"
 
 
-def warnings_of_ground(problem: Problem) -> list[str]:
-    """Return a warning for ground that does not end at rest, as that of a record with an instrument's offset does."""
-    ground = ground_given(problem)
-    if ground is None or problem.ground_acceleration is None or ground.tone.amplitude != 0.0:
+def warnings_of_ground(scenario: Scenario) -> list[str]:
+    """Return warnings for a record that is longer than the run, and for ground that does not end at rest.
+
+    The latter is what the offset of an instrument does.
+    """
+    ground, record = ground_given(scenario.problem), scenario.problem.ground_acceleration
+    if ground is None or record is None or ground.tone.amplitude != 0.0:
         return []
+    if isinstance(record, Accelerogram) and record.duration > scenario.duration:
+        lasts = f"the record lasts {brief(record.duration, 's')}, and the run {brief(scenario.duration, 's')}"
+        return [f"{lasts}: what comes after is left out"]
     end, fastest, last = float(ground.start[-1]), float(np.abs(ground.velocity).max()), float(ground.velocity[-1])
     if not abs(last) > DRIFT * fastest:
         return []
