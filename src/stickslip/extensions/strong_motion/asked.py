@@ -131,7 +131,9 @@ def read_analysis(who: str, analysis: Any, column: Any) -> str:
     if analysis == "rigid" and column is not None:
         raise InputError(f"{who}: a column is for analysis='coupled' or 'decoupled'; a rigid block has none")
     if analysis != "rigid" and column is None:
-        raise InputError(f"{who}: analysis='{analysis}' needs a column, such as ss.ElasticSlab(..., driver_impedance=0)")
+        raise InputError(
+            f"{who}: analysis='{analysis}' needs a column, such as ss.SoilColumn(density, wave_speed, thickness, normal_stress)"
+        )
     return str(analysis)
 
 

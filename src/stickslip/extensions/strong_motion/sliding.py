@@ -83,7 +83,7 @@ def sliding(
         A rigid block; a column that deforms while it slides; or one that deforms first, and whose mean acceleration then moves a
         rigid block.
     column : body, optional
-        The column of the last two, such as `ss.ElasticSlab(..., driver_impedance=0)`. Its normal stress has no effect: the yields
+        The column of the last two, such as `ss.SoilColumn(..., damping_ratio=0.05)`. Its normal stress has no effect: the yields
         say how strong its base is.
     component : str, optional
         Which component of files that have several.

@@ -76,8 +76,11 @@ def _draw_level(axes: Axes, yields: Any, values: Any) -> None:
     for case in sliding:
         axes.plot(yields, case, color=GREY, linewidth=0.6, alpha=0.6, label="records and polarities", **look)
     low, middle, high = np.nanquantile(values, BANDS, axis=0)
-    if len(values) > 1:
-        floor = np.where(low > 0.0, low, np.finfo(float).tiny)
+    floor = np.where(low > 0.0, low, np.finfo(float).tiny)
+    if len(yields) == 1:  # bars in place of a band
+        axes.vlines(yields, floor, high, color=SKY, alpha=0.35, linewidth=12.0, label="16 to 84 %")
+        look = {"marker": "_", "markersize": 16.0, "markeredgewidth": 2.0, "linestyle": "none"}
+    elif len(values) > 1:
         axes.fill_between(yields, floor, high, color=SKY, alpha=0.35, linewidth=0.0, label="16 to 84 %")
     axes.plot(yields, np.where(middle > 0.0, middle, np.nan), color=BLUE, label="median", **look)
     none = ~(values > 0.0).any(axis=0)
