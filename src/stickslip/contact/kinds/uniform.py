@@ -68,8 +68,8 @@ def _surely_falls(body: BodyWithWaves) -> float:
 
     A disturbance exp(t/R) grows under it: friction gives what body, waves and machine take at s = 1/R.
     """
-    s = 1.0 / body.round_trip_time
-    machine = body.driver_inertia * s + body.driver_impedance + body.driver_integral_gain / s
+    s, driver = 1.0 / body.round_trip_time, driver_impedance(body)
+    machine = float(poly.polyval(s, driver.numerator) / poly.polyval(s, driver.denominator))
     echo = math.exp(-1.0) * (body.impedance - machine) / (body.impedance + machine)
     return body.impedance * (1.0 - echo) / (1.0 + echo) + body.inertia * s + body.damping - body.impedance
 

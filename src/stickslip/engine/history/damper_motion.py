@@ -44,15 +44,16 @@ def damper_motion(problem: Problem, store: Store, duration: float) -> DamperMoti
     Raises InputError if the run has forgotten its first pieces.
     """
     body: Any = problem.body
+    driver: Any = driver_of(problem)
     trip, pace = problem.round_trip_time, body.pace_of_damper
     parts = parts_of(problem, store, pace)
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
     rests = np.flatnonzero(gap > LONG_GAP * trip)
-    parts, first = parts.with_rests(rests, gap[rests]), body.impedance * driver_of(problem).at_first(problem)[0]
+    parts, first = parts.with_rests(rests, gap[rests]), body.impedance * driver.at_first(problem)[0]
     if store.trip[0] != 0 or store.phase_from[0] != 0.0:
         raise InputError("the motion of the damper of a column is not known in a part of a run that has forgotten what came before")
     arrives = parts.left + trip
-    *straight, phasor = driver_of(problem).joining(problem, arrives, arrives + 0.5 * (parts.speed + parts.bend))
+    *straight, phasor = driver.joining(problem, arrives, arrives + 0.5 * (parts.speed + parts.bend))
     tone = np.abs(phasor), tone_of(problem).frequency, np.angle(phasor)
     met = parts.wave + body.impedance * series_along(straight, tone, arrives, parts)
     own, passed = _filtered(met, parts, pace), _filtered(np.zeros((1, TERMS)), parts, pace, 1.0)

@@ -48,11 +48,12 @@ QUANTITIES = REDUCED_COLUMNS
 ONE_AT_A_TIME = {
     "layered": "[body] a {}",
     "machine": f"[body] {MACHINE}",
+    "damper": "[body] a column that is damped",
     "changing": "[loading] driver_reflection: a driver that changes",
 }
 """What a batch does not follow, by kind of body or of driver: what its lanes know of waves is one echo at a constant share."""
-OF_MACHINES = ("body.driver_inertia", "body.driver_integral_gain")
-"""The parameters that make a driver a machine."""
+MOVING = {"body.driver_inertia": "machine", "body.driver_integral_gain": "machine", "body.damping_ratio": "damper"}
+"""The parameters that give a driver a motion of its own, with the kind that it then is."""
 RUN = {"duration": DURATION, "rtol": RUN_RTOL}
 """The entries of [run] in a scenario that may be varied."""
 
@@ -188,7 +189,7 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     problem = scenario.problem
     if scenario.max_events is not None:
         yield "[run] events: a batch runs for a time, not until a number of events"
-    driver = "machine" if any(name in parameters for name in OF_MACHINES) else problem.driver_kind
+    driver = next((kind for name, kind in MOVING.items() if name in parameters), problem.driver_kind)
     alone = [ONE_AT_A_TIME[kind].format(problem.body.kind) for kind in (problem.body.structure, driver) if kind in ONE_AT_A_TIME]
     yield from (f"{reason} is followed one run at a time" for reason in alone)
     if not alone and problem.varies:

@@ -41,6 +41,8 @@ CROWD = 1024
 """Merge pieces as often as possible where a round trip has so many (1) or more."""
 PAUSE = 128
 """Pieces are merged after this many round trips (1) at the latest: merging one takes the time of some ten others."""
+LOOSER = 10.0
+"""Merging may change the one wave of a uniform body by this factor (1) more: by the tolerance of the run and not that of a step."""
 HALVINGS_OF_GROUP = 8
 """Halve a group of pieces at most this many times (1), until one series describes it."""
 SHORTER = 0.125
@@ -76,7 +78,7 @@ def plan_merging(run: Run) -> None:
     elif (pieces > MANY and pieces > counts.merge_above) or (pieces > FEW and counts.trip >= counts.merge_at):
         counts.merging, counts.merge_at = 1, counts.trip + PAUSE
         counts.smooth_to, counts.merge_guess = 0, MOST_TOGETHER
-        state.merge_within = run.params.tolerance * swing_of_waves(run)
+        state.merge_within = run.params.tolerance * swing_of_waves(run) * (LOOSER if counts.slots == 0 else 1.0)
 
 
 @kernel

@@ -98,11 +98,6 @@ class Driver(ABC):
         """Return the share (1) of waves of the start that it sends back, as they arrive at phases (s) of the first round trip."""
         return inflow_of(problem).reflection_at(phases)
 
-    def joining(self, problem: Problem, start: Floats, middle: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return what joins waves before they meet a filter, over Z (m/s), as they arrive at the contact: nothing."""
-        nothing = np.zeros(len(start))
-        return nothing, nothing, nothing, nothing
-
     def put(self, problem: Problem, segments: Any, start: Floats, middle: Floats) -> None:
         """Write the share of waves that it sends back into segments of the loading, which begin at times (s) and hold at others."""
         inflow = inflow_of(problem)

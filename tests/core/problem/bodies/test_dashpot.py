@@ -17,6 +17,7 @@ from tests.core.problem.bodies.dashpot import DROP, OWN, PROBLEM, SLAB, WEAKENIN
 def test_no_body_has_one_unless_it_is_given() -> None:
     plain = (
         ss.ElasticSlab(2800, 3500, 1e4, 1e8),
+        ss.SoilColumn(1900, 160, 20.0, 4e5, 0.05),
         ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0),
         ss.RotatingBlock(1.0, 1e3, 10.0, damping=2.0),
         ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0).on_belt(),
@@ -28,7 +29,7 @@ def test_no_body_has_one_unless_it_is_given() -> None:
     )
     assert {type(body) for body in plain} == set(BODIES.values())
     assert not any(body.dashpot for body in plain)
-    for body in plain[:1] + plain[5:]:
+    for body in plain[:1] + plain[6:]:
         given = replace(body, contact_damping=0.25 * body.impedance)  # type: ignore[type-var] # all are dataclasses
         assert given.damping == pytest.approx(1.25 * body.impedance, rel=1e-15)
         assert given.equivalent_block().damping == pytest.approx(0.25 * body.impedance, rel=1e-15)

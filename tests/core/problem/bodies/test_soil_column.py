@@ -221,6 +221,30 @@ def test_the_loads_of_a_run_follow_from_its_slip() -> None:
     assert run.proven.unproven == 0
 
 
+def test_a_long_record_ends_because_echoes_of_its_kinks_are_merged() -> None:
+    """Unmerged, the 3000 kinks would come back some 170 times each, as 500 000 pieces."""
+    drawn = np.random.default_rng(7).normal(size=3000)
+    swing = np.convolve(drawn, np.hanning(12), mode="same")
+    swing = 0.35 * G * (swing - swing.mean()) / np.abs(swing).max()
+    ground = PiecewiseLinear((0.01 * np.arange(3000)).tolist(), swing.tolist())
+    problem = shaken(column(0.05, wave_speed=457.0), ground_acceleration=ground)
+    run = ss.simulate(problem, 30.0)
+    assert run.status.name == "finished"
+    assert len(run.history) < 100_000
+    assert "pieces of waves were merged" in str(run)
+    time, slip = by_small_steps(problem, 30.0, 800)
+    assert np.allclose(run.slip(time[::200]), slip[::200], rtol=0.0, atol=2e-6 * slip[-1])
+
+
+def test_a_scenario_has_the_column(tmp_path: Path) -> None:
+    path = tmp_path / "column.toml"
+    soil = "\n".join(f"{name} = {value}" for name, value in SOIL.items())
+    law = '[friction]\nkind = "coulomb"\nstatic = 0.3715\ndynamic = 0.3'
+    text = f'[body]\nkind = "soil-column"\n{soil}\ndamping_ratio = 0.05\n{law}\n[initial]\nload = 133000\n[run]\nduration = 2\n'
+    path.write_text(text + "[loading]\npull_rate = 0\n", encoding="utf-8")
+    assert ss.load_scenario(path).problem.body == column(0.05)
+
+
 def test_replacing_the_damping_ratio_makes_another_damper() -> None:
     body = column(0.05)
     assert replace(body, damping_ratio=0.1).reflection < body.reflection < 1.0

@@ -13,7 +13,7 @@ DENSITY = 'must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3"'
 STRESS = 'must be a number in Pa or a text with a unit such as "10 Pa"'
 CREEP = "must be 0 (no leaps over creep, every round trip is run) or at most 0.01"
 BODIES = (
-    "block-on-belt, block-on-disc, elastic-slab, layered-slab, rotating-block, sectioned-string and 3 more:"
+    "block-on-belt, block-on-disc, elastic-slab, layered-slab, rotating-block, sectioned-string and 4 more:"
     " `stickslip new --list` lists all"
 )
 FAR = "far_stress and far_stress_rate need a slab with a finite driver_impedance"

@@ -111,16 +111,6 @@ class SoilColumn(Declared, WithWaves):
         """The share of a sharp wave front that the top sends back, (Z - D) / (Z + D)."""
         return (1.0 - self.damper.dashpot) / (1.0 + self.damper.dashpot)
 
-    @cached_property
-    def is_driven_rigidly(self) -> bool:
-        """False: the top is free."""
-        return False
-
-    @property
-    def front_reflection(self) -> float:
-        """The share of a sharp wave front that the top sends back."""
-        return self.reflection
-
     def equivalent_block(self) -> SpringBlock:
         """Raise InputError: nothing holds the column, so that there is no spring."""
         raise InputError("SoilColumn: equivalent_block needs a body that is held, and the top of a column is free")
