@@ -270,10 +270,14 @@ class _Tables:
             if isinstance(entry, NamedNumbers):
                 given = self.setting.value(f"{table}.{name}") or {}
                 controls += [self.named(f"{table}.{name}.{one}", one) for one in given]
-            elif not isinstance(entry, LawField):
+            elif not isinstance(entry, LawField) and not self._is_packed(f"{table}.{name}", entry):
                 controls.append(self.control(f"{table}.{name}", entry, default))
         own = getattr(kind, "kind", "") if kinds else ""
         return ControlGroup(table, title or TITLES_OF_TABLES[table.partition(".")[0]], own, kinds, tuple(controls))
+
+    def _is_packed(self, path: str, entry: Field) -> bool:
+        """Return True for numbers that a scenario holds packed, as those of a record: nobody edits them one by one."""
+        return isinstance(entry, NumberSeries) and isinstance(self.setting.value(path), str)
 
     def of_run(self) -> ControlGroup:
         numbers = self.of("run", type(self.problem.body), ())
