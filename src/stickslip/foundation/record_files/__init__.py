@@ -28,10 +28,7 @@ def form_of(first: Sequence[str]) -> Callable[[Lines, Asked], Sheet]:
 
 
 def decoded(begin: bytes) -> tuple[str, str]:
-    """Return the encoding of a text, by its first bytes, and what is done with bytes of another encoding.
-
-    Files in a format of an extension may hold letters of an older encoding, because the programs that write them know no other.
-    """
+    """Return the encoding of a text by its first bytes, and what is done with older letters: extensions may have those."""
     if begin.startswith(_WIDE):
         return "utf-16", "strict"
     first = begin[:FIRST_BYTES].removeprefix(codecs.BOM_UTF8).decode("latin-1").splitlines()

@@ -53,14 +53,6 @@ class Lines:
     def _next(self) -> str:
         return self.begin[self.number] if self.number < len(self.begin) else next(self.more)
 
-    def rest(self) -> list[str]:
-        """Return all lines that are left, at once."""
-        found = [] if self.peeked is None else [self.peeked]
-        found += [*self.begin[self.number + len(found) :], *self.more]
-        self.peeked = None
-        self.number += len(found)
-        return found
-
     def peek(self) -> str:
         """Return the next line, which stays the next one; nothing at the end."""
         if self.peeked is None:
@@ -123,8 +115,7 @@ class Asked(NamedTuple):
 class RecordForm(NamedTuple):
     """A format of text: what knows it by the first lines of a file, and what reads such a file as a sheet.
 
-    `begins` gets up to 200 lines without their ends, or those of the first 4096 bytes; the first line that a file is known by
-    should be among its first twenty.
+    `begins` gets the first 200 lines, or those of the first 4096 bytes.
     """
 
     begins: Callable[[Sequence[str]], bool]

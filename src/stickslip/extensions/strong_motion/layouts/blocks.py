@@ -34,7 +34,8 @@ class Columns(NamedTuple):
 
 def rest(lines: Lines) -> list[str]:
     """Return the lines that are left, without those at the end that are blank."""
-    found = lines.rest()
+    found = list(islice(lines, max(len(lines.begin) - lines.number, lines.peeked is not None)))
+    found += lines.more  # at once, without counting
     while found and not found[-1].strip():
         found.pop()
     return found
