@@ -285,15 +285,11 @@ class ProblemFields(CheckedArguments):
         """The names of the histories that act on the body: a far stress behind a driver that stays rigid does not."""
         return tuple(name for name in self._varying if name != "far_stress" or not self.is_driven_rigidly)
 
-    @property
-    def _driver_moves(self) -> bool:
-        """True if a machine, or a damper, has a motion of its own."""
-        return self.body.has_machine or self.body.is_damped
-
     @cached_property
     def varies(self) -> bool:
         """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or moves by itself."""
-        return self.driver_changes or any(name != "driver_reflection" for name in self._felt) or self._driver_moves
+        moves = self.body.has_machine or self.body.is_damped
+        return moves or self.driver_changes or any(name != "driver_reflection" for name in self._felt)
 
     @cached_property
     def driver_steps(self) -> tuple[tuple[float, float], ...]:

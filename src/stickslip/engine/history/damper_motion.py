@@ -19,9 +19,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem, driver_of, tone_of
 
-LONG_GAP = 1e-9
-"""Longer than this share of a round trip (1), time between two pieces is a rest that was leaped over."""
-
 
 @dataclass(frozen=True, eq=False)
 class DamperMotion(MotionInParts):
@@ -48,7 +45,7 @@ def damper_motion(problem: Problem, store: Store, duration: float) -> DamperMoti
     trip, pace = problem.round_trip_time, body.pace_of_damper
     parts = parts_of(problem, store, pace)
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
-    rests = np.flatnonzero(gap > LONG_GAP * trip)
+    rests = np.flatnonzero(gap > 1e-9 * trip)
     parts, first = parts.with_rests(rests, gap[rests]), body.impedance * driver.at_first(problem)[0]
     if store.trip[0] != 0 or store.phase_from[0] != 0.0:
         raise InputError("the motion of the damper of a column is not known in a part of a run that has forgotten what came before")

@@ -328,11 +328,7 @@ class WithOneDriver(WithNormalLoad):
     drivers: int = 1
     first_share: float = 1.0
     has_ground: bool = True
-
-    @property
-    def is_damped(self) -> bool:
-        """False: no damper takes energy of the waves."""
-        return False
+    is_damped: bool = False
 
     def added_at_contact(self, sent: tuple[Any, Any]) -> tuple[Any, Any]:
         """Return all load that the driver sends, and its growth."""

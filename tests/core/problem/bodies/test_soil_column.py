@@ -118,14 +118,14 @@ def test_a_larger_damping_ratio_than_one_damper_gives_is_refused() -> None:
 
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_free_swings_decay_as_the_first_mode(ratio: float) -> None:
-    run = ss.simulate(shaken(column(ratio), STRONG), 12.0)
+    run = ss.simulate(shaken(column(ratio), STRONG), 5.2 + 0.5 / ratio)
     turn = 0.5 / math.sqrt(1.0 - ratio * ratio)  # s: period of the damped swing
-    later = 4.0 + 0.6 / ratio * 0.1 + np.linspace(0.0, 0.5, 40)
+    later = 4.0 + 0.5 / ratio + np.linspace(0.0, 0.5, 40)
     swing = run.load(later) - SLOPE
     scale = np.abs(swing).max()
     expected = swing * math.exp(-2.0 * math.pi * ratio / math.sqrt(1.0 - ratio * ratio))
     higher = math.exp(-2.0 * np.pi / 0.5 * ratio * 3.0 * (later[0] - 4.0))  # of the second mode, which decays thrice as fast
-    assert np.allclose(run.load(later + turn) - SLOPE, expected, rtol=0.0, atol=(higher + 1e-8) * scale)
+    assert np.allclose(run.load(later + turn) - SLOPE, expected, rtol=0.0, atol=(higher + 1e-7) * scale)
 
 
 def test_shaking_of_one_frequency_reaches_the_stress_of_the_transfer_function() -> None:
@@ -146,32 +146,38 @@ def test_shaking_of_one_frequency_reaches_the_stress_of_the_transfer_function() 
 # ---- sliding ----------------------------------------------------------------------------------------------------------------
 
 
-def by_small_steps(problem: ss.Problem, duration: float, parts: int) -> tuple[Floats, Floats]:
-    """Times (s) and slip (m) by a method of steps: waves between steps are straight lines, and one way alone is open."""
+def by_small_steps(problem: ss.Problem, duration: float, parts: int) -> tuple[Floats, Floats, Floats]:
+    """Times (s), slip (m), and heat of the dashpot h/c before (J/m^2), by a method of steps: waves are straight lines between them.
+
+    One way alone is open.
+    """
     body: Any = problem.body
     z, r, far, ground = body.impedance, body.reflection, problem.initial_load, problem.ground
     step = body.round_trip_time / parts
     pace = z * body.dashpot_of_damper / body.mass_of_damper / (z + body.dashpot_of_damper)
     fades, time = math.exp(-pace * step), np.arange(int(duration / step)) * step
     moved = ground.velocity_at(time)  # type: ignore[union-attr] # it moves
-    left, rate, passed, before = np.empty(len(time)), np.empty(len(time)), 0.0, 0.0
+    (left, rate, force), passed, before = np.empty((3, len(time))), 0.0, 0.0
     for n in range(len(time)):
         met = left[n - parts] + far if n >= parts else 0.0  # type: ignore[operator] # a number
         passed = fades * passed + before * (1.0 - fades) + (met - before) * (1.0 - (1.0 - fades) / (pace * step))
-        before = met
+        before, force[n] = met, 0.5 * (1.0 - r) * (met - passed)
         load = far + r * met + (1.0 - r) * passed  # type: ignore[operator]
         rate[n] = max(0.0, (load - z * moved[n] - problem.strength) / z)
         left[n] = 2.0 * z * (rate[n] + moved[n]) - load
-    return time, np.append(0.0, np.cumsum(0.5 * step * (rate[1:] + rate[:-1])))
+    power = force**2 / body.dashpot_of_damper
+    return time, *(np.append(0.0, np.cumsum(0.5 * step * (one[1:] + one[:-1]))) for one in (rate, power))  # type: ignore[return-value]
 
 
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_sliding_agrees_with_a_method_of_small_steps(ratio: float) -> None:
     problem = shaken(column(ratio))
     run = ss.simulate(problem, 6.0)
-    time, slip = by_small_steps(problem, 6.0, 4000)
+    time, slip, heat = by_small_steps(problem, 6.0, 4000)
     assert slip[-1] > 0.1
     assert np.allclose(run.slip(time[::50]), slip[::50], rtol=0.0, atol=2e-6 * slip[-1])
+    at_top = time[4000::4000] - 0.5 * problem.round_trip_time
+    assert np.allclose(run.energy(at_top)["radiated"], heat[4000::4000], rtol=0.0, atol=2e-6 * heat[-1])
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2])
@@ -232,7 +238,7 @@ def test_a_long_record_ends_because_echoes_of_its_kinks_are_merged() -> None:
     assert run.status.name == "finished"
     assert len(run.history) < 100_000
     assert "pieces of waves were merged" in str(run)
-    time, slip = by_small_steps(problem, 30.0, 800)
+    time, slip, _ = by_small_steps(problem, 30.0, 800)
     assert np.allclose(run.slip(time[::200]), slip[::200], rtol=0.0, atol=2e-6 * slip[-1])
 
 

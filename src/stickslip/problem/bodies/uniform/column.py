@@ -20,9 +20,6 @@ from stickslip.problem.bodies.uniform.hysteretic import LARGEST_DAMPING, Damper,
 from stickslip.problem.bodies.uniform.slab import ElasticSlab
 from stickslip.problem.bodies.uniform.with_waves import WithWaves
 
-DAMPING_RATIO = Quantity("1", "damping ratio of the first two modes of the column", at_least=0, at_most=LARGEST_DAMPING)
-"""How strongly the modes of a column are damped."""
-
 
 @dataclass(frozen=True)
 class SoilColumn(Declared, WithWaves):
@@ -54,7 +51,7 @@ class SoilColumn(Declared, WithWaves):
     wave_speed: Number = quantity("m/s", "shear wave speed c", above=0)
     thickness: Number = quantity("m", "thickness h", above=0)
     normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
-    damping_ratio: Number = declare(DAMPING_RATIO, 0.0)
+    damping_ratio: Number = declare(Quantity("1", "damping ratio of modes 1 and 2", at_least=0, at_most=LARGEST_DAMPING), 0.0)
 
     def __post_init__(self) -> None:
         check_body(self)
@@ -67,7 +64,7 @@ class SoilColumn(Declared, WithWaves):
         return damper_of(float(self.damping_ratio))
 
     @property
-    def is_damped(self) -> bool:
+    def is_damped(self) -> bool:  # type: ignore[override]
         """True if there is a damper at the top."""
         return anywhere(np.greater(self.damping_ratio, 0.0))
 
