@@ -21,7 +21,7 @@ from stickslip.problem.loading import HISTORIES
 
 NAMES: dict[str, Any] = (
     {name: getattr(ss.friction, name) for name in ss.friction.__all__}
-    | vars(ss.loading)
+    | {name: getattr(ss.loading, name) for name in dir(ss.loading)}
     | {name: getattr(ss, name) for name in ("ElasticSlab", "SpringBlock", "Problem")}
 )
 ROUGH = 5.1e-6

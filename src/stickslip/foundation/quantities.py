@@ -168,11 +168,8 @@ class NumberSeries:
             found = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
         if not self.least <= len(found) <= self.most:
             raise InputError(f"{owner}: {name} must have {self.least} to {self.most} numbers, got {len(found)}")
-        falls = (
-            np.flatnonzero(np.diff(np.asarray(value if type(value) is np.ndarray else found, float)) <= 0.0)
-            if self.ascending
-            else ()
-        )
+        numbers = value if _is_plain(value) else found
+        falls = np.flatnonzero(np.diff(np.asarray(numbers, float)) <= 0.0) if self.ascending else ()
         for i in falls[:1]:
             one, following = found[i], found[i + 1]
             cure = "sort the points" if following < one else "keep one point of each, or their mean"
@@ -181,7 +178,7 @@ class NumberSeries:
 
     def at_once(self, value: Any) -> tuple[float, ...] | None:
         """Return floats, or an array of plain numbers, if all of them are allowed; else None: look at them one by one."""
-        if type(value) is np.ndarray and value.ndim == 1 and value.dtype.kind in "fiu":
+        if _is_plain(value):
             array = value.astype(float)
             found = tuple(array.tolist()) if self.item.allows(array).all() else None
         elif type(value) in (list, tuple) and set(map(type, value)) <= {float, Given}:
@@ -197,6 +194,11 @@ def _without_percent(value: Any) -> str:
         return f"; write {float(value[:-1]) / 100.0:g}" if isinstance(value, str) and value.endswith("%") else ""
     except ValueError:
         return ""
+
+
+def _is_plain(value: Any) -> bool:
+    """Return True for a row of numbers of numpy, without units."""
+    return type(value) is np.ndarray and value.ndim == 1 and value.dtype.kind in "fiu"
 
 
 def _is_list(value: Any) -> bool:

@@ -48,7 +48,7 @@ def damp(run: Run) -> float:
 
 @kernel
 def passes_filter(run: Run) -> bool:
-    """Write the series of what meets the filter, and of what passes it; return False if the latter ends too early."""
+    """Write the series of the wave that meets the filter, and of the one that passes; return False if the latter ends too early."""
     params, speed, bend = run.params, run.state.speed, 2.0 * run.state.bend
     met, slow, load = run.machine_force, run.machine_rate, run.load
     follow_ground(run, run.state.phase_from, speed, run.state.bend)

@@ -34,7 +34,7 @@ def record(
     source
         The name of a file: PEER (.AT2), K-NET and KiK-net, COSMOS, CSMIP, SMC, ESM (DYNA), GeoNet, CWB, TSPAIR of ObsPy, or any
         text with columns `time (s)` and `acceleration (g)`. Formats are known by what stands in the file, not by its name. Or an
-        object of ObsPy, of which nothing else is needed here.
+        object of ObsPy, which need not be installed here.
     component
         Which of several components: the heading of its column, such as "N90E", or its number.
     polarity

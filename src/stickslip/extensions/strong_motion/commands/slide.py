@@ -75,8 +75,8 @@ def slide(
       stickslip slide records --yield 0.05..0.3:6 --scale-to-pga 0.4 \
         --unit cm --out table.csv --figure d.png
       stickslip slide one.AT2 -y 0.05,0.1 --record-figure motion.png
-      stickslip slide records -y 0.1 --analysis coupled --body sliding-slab-shaken \
-        --set "body.thickness=30 m"
+      stickslip slide records -y 0.1 --analysis coupled \
+        --body sliding-slab-shaken --set "body.thickness=30 m"
 
     With one-way slip the two polarities of a record have two answers, and one
     may be twice the other. The first file that cannot be read ends the
