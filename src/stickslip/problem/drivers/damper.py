@@ -4,8 +4,8 @@ Let w = 2 Z v - beta be the wave that meets the top, with v absolute where the g
 
     beta - s = r (w + s) + (1 - r) y,    dy/dt = q (w + s - y),    r = (Z - D) / (Z + D),    q = (Z D / mass) / (Z + D)
 
-back: a share of the wave that comes, and what a filter of gain 1 lets pass. y/Z is the velocity of the mass. In the load of the engine,
-whose v is relative to the ground, w is less by Z times the velocity of the ground one round trip ago. That and s are known
+back: a share of the wave that comes, and what a filter of gain 1 lets pass. y/Z is the velocity of the mass. In the load of the
+engine, whose v is relative to the ground, w is less by Z times the velocity of the ground one round trip ago. That and s are known
 beforehand; they join what comes before it meets the filter.
 """
 
