@@ -24,6 +24,7 @@ IN_1D = {
     "find": ("planar-patch", "--along", "friction.static=0.6..0.8"),
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
     "schemes": ("planar-patch",),
+    "slide": ("record.AT2", "--yield", "0.1", "--analysis", "coupled", "--body", "planar-patch"),
     "sweep": ("planar-patch", "--vary", "friction.static=0.6,0.7"),
 }
 """Arguments for each command that is for a contact of one place."""

@@ -25,7 +25,7 @@ from stickslip.foundation.kernels.kernels import entry
 from stickslip.problem import EDGE, Inflow, Problem, driver_of, inflow_of, pace_of, pull_of, settled_rate, wave_before
 
 FINEST = 0.5
-"""WavesLeft of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
+"""Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
 EARLY = 1e-9
 """Times up to this share of themselves before the start of a motion are at the start, by rounding."""
 MOTION_NODES, MOTION_WEIGHTS = (values / 2.0 for values in np.polynomial.legendre.leggauss(TERMS + 1))

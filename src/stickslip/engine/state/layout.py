@@ -411,9 +411,7 @@ class LoadingSegment(MemoryRecord):
     tone_phase: float  # rad: phase of the tone at t = 0
     shakes: float  # 1 while the ground under a slab or layers moves, or its motion is on its way back in a slab, else 0
     reflection: float  # 1: `Params.reflection` while the segment holds
-    ground: (
-        float  # m/s: velocity of the ground under layers there, but for its tone (`waves.shaken_ladder`); for a damper `joining`
-    )
+    ground: float  # m/s: velocity of the ground under layers there, but for its tone (`waves.shaken_ladder`); see also `damper`
     ground_slope: float  # m/s^2: how fast it grows
     ground_curve: float  # m/s^3: half its second derivative
     ground_tone: float  # m/s: amplitude of its tone, ground_tone sin(tone_frequency t + ground_phase)

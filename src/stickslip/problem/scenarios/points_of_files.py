@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import column_given
 from stickslip.foundation.headings import KNOWN_COLUMNS, TURNED, find, missing
 from stickslip.foundation.named_columns import NamedColumns
-from stickslip.foundation.quantities import MOST_SAMPLES
+from stickslip.foundation.quantities import LARGEST_SERIES
 from stickslip.foundation.record_files import text_in
 from stickslip.foundation.text_columns import read_text
 
@@ -32,13 +32,15 @@ def read_points(
     *,
     named: Any = None,
     turns: bool = False,
+    most: int = LARGEST_SERIES,
 ) -> dict[str, list[float]]:
     """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by field.
 
     `columns` maps headings to fields. The last belongs to the dependent variable; exactly one other column must be there, or be
     named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
-    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.headings`), and
-    `named` says what headings mean. Of a contact that `turns` headings are those of angles and torques.
+    begin with #, notes before the headings and unknown columns are ignored, and more than `most` rows are refused. Headings may
+    carry units (`foundation.headings`), and `named` says what they mean. Of a contact that `turns` they are those of angles and
+    torques.
     Raises InputError with a message of one line that names the file and the line.
     """
     if turns:
@@ -56,16 +58,16 @@ def read_points(
         raise InputError(f"{where} {shown(name)}: not a text file in UTF-8") from None
     except InputError as error:
         raise InputError(f"{where} {shown(name)}: {error}") from None
-    return _points_in(text, columns, f"{where}: {shown(name)}", given)
+    return _points_in(text, columns, f"{where}: {shown(name)}", given, most)
 
 
-def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedColumns) -> dict[str, list[float]]:
+def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedColumns, most: int) -> dict[str, list[float]]:
     """Return the numbers (SI) in CSV text by field, as `read_points` does.
 
     `file` is the name of the text in messages.
     """
     *others, value = columns
-    table = read_text(text, tuple(columns), file, MOST_SAMPLES, named=named)
+    table = read_text(text, tuple(columns), file, most, named=named)
     found = [column for column in others if column in table.columns]
     if value not in table.columns:
         raise InputError(f"{table.at_header}: no column '{value}' in the header; {missing(table.header, value)}")

@@ -16,8 +16,8 @@ from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
 from stickslip.foundation.names import KINDS_OF_BODY, TURNS, own_units
+from stickslip.foundation.quantities import LARGEST_SERIES, LawField, NumberSeries, Quantity, fields_of, in_units
 from stickslip.foundation.quantities import Field as Declared
-from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
 from stickslip.foundation.synonyms import same
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
@@ -265,7 +265,10 @@ def read_table(
         along = raw.get("along") if len(columns) > 2 else None
         named = raw.get("columns")
         turns = source.load_unit == TURNS
-        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along, named=named, turns=turns)
+        series = next(fields_of(kind)[field][0] for field in columns.values())
+        most = series.most if isinstance(series, NumberSeries) else LARGEST_SERIES
+        where = f"{source.file}: [{table}] file"
+        points = read_points(name, source.folder, columns, where, along, named=named, turns=turns, most=most)
         taken = {"file", "columns"} if along is None else {"file", "columns", "along"}
         raw = {key: value for key, value in raw.items() if key not in taken} | points
     return _read_keys(keys_of(table, kind, states), raw, source, table)

@@ -21,6 +21,7 @@ from stickslip.problem.scenarios.packed import packed, unpacked
 from stickslip.problem.scenarios.scenario import Scenario, read_scenario
 from stickslip.run.check.asked import Fact
 from stickslip.run.check.examine import examine
+from tests.command_line import Command
 
 BLOCK = ss.SpringBlock(mass=1.0, stiffness=1e-9, normal_force=GRAVITY)
 DRY = ss.friction.Coulomb(static=0.1, dynamic=0.1)
@@ -307,15 +308,34 @@ def test_check_says_yield_peak_and_how_often_it_is_passed() -> None:
     assert back.meaning.endswith("passed 1 time")
 
 
-@pytest.mark.parametrize("body", ["slab", "layers"])
+@pytest.mark.parametrize("body", ["slab", "layers", "damped column"])
 def test_the_yield_of_a_column_is_that_of_its_whole_mass(body: str) -> None:
     mass = 2000.0 * 30.0
     of_kind = {
         "slab": ss.ElasticSlab(2000.0, 300.0, 30.0, mass * GRAVITY, driver_impedance=0.0),
+        "damped column": ss.SoilColumn(2000.0, 300.0, 30.0, mass * GRAVITY, damping_ratio=0.1),
         "layers": ss.LayeredSlab([10.0, 20.0], [2000.0, 2000.0], [100.0, 200.0], mass * GRAVITY, driver_impedance=0.0),
     }
     problem = ss.Problem(of_kind[body], DRY, initial_load=0.0, ground_acceleration=Accelerogram([0.0, 1.0, 0.0], 0.1), one_way=True)
     assert fact(problem, "yield").value == pytest.approx(0.1, rel=1e-9)
+
+
+def test_a_run_that_ends_before_its_record_is_warned_of() -> None:
+    problem = problem_of(Accelerogram(np.sin(0.1 * np.arange(1000)), 0.01))
+    for duration, warned in ((5.0, True), (12.0, False)):
+        found = examine(Scenario(problem, duration)).warnings
+        assert any("the record lasts 9.99 s, and the run 5 s" in one for one in found) == warned
+
+
+def test_set_puts_a_record_under_a_scenario(tmp_path: Path, command: Command) -> None:
+    (tmp_path / "made.csv").write_text(ROWS)
+    changes = ("--set", f"loading.ground_acceleration={tmp_path / 'made.csv'}", "--set", "loading.ground_acceleration.scale=2")
+    shown = command("check", "sliding-block-shaken", *changes)
+    assert shown.code == 0
+    assert "4 points" in shown.out
+    assert "shaken ground: made.csv" in shown.out
+    refused = command("check", "sliding-block-shaken", "--set", "loading.ground_acceleration=3").refusal
+    assert "loading.ground_acceleration must be the file of a record, got 3" in refused
 
 
 def test_an_offset_of_an_instrument_is_suspected_and_a_record_at_rest_is_not() -> None:

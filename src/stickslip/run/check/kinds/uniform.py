@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from stickslip.contact import Uniqueness
 from stickslip.foundation.constants import DEAD_LOAD
 from stickslip.problem import Problem
@@ -33,8 +35,12 @@ class _CheckOfUniform(CheckOfWaves):
         ]
 
     def mass_on_ground(self, body: BodyOnCharacteristics) -> float | None:
-        """Return the mass of a body with a free top, and of its contact."""
-        return 0.5 * body.impedance * as_waves(body).two_way_time + body.inertia if body.reflection == DEAD_LOAD else None
+        """Return the mass of a body with a free top, and of its contact and its damper."""
+        waves: Any = as_waves(body)
+        if body.reflection != DEAD_LOAD and not body.is_damped:
+            return None
+        mass: float = 0.5 * body.impedance * waves.two_way_time + body.inertia
+        return mass + float(waves.mass_of_damper) if body.is_damped else mass
 
     def modulus(self, body: BodyOnCharacteristics) -> float:
         return as_waves(body).modulus
