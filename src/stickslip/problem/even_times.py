@@ -23,9 +23,9 @@ def interval_of(times: Floats) -> float:
     It is one over a whole number of samples per second, if such a rate fits, and else the shortest number that does. Raises
     InputError that says where the interval changes, if there is none.
     """
-    since, count = times - times[0], len(times)
-    if count < 2:
+    if (count := len(times)) < 2:
         raise InputError(f"a record needs at least two samples, got {count}")
+    since = times - times[0]
     off = _rounding(times) * (1.0 if times[0] == 0.0 else 2.0) + SINGLE * np.abs(times[1:])
     place = np.arange(1.0, count)
     least, most = (since[1:] - off) / place, (since[1:] + off) / place

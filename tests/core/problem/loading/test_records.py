@@ -273,6 +273,7 @@ def test_the_mean_is_taken_off_on_request_only(tmp_path: Path) -> None:
         ),
         ('file = "made.csv"', ROWS.replace("0.3\n", "nan\n"), "line 3: ground_acceleration must be finite"),
         ('file = "made.csv"', ROWS.replace("acceleration", "velocity"), "no column 'ground_acceleration'"),
+        ('file = "made.csv"', ROWS.partition("\n")[0], "a record needs at least two samples, got 0"),
         ("file = 3", ROWS, "file must be text in quotes, got 3"),
     ],
 )

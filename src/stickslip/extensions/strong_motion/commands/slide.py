@@ -28,6 +28,8 @@ complete_analysis = choices("analysis", names_in("extensions.strong_motion.asked
 complete_unit = choices("unit", names_in("extensions.strong_motion.asked", "LENGTHS"))
 
 RECORDS = "Files of strong motion, or folders of them; their layout is found by their content."
+MOST_YIELDS = 10_000
+"""Largest number of points of a range of yield coefficients."""
 YIELDS = "Yield coefficients, yield accelerations as parts of g: LOW..HIGH:POINTS[:log] or VALUE,VALUE,...; or with a unit."
 POLARITY = (
     "1 takes records as they come (slides while -a exceeds the yield), -1 the opposite, as most programs of this field; or both."
@@ -134,6 +136,8 @@ def _yields(text: str) -> Any:
     if found.points is None or found.points < 2:
         raise InputError(f"slide: --yield: a range needs its number of points, at least 2, as in {text.partition(':')[0]}:6")
     check_ends("slide: --yield", low, high, log=found.log)
+    if found.points > MOST_YIELDS:
+        raise InputError(f"slide: --yield: a range has at most {MOST_YIELDS} points, got {found.points}")
     return spaced(low, high, found.points, log=found.log)
 
 
