@@ -8,6 +8,7 @@ from decimal import Decimal
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
@@ -62,7 +63,7 @@ Number = Converted[float, float | str | WithUnit]
 """Annotation of a field that is a float in SI, and may be given as a text with a unit or as a quantity of pint."""
 OptionalNumber = Converted[float | None, float | str | WithUnit | None]
 """Annotation of a field that is such a number or None."""
-Numbers = Converted[Sequence[float], Sequence[float | str | WithUnit] | WithUnit]
+Numbers = Converted[Sequence[float], Sequence[float | str | WithUnit] | NDArray[Any] | WithUnit]
 """Annotation of a field that is a series of such numbers."""
 OptionalNumbers = Converted[Sequence[float] | None, Sequence[float | str | WithUnit] | WithUnit | None]
 """Annotation of a field that is such a series or None."""

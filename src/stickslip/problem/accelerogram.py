@@ -18,15 +18,16 @@ from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, Text, declare, quantity
 from stickslip.foundation.show import brief
 from stickslip.problem.loading import HISTORIES
-from stickslip.problem.loading_history import LoadingHistory, Segment, fixed
+from stickslip.problem.loading_history import InParts, LoadingHistory, fixed
 
 LONGEST_ORIGIN = 300
 """Largest number of characters of what a record says of its file."""
 ACCELERATION = si_unit("slip_acceleration").partition(" or ")[0]
+"""Unit of the samples: the ground under a record does not turn."""
 
 
 @dataclass(frozen=True)
-class Accelerogram(LoadingHistory):
+class Accelerogram(InParts):
     """Acceleration of the ground as it was recorded: a straight line from sample to sample, and 0 after the last one.
 
     The ground keeps the velocity that it has at the end. What counts is polarity times scale times (values less offset): a load on
@@ -71,11 +72,6 @@ class Accelerogram(LoadingHistory):
     def scaled(self, factor: float) -> Self:
         return replace(self, scale=self.scale * abs(factor), polarity=self.polarity * (1.0 if factor > 0.0 else -1.0))
 
-    @property
-    @override
-    def segments(self) -> tuple[Segment, ...]:
-        return tuple(Segment(*one) for one in self.parts.T.tolist())
-
     @cached_property
     @override
     def parts(self) -> Floats:
@@ -84,7 +80,5 @@ class Accelerogram(LoadingHistory):
         return fixed(np.array([self.interval * np.arange(len(values)), begins, slopes]))
 
 
-OF_GROUND: dict[str, type[LoadingHistory]] = {Accelerogram.kind: Accelerogram}
-"""Histories that are motions of the ground and nothing else."""
-ALL_HISTORIES = ChainMap(HISTORIES, OF_GROUND)
+ALL_HISTORIES: ChainMap[str, type[LoadingHistory]] = ChainMap(HISTORIES, {Accelerogram.kind: Accelerogram})
 """Every history that a scenario file may have, those of users in HISTORIES too."""

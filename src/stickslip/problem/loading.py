@@ -19,11 +19,11 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, declare, quantity
-from stickslip.problem.loading_history import VARYING, LoadingHistory, Segment, Tone, fixed
+from stickslip.problem.loading_history import VARYING, InParts, LoadingHistory, Segment, Tone, fixed
 
 
 @dataclass(frozen=True)
-class PiecewiseLinear(LoadingHistory):
+class PiecewiseLinear(InParts):
     """A straight line from point to point, constant before the first point and after the last."""
 
     kind = "piecewise-linear"
@@ -37,11 +37,6 @@ class PiecewiseLinear(LoadingHistory):
         super().__post_init__()
         if len(self.times) != len(self.values):
             raise InputError(f"{type(self).__name__}: {len(self.times)} times but {len(self.values)} values")
-
-    @property
-    @override
-    def segments(self) -> tuple[Segment, ...]:
-        return tuple(Segment(*one) for one in self.parts.T.tolist())
 
     @cached_property
     @override
@@ -67,11 +62,6 @@ class Steps(PiecewiseLinear):
         super().__post_init__()
         if self.times[0] != 0.0:
             raise InputError(f"Steps: times must begin with 0, from which the first value holds, got {self.times[0]:g}")
-
-    @property
-    @override
-    def segments(self) -> tuple[Segment, ...]:
-        return tuple(Segment(*one) for one in self.parts.T.tolist())
 
     @cached_property
     @override

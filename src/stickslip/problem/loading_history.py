@@ -11,6 +11,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
+from typing_extensions import override
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import unit_among
@@ -176,6 +177,20 @@ class LoadingHistory(Declared, ABC):
         n = np.maximum(np.searchsorted(start, time, side="right") - 1, 0)
         amplitude, frequency, phase = self.tone
         return np.asarray(value[n] + slope[n] * (time - start[n]) + amplitude * np.sin(frequency * time + phase))
+
+
+class InParts(LoadingHistory):
+    """A history that gives its straight parts as an array, because they may be very many; its segments follow."""
+
+    @property
+    @abstractmethod
+    def parts(self) -> Floats:
+        """Starts (s), values and slopes (per second) of the straight parts, as for any history."""
+
+    @property
+    @override
+    def segments(self) -> tuple[Segment, ...]:
+        return tuple(Segment(*one) for one in self.parts.T.tolist())
 
 
 def fixed(array: Floats) -> Floats:

@@ -56,7 +56,7 @@ class GroundMotion:
 
     @cached_property
     def _history(self) -> Accelerogram:
-        return Accelerogram(self.acceleration.tolist(), self.interval)
+        return Accelerogram(self.acceleration, self.interval)
 
     def history(self, factor: float) -> Accelerogram:
         """Return the acceleration times a factor as a history for a problem, which is 0 after the last sample."""

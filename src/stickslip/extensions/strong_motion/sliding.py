@@ -61,7 +61,8 @@ def sliding(
     """Find how far a slope or an isolated block slides in earthquakes: every record at every yield coefficient.
 
     A block on shaken ground slides while the ground accelerates by more than its yield acceleration: the strength of its base less
-    the pull of gravity along it, over its mass. Under straight lines between the samples of a record the answer is exact.
+    the pull of gravity along it, over its mass. Under straight lines between the samples of a record the answer of a rigid block is
+    exact.
 
     Parameters
     ----------

@@ -81,13 +81,13 @@ def warnings_of_ground(scenario: Scenario) -> list[str]:
     ground, record = ground_given(scenario.problem), scenario.problem.ground_acceleration
     if ground is None or record is None or ground.tone.amplitude != 0.0:
         return []
+    found = list[str]()
     if isinstance(record, Accelerogram) and record.duration > scenario.duration:
         lasts = f"the record lasts {brief(record.duration, 's')}, and the run {brief(scenario.duration, 's')}"
-        return [f"{lasts}: what comes after is left out"]
+        found.append(f"{lasts}: what comes after is left out")
     end, fastest, last = float(ground.start[-1]), float(np.abs(ground.velocity).max()), float(ground.velocity[-1])
     if not abs(last) > DRIFT * fastest:
-        return []
+        return found
     ends = f"the ground ends at {brief(last, 'm/s', 3)}, {brief(float(ground.displacement_at(end)), 'm', 3)} away from where it was"
     offset = f"an offset of {brief(last / end, 'm/s^2', 3)} in its acceleration does that"
-    cure = 'baseline = "mean" takes it off a record' if end > 0.0 else ""
-    return [f"{ends}: {offset}; {cure}, if it is the instrument's; records end at rest"]
+    return [*found, f'{ends}: {offset}; baseline = "mean" takes it off a record, if it is the instrument\'s; records end at rest']

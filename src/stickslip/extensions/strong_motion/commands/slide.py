@@ -68,9 +68,10 @@ def slide(
 
     A block on shaken ground slides while the ground accelerates by more than its
     yield acceleration (Newmark 1965). Between the samples of a record the
-    acceleration is a straight line, and the answer is exact. The table has a row
-    for each record, polarity, scale and yield, in the words of the field: PGA,
-    PGV, Arias intensity, significant duration, mean period, and displacement.
+    acceleration is a straight line, under which the answer of a rigid block is
+    exact. The table has a row for each record, polarity, scale and yield, in the
+    words of the field: PGA, PGV, Arias intensity, significant duration, mean
+    period, and displacement.
 
     \b
       stickslip slide records/*.AT2 --yield 0.1

@@ -11,10 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import GRAVITY
 from stickslip.foundation.record_files import Asked, Sheet
 
-GRAVITY = 9.80665
-"""The acceleration g (m/s^2)."""
 UNITS = {"g": GRAVITY, "mg": 1e-3 * GRAVITY, "gal": 1e-2, "cm/s^2": 1e-2, "mm/s^2": 1e-3, "m/s^2": 1.0, "in/s^2": 0.0254}
 """Units of acceleration, each in m/s^2."""
 OFFSET_TOLD = 1e-3
