@@ -11,6 +11,7 @@ from tests.command_line import Command
 from tests.core.cli.driven_layers import DRIVEN, LAYERS
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", DRIVEN)
 def test_layers_are_driven_from_a_scenario(command: Command, name: str) -> None:
     texts, change = DRIVEN[name]

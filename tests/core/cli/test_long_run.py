@@ -186,6 +186,7 @@ def test_a_size_of_memory_that_is_none_is_refused_in_one_line(command, monkeypat
     assert command("run", "fig5-slab-printed").refusal == said
 
 
+@pytest.mark.slow
 def test_a_catalogue_whose_history_is_full_says_how_it_goes_on(command, tmp_path: Path):
     """A block that always slides has one event, whose history is kept."""
     pull = ss.loading.Sinusoidal(1.0, 0.5, 1.0)

@@ -176,6 +176,7 @@ def test_runs_below_the_critical_value_finish() -> None:
     assert np.bincount(run.history.store.trip).max() < 3 * MOST_PIECES
 
 
+@pytest.mark.slow
 def test_lumped_runs_can_be_resumed_and_streamed(tmp_path: Path) -> None:
     problem, end = weakening(0.15, thickness=1e3), 9.0
     whole = ss.simulate(problem, end)

@@ -86,6 +86,7 @@ def test_a_catalogue_takes_no_leap_for_a_step_that_it_proves() -> None:
     assert to_si(float(number), unit, "Pa") <= 1e-8 * problem.normal
 
 
+@pytest.mark.slow
 def test_a_run_with_leaps_beside_rest_is_resumed_bit_for_bit(printed: ss.Solution, tmp_path: Path) -> None:
     """Wherever it is stopped."""
     problem = printed.problem

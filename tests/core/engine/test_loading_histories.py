@@ -202,6 +202,7 @@ def test_centuries_of_tides_at_rest_are_leaped_over() -> None:
     assert len(run.history) < 3000
 
 
+@pytest.mark.slow
 def test_energy_balances_across_leaped_rest() -> None:
     """A slab slips, rests for hours under a hold, a ramp and a tone, and slips again: balance to 1e-11 of the heat."""
     ramp = PiecewiseLinear((0.0, 40.0, 50.0, 4000.0, 40_000.0), (1.0, 1.0, 0.0, 0.0, 1e-3))

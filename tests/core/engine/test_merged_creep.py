@@ -74,6 +74,7 @@ def test_merged_strips_take_fewer_pieces(runs: tuple[ss.Solution, ss.Solution, f
     assert "strips at the borders of creep were merged" in merged.rounding_note
 
 
+@pytest.mark.slow
 def test_a_run_with_merged_strips_is_resumed_bit_for_bit(tmp_path: Path) -> None:
     """Stopped within the creep before a pulse."""
     whole = ss.simulate(PULSING, 1.1 * ss.YEAR, creep_rtol=1e-5)

@@ -184,6 +184,7 @@ def test_a_resumed_run_leaps_as_if_it_had_not_stopped(share: float, tmp_path: Pa
     assert differences(stopped_and_continued(ss.simulate(problem, share * end), end, tmp_path), whole) == []
 
 
+@pytest.mark.slow
 def test_a_note_says_slow_where_the_sliding_is_slow_and_steady_only_where_it_has_become_so() -> None:
     slow_note = ss.simulate(slid(AGEING, 1e-9, 28e6, 1e8), 50.0 * YEAR).creep_note
     assert "round trips of slow sliding" in slow_note

@@ -119,6 +119,7 @@ for m in range(12):
 """
 
 
+@pytest.mark.slow
 def test_formulas_that_are_read_at_once_do_not_silence_warnings() -> None:
     python(SETTING + WARNED, uuid4().hex)
 

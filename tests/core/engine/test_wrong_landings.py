@@ -50,6 +50,7 @@ WRONG: dict[str, tuple[Callable[[pytest.MonkeyPatch], None], ss.Problem, float, 
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", WRONG)
 def test_a_leap_that_lands_wrongly_is_undone(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Slip is, to the last bit, that of the run without leaps."""

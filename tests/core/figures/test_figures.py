@@ -225,6 +225,7 @@ def test_figures_are_legible_and_name_their_units(side_by_side: xr.Dataset) -> N
         assert illegible(figure) == []
 
 
+@pytest.mark.slow
 def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: Path) -> None:
     side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
     again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
@@ -237,6 +238,7 @@ def test_years_are_shown_as_years() -> None:
     assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_same_figure_gives_the_same_bytes() -> None:
     dataset = systems.systems_data(BLOCK_PROBLEM, SLAB_PROBLEM)
     for kind in ("png", "svg"):

@@ -243,6 +243,7 @@ def test_times_outside_the_run_are_refused(run: ss.Solution, start: float | None
             draw(run, start, end)
 
 
+@pytest.mark.slow
 def test_characteristics_that_would_cover_the_image_are_left_out(run: ss.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
     dataset = inside.space_time_data(run)
     crossings = int(np.isfinite(dataset.front_time.values[:, 1:]).sum())

@@ -119,6 +119,7 @@ def test_a_rest_of_any_length_shows_how_far_the_waves_in_the_body_swing_the_load
         assert load[near].max() == pytest.approx(seen.max(), abs=1e-3 * np.ptp(seen))
 
 
+@pytest.mark.slow
 def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
     run = ss.simulate("granite-slab", 200.0)
     figure = draw_run(run)
@@ -131,6 +132,7 @@ def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
     assert [text.get_text() for text in figure.legends[0].get_texts()].count(RANGE) == 1
 
 
+@pytest.mark.slow
 def test_slip_rates_of_many_events_are_their_peaks_and_no_filled_band() -> None:
     """A band would say that the contact slips all the time: of 477 events each peak is a point, at its time and its rate."""
     run = ss.simulate("granite-slab", 200.0)
@@ -145,6 +147,7 @@ def test_slip_rates_of_many_events_are_their_peaks_and_no_filled_band() -> None:
     assert [text.get_text() for text in figure.legends[0].get_texts()].count(PEAKS) == 1
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("last", [19.0, 40.0, 100.0])
 def test_the_slip_rate_of_tens_and_hundreds_of_events_is_a_curve(last: float) -> None:
     figure = draw_run(LONG, 0.0, last)

@@ -152,6 +152,7 @@ def test_a_fault_on_which_nothing_slips_is_shown() -> None:
     assert [mark.kind for mark in answer.marks] == []
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("kind", OF_A_FAULT)
 def test_each_kind_of_file_can_be_saved(answer: FaultAnswer, kind: str) -> None:
     name, _, content = export(kind, SETTING, answer)

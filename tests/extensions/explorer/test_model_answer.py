@@ -437,6 +437,7 @@ def test_a_run_over_a_million_million_round_trips_is_answered_with_pictures_of_t
         assert elastic - elastic[0] == pytest.approx(exact - exact[0], abs=1e-3 * exact[-1])
 
 
+@pytest.mark.slow
 def test_pictures_over_many_round_trips_show_means_over_one_of_the_exact_energies() -> None:
     """A rest after a slip event, whose waves go to and fro 20 000 times; it is shown whole, as the explorer would not do."""
     scenario = ss.load_scenario("fig5-slab-u0-1e-2")

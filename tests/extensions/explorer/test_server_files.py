@@ -67,6 +67,7 @@ def test_saved_tables_hold_all_digits_and_where_they_come_from(answer: Answer) -
     assert b"# alpha = 0.7\n" in events
 
 
+@pytest.mark.slow
 def test_saved_figures_are_those_of_the_command_line(answer: Answer, tmp_path: Path) -> None:
     from stickslip.cli.output.files import FigureLook, drawing
 

@@ -38,6 +38,7 @@ def test_a_problem_is_shown_in_a_notebook_and_answers() -> None:
     asyncio.run(cells())
 
 
+@pytest.mark.slow
 def test_scripts_and_style_sheets_come_from_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
     """A notebook may have no internet: scripts are brought along, and no style sheet is named anew when a text changes."""
     brought = []

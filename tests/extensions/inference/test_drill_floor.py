@@ -95,6 +95,7 @@ def test_a_law_at_the_bit_is_found_from_torque_and_speed_at_a_drive_that_gives_w
     assert "the torque is that at the drive, which waves from the bit reach later" in found.about
 
 
+@pytest.mark.slow
 def test_a_torque_without_a_place_is_at_the_drive_if_the_sensor_is_said_to_be_there() -> None:
     stiff = replace(TRUE, body=replace(STRING, driver_impedance=math.inf, driver_inertia=0.0, driver_integral_gain=0.0))
     given = log(stiff)

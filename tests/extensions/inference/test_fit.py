@@ -126,6 +126,7 @@ def test_intervals_of_one_uncertainty_hold_the_truth_as_often_as_they_should(kin
         assert low <= inside <= high, (name, inside)
 
 
+@pytest.mark.slow
 def test_the_band_is_the_spread_of_many_fits() -> None:
     """The standard error along the law agrees with the scatter of 60 fits to 40 % (its own error: 9 %)."""
     curves, errors = zip(*(found.band(v=RATES) for found in many_fits("hyperbolic-rate")), strict=True)

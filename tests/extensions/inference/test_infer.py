@@ -306,6 +306,7 @@ def drawn(residual: Any, fit: np.ndarray, slopes: np.ndarray, count: int, before
 SLOPES = np.random.default_rng(5).standard_normal((40, 5))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("shift", "narrower", "independent"), [(0.0, 1.0, 3500), (0.7, 1.3, 800)])
 def test_samples_have_the_moments_of_a_normal_posterior_even_if_the_fit_is_wrong(
     shift: float, narrower: float, independent: int
@@ -321,6 +322,7 @@ def test_samples_have_the_moments_of_a_normal_posterior_even_if_the_fit_is_wrong
     assert int(walk.notes[0].split("about ")[1].split()[0]) > independent
 
 
+@pytest.mark.slow
 def test_samples_of_a_bent_posterior_have_its_moments() -> None:
     """x is normal, and y normal around x^2/2: E(y) is 1/2, and its variance 3/2. The fit sees a straight line."""
     pytest.importorskip("emcee")

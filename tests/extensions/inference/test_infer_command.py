@@ -77,6 +77,7 @@ def test_what_cannot_be_used_is_one_line(command, options, message):
     assert command("infer", "velocity-steps-block", "data.csv", *options).refusal.startswith(message)
 
 
+@pytest.mark.slow
 def test_windows_and_weights_are_asked_for_by_options(command):
     shown = command(
         "infer", "velocity-steps-block", "data.csv", "--free", "reference", "--starts", "1", "--windows", "--weight", "0.2"

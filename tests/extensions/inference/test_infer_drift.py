@@ -60,6 +60,7 @@ def test_a_drift_of_plateaus_is_free_by_itself_and_the_law_is_found() -> None:
     assert int(said[-1].rpartition(", ")[2].split()[0]) < 700  # a search without derivatives takes more than 2000
 
 
+@pytest.mark.slow
 def test_a_user_who_says_no_is_told_what_is_left_and_nothing_goes_on_in_vain() -> None:
     said: list[str] = []
     study = ss.studies.infer(NEAR, FALLING.record(), ["b", "reference"], trend="none", progress=said.append)
@@ -84,6 +85,7 @@ def test_plateaus_show_a_drift_with_slip_or_with_time_and_none_where_there_is_no
         assert not seen(rig).seen
 
 
+@pytest.mark.slow
 def test_a_drift_with_time_is_one_with_time_and_two_drifts_are_two() -> None:
     rig = replace(TWO, creep=-1e-4, trend=4.0)
     study = ss.studies.infer(NEAR, rig.record(), ["a", "reference"], starts=1)
@@ -97,6 +99,7 @@ def test_from_two_plateaus_it_is_said_that_levels_cannot_tell_a_drift_from_the_e
     assert study.values["record.trend"] == pytest.approx(-2.0, abs=4.0 * study.table.uncertainty["record.trend"])
 
 
+@pytest.mark.slow
 def test_a_drift_that_the_fit_does_not_need_is_held_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.plateaus"), "DRIFT_WORTH_A_TRY", 0.0)
     said: list[str] = []

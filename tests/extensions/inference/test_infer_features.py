@@ -149,6 +149,7 @@ def test_slopes_that_are_all_alike_count_once_in_the_memory_of_noise() -> None:
     assert three.time == 0.0
 
 
+@pytest.mark.slow
 def test_thickness_and_impedance_of_a_laboratory_slab_come_out_of_the_features_of_its_events(slab: Inference) -> None:
     """The return of the wave stops slip: its duration tells the thickness, and slip tells the impedance."""
     check_holds(slab, {"friction.dynamic": SLAB.dynamic, "body.thickness": SLAB.thickness, "body.density": SLAB.density})

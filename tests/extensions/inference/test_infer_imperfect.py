@@ -54,6 +54,7 @@ def test_the_answer_is_that_of_least_squares_also_where_the_loading_is_a_little_
         assert study.table.low[name] < value < study.table.high[name], name
 
 
+@pytest.mark.slow
 def test_a_value_and_its_interval_say_the_same() -> None:
     data = friction(TRUTH.pull_rate) + 3e-4 * correlated(1800, 50.0, 3)
     table = ss.studies.infer(GUESS, read(data), FREE, starts=1, profiles=True).table
@@ -111,6 +112,7 @@ def test_weights_and_windows_change_the_numbers_of_a_wrong_model_and_are_told() 
     assert abs(weighted.values["friction.distance"] / 30e-6 - 1.0) < abs(study.values["friction.distance"] / 30e-6 - 1.0)
 
 
+@pytest.mark.slow
 def test_each_run_of_a_search_is_told() -> None:
     said: list[str] = []
     ss.studies.infer(GUESS, read(friction(TRUTH.pull_rate)), ["a"], starts=2, progress=said.append)

@@ -72,6 +72,7 @@ def test_the_table_beside_the_page_keeps_the_names_and_all_digits(folder: Path, 
     assert ss.load_scenario(str(folder / "best.toml")).problem.friction.a == found.values["friction.a"]
 
 
+@pytest.mark.slow
 def test_a_second_report_replaces_the_first_and_warns_of_a_run_that_misses_the_record(folder: Path) -> None:
     data = record()
     data["mu"] += 0.02 * (data["time (min)"] > 2.5)

@@ -56,6 +56,7 @@ def test_levels_slope_and_duration_of_events_are_where_a_search_begins() -> None
     assert start["body.mass"] == pytest.approx(BLOCK.mass, rel=0.2)
 
 
+@pytest.mark.slow
 def test_plateaus_and_transients_of_velocity_steps_are_where_a_search_begins() -> None:
     start = begun(GUESS, record(), ["reference", "a", "b", "distance"], sensor="contact").table.start
     assert start["friction.reference"] == pytest.approx(TRUE.reference, abs=1e-3)

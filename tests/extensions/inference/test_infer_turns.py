@@ -251,6 +251,7 @@ def test_steps_of_each_record_are_free_also_where_those_of_another_one_are() -> 
     assert not any(each.aside and each.name == "record.servo" for each in loosened(servo, servo.begin).model.free)
 
 
+@pytest.mark.slow
 def test_a_search_that_goes_on_from_free_steps_has_each_of_them_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Many parts are searched in two turns, and a fit without derivatives goes on from the steps found."""
     infer, estimate = (import_module(f"stickslip.extensions.inference.{name}") for name in ("infer", "fit.estimate"))

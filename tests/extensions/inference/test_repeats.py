@@ -120,6 +120,7 @@ def whole() -> Any:
     return velocity_steps.inferred(velocity_steps.record(), velocity_steps.TWO)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("column", [None, "mu"], ids=["rows", "one column"])
 def test_intervals_count_no_repeats(whole: Any, column: str | None) -> None:
     """The noise is that of the sensor, and the standard uncertainty that of 80 % of the samples."""

@@ -67,6 +67,7 @@ def test_a_plane_slips_as_in_the_volume() -> None:
     assert np.abs(slip_at_the_end(case, 5.0, 128) - truth).max() < 1e-3 * truth.max()
 
 
+@pytest.mark.slow
 def test_a_barrier_holds_as_in_the_volume() -> None:
     locked = np.abs(np.arange(64) / 64 * 4.0 - 2.0) > 1.0
     case = weakening_patch(locked=locked)

@@ -87,6 +87,7 @@ def settings() -> list[object]:
     return [getattr(jax.config, name) for name in (FOLDER, *SETTINGS)]
 
 
+@pytest.mark.slow
 def test_what_was_compiled_is_found_later_and_gives_the_same_bits(folder: Path, told: Counter[str]) -> None:
     before = settings()
     first = fault()

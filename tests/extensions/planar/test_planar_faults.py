@@ -43,6 +43,7 @@ def test_rate_and_state_friction_far_below_the_grid_is_not_finite_and_not_resolv
     assert ss.resume(tmp_path / "run.zarr").status.name == ss.open_solution(tmp_path / "run.zarr").status.name == "not finite"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled_anew")
 def test_a_search_that_does_not_find_the_slip_rate_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     slab = state_patch()

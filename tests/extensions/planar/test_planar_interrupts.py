@@ -14,6 +14,7 @@ from tests.core.run.long_runs.signals import heard, lost
 from tests.extensions.planar.patches import patch
 
 
+@pytest.mark.slow
 def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
     """In one frame a round trip, so that all but two of its calls of the solver end between frames."""
 

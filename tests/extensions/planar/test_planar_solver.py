@@ -170,6 +170,7 @@ def test_a_disturbance_of_a_wavenumber_grows_as_the_closed_form_says(kh: float, 
     assert grows * THICKNESS / SPEED == pytest.approx(rate, rel=1e-4, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_disturbance_on_a_half_space_grows_as_the_closed_form_says() -> None:
     """lambda = c sqrt(alpha_w^2 - k^2), before an echo returns."""
     wavenumber = 0.5 / THICKNESS
@@ -210,6 +211,7 @@ def test_a_plane_on_which_nothing_varies_with_z_is_a_line() -> None:
     assert np.abs(found.slip - line.slip[..., None]).max() < 1e-10 * line.slip.max()
 
 
+@pytest.mark.slow
 def test_a_contact_without_replicas_is_a_periodic_one_until_waves_of_replicas_arrive() -> None:
     grid = {"nodes": 64, "length": 2e4}
     alone, periodic = (ss.simulate(patch(**grid, replicas=kind), 8.0, frames=50) for kind in (False, True))

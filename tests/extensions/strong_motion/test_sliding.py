@@ -149,6 +149,7 @@ def column(wave_speed: float) -> ss.ElasticSlab:
     return ss.ElasticSlab(1900.0, wave_speed, 20.0, 360e3, driver_impedance=0.0)
 
 
+@pytest.mark.slow
 def test_a_stiff_column_is_the_rigid_block_in_both_analyses():
     """Each time its wave speed doubles, the difference at least halves; the coupled column keeps ringing while it slides."""
     rigid = ss.studies.sliding({"a": RECORDS["a"]}, [0.05, 0.1]).table.displacement.to_numpy()

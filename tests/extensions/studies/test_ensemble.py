@@ -314,6 +314,7 @@ def _same(found: Ensemble, other: Ensemble) -> None:
         assert differences(one, two) == []
 
 
+@pytest.mark.slow
 def test_an_ensemble_that_was_stopped_goes_on_with_the_runs_that_it_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It stops after the first member, and in the middle of the second, as a checkpoint of a killed run leaves it."""
     folder, whole = tmp_path / "kept", ensemble(FAST, 300 * TRIP, members=3)

@@ -98,6 +98,7 @@ def test_chunks_that_kill_their_workers_hold_up_no_others(two_workers: Client, m
     assert found == {number: number**2 for number in (*range(5), *range(10, 40))}
 
 
+@pytest.mark.slow
 def test_few_chunks_are_in_flight(local: Client) -> None:
     asked = []
 
@@ -232,6 +233,7 @@ def slowly(number: int) -> int:
     return number
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_lost_gives_one_line(tmp_path: Path) -> None:
     file = tmp_path / "scheduler.json"
     scheduler = subprocess.Popen([sys.executable, "-c", OPEN, str(file)])
@@ -272,6 +274,7 @@ def test_a_local_cluster_shows_no_pages(local: Client) -> None:
         urlopen(f"http://127.0.0.1:{local.cluster.scheduler.http_server.port}/info/main/workers.html", timeout=10)
 
 
+@pytest.mark.slow
 def test_without_cryptography_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cryptography", None)
     with pytest.raises(ss.InputError, match=r"and cryptography: pip install 'stickslip\[cluster\]'"):

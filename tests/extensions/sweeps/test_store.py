@@ -287,6 +287,7 @@ def test_two_sweeps_do_not_write_into_one_store(tmp_path: Path) -> None:
     assert (sweep(path).status.values != NOT_RUN).all()
 
 
+@pytest.mark.slow
 def test_a_changed_file_is_refused_in_one_line(store: Path, whole: dict[str, bytes]) -> None:
     """Each file of a store: with a bit flipped, cut off, or gone; members whose status is gone are those that have not been run."""
     path = store

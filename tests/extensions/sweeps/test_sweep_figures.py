@@ -361,6 +361,7 @@ def test_a_map_on_one_side_of_the_line_has_none() -> None:
     assert legend(figure) == []
 
 
+@pytest.mark.slow
 def test_a_sweep_of_severity_says_where_its_line_is() -> None:
     rates = {"pull_rate": np.array([10.0, 14.0])}
     found = ss.sweep(ss.load_scenario("drill-string").problem, rates, duration="5 s", quantities=["severity"], workers=1)

@@ -112,12 +112,14 @@ def test_nothing_is_compiled_and_no_compiler_loaded(arguments: list[str], tmp_pa
     assert [path.name for path in (tmp_path / "cache").rglob("*.o")] == []
 
 
+@pytest.mark.slow
 def test_a_law_that_did_not_come_is_compiled_without_the_compiler_and_kept(tmp_path: Path) -> None:
     done = python(NEW_LAW, tmp_path)
     assert (printed(done), done.stderr) == ("finished False\n", "")
     assert {path.name.partition("-")[0] for path in tmp_path.rglob("*.o")} == {"formula"}
 
 
+@pytest.mark.slow
 def test_without_home_or_cache_a_run_is_as_ever_and_a_new_law_costs_one_line(tmp_path: Path) -> None:
     """Not even root can make folders in /proc."""
     nowhere = {"HOME": "/proc/home", "XDG_CACHE_HOME": "/proc/home/.cache"}
@@ -202,6 +204,7 @@ def test_what_is_missing_is_made_after_one_line_that_says_why(what: str, shipped
     assert (printed(done), done.stderr) == (f"{expected} False\n", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spoilt", ['sys.modules["numba"] = None', "import numba.extending as m\ndel m.lower_builtin"])
 def test_where_nothing_came_and_nothing_compiles_one_line_says_so_with_the_cure(spoilt: str, tmp_path: Path) -> None:
     code = f"import sys\n{spoilt}\n" + COMMAND.format(arguments=["run", "fig6-slab"])

@@ -85,6 +85,7 @@ def check_one_slab(body: ss.ElasticSlab, law: Any, shares: tuple[float, ...], **
     np.testing.assert_allclose(events.released, of_events.released, rtol=1e-7, atol=1e-9 * size)
 
 
+@pytest.mark.slow
 def test_rests_are_leapt_over_once_the_waves_have_died() -> None:
     """Two events in 6 000 000 s, as of the slab; and a pull that stops and goes on while the contact rests."""
     body = slab(0.0, 0.3, 0.2)

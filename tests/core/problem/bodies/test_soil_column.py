@@ -92,6 +92,7 @@ def test_the_first_two_modes_of_a_chain_have_the_damping_ratio_and_the_first_its
     assert (np.diff(damped[1:]) < 0.0).all()
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(("ratio", "higher"), SAID.items())
 def test_higher_modes_have_what_the_page_says(ratio: float, higher: tuple[float, ...]) -> None:
     root = (4.0 * modes(column(ratio), 300) - modes(column(ratio), 150)) / 3.0
@@ -169,6 +170,7 @@ def by_small_steps(problem: ss.Problem, duration: float, parts: int) -> tuple[Fl
     return time, *(np.append(0.0, np.cumsum(0.5 * step * (one[1:] + one[:-1]))) for one in (rate, power))  # type: ignore[return-value]
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_sliding_agrees_with_a_method_of_small_steps(ratio: float) -> None:
     problem = shaken(column(ratio))
@@ -198,6 +200,7 @@ def test_without_damping_the_column_is_a_slab_with_a_free_top_bit_for_bit() -> N
         assert np.array_equal(getattr(own, name), getattr(slab, name)), name
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_energy_is_balanced_with_what_the_damper_takes(ratio: float) -> None:
     run = ss.simulate(shaken(column(ratio)), 6.0)

@@ -229,6 +229,7 @@ duration = "20 s"
 """
 
 
+@pytest.mark.slow
 def test_a_run_from_a_file_is_kept_and_resumed_to_the_bit(tmp_path: Path) -> None:
     path = tmp_path / "mount.toml"
     path.write_text(TEXT, encoding="utf-8")

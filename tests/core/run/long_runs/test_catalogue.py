@@ -143,6 +143,7 @@ def test_a_number_of_events_stops_a_catalogue_as_it_stops_a_run(events: int, tmp
     same(ss.resume(tmp_path / "events.checkpoint.nc", duration), ss.simulate(problem, duration).catalogue())
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten thousand cycles, of which the history would be two hundred thousand pieces."""
     problem, duration = bundled("cycles-block", 1500.0)
