@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import math
-import re
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
@@ -26,20 +25,21 @@ from stickslip.foundation.headings import FoundColumn, example, find, is_signed
 from stickslip.foundation.marks import marked, sentences
 from stickslip.foundation.named_columns import NamedColumns
 from stickslip.foundation.record_files import FIRST_BYTES, decoded, form_of
+from stickslip.foundation.record_files.delimited import is_words
 from stickslip.foundation.record_files.foreign import check_is_text
-from stickslip.foundation.record_files.sheet import PREAMBLE, Asked, Lines, Sheet
+from stickslip.foundation.record_files.number_rows import COMMA_NUMBER
+from stickslip.foundation.record_files.sheet import NO_NUMBER, PREAMBLE, Asked, Lines, Sheet
 from stickslip.foundation.unit_doubts import doubts_of
 
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
-NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
-"""What instruments and people write where a number is missing."""
-DECIMAL_COMMA = (
-    "decimal commas are not read, write points: `tr , . < OLD.csv > NEW.csv` replaces them, "
+POINTS = (
+    "write points: `tr , . < OLD.csv > NEW.csv` replaces decimal commas, "
     "or in Python pass pandas.read_csv(FILE, sep=';', decimal=',')"
 )
-"""The cure for decimal commas in a file whose columns are not separated by commas."""
-_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+"""The cure for commas that may be either."""
+LONGEST_FOOTER = 50
+"""So many lines without a number may follow the numbers."""
 
 
 def read_file(
@@ -86,12 +86,13 @@ def read_text(
 ) -> Table:
     """Return those of the wanted columns that a text has, as numbers in SI.
 
-    Texts in a format of an extension, such as LabVIEW's, are known by their first lines. In any other text the first line that is
-    neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the lines that follow names
-    two of them, that line is the header, and those before it are notes. Units stand in the headings, or in a row of their own below
-    them. Columns are separated by tabs, semicolons or commas, whichever of them the header has, in this order, or else by blanks.
-    The text that xlook writes, with numbers of columns, names, units and counts, is understood. `named` are headings that the user
-    has named, and `Table.doubts` name the columns without a unit.
+    Texts in a format of an extension, such as LabVIEW's, are known by their first lines. In any other text the headings are found
+    by the numbers below them: of the few lines above a group of numbers, that which names most of the columns is the header, and
+    what stands before it are notes. Units stand in the headings, or in a row of their own below them. Columns are separated by
+    tabs, semicolons, commas or blanks, whichever makes numbers of the cells; then decimal commas are read, too, unless each of
+    them may group thousands. Lines of words behind the numbers are passed over. The text that xlook writes, with numbers of
+    columns, names, units and counts, is understood. `named` are headings that the user has named, and `Table.doubts` name the
+    columns without a unit.
 
     Raises InputError with a message of one line that names `place` and the line; also for more than `most` rows. If `raw`, cells
     without a number and marks of missing numbers, as -999.25, become NaN, `Table.notes` say so, and no sign is refused. If `skip`,
@@ -147,7 +148,7 @@ class _Rows(NamedTuple):
 
         Raises InputError for the first row that cannot be read, and for one too many.
         """
-        at_lines, numbers, most = array("q"), array("d"), self.asked.most
+        at_lines, numbers, most, footer = array("q"), array("d"), self.asked.most, list[InputError]()
         width, places = len(self.sheet.header), [one.place for one in self.chosen.values()]
         if (table := self.sheet.table) is not None:
             if len(table) > most:
@@ -160,8 +161,20 @@ class _Rows(NamedTuple):
                 found = [float(row[place]) for place in places] if len(row) <= width else None
             except (ValueError, IndexError):
                 found = None
-            numbers.extend(self._numbers(row, at, first=not at_lines) if found is None else found)
+            try:
+                found = self._numbers(row, at, first=not at_lines) if found is None else found
+            except InputError as error:
+                if len(at_lines) < 2 or len(footer) == LONGEST_FOOTER or not is_words(row):
+                    raise footer[0] if footer else error from None
+                footer.append(error)
+                continue
+            if footer:
+                raise footer[0]
+            numbers.extend(found)
             at_lines.append(at)
+        if footer:
+            told = f"what follows {self.sheet.counted} {at_lines[-1]} has no numbers: passed over"
+            self.sheet.notes.append(told) if self.raw else warn(f"{self.asked.place}: {told}")
         return np.array(at_lines), np.array(numbers).reshape(-1, len(self.chosen))
 
     def _numbers(self, row: Sequence[str], line: int, *, first: bool) -> list[float]:
@@ -207,8 +220,8 @@ def _as_written(text: str, column: str, place: str, first: bool) -> float:
     try:
         return float(text)
     except ValueError:
-        if _COMMA.fullmatch(text):
-            raise InputError(f"{place}: {column} has a decimal comma; {DECIMAL_COMMA}") from None
+        if COMMA_NUMBER.fullmatch(text):
+            raise InputError(f"{place}: {column} has a decimal comma, or one that groups thousands; {POINTS}") from None
         hint = f"; a unit belongs in the heading, as in {example(column)}" if first and text else ""
         hint = "; times of day are not read, write seconds from the start" if column == "time" and ":" in text else hint
         raise InputError(f"{place}: {column} must be a number, got {'text' if text else 'nothing'}{hint}") from None

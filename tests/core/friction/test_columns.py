@@ -95,8 +95,8 @@ def test_points_with_both_variables_are_used_along_one() -> None:
 
 
 TEXTS = [
-    ("v;mu\n0,5;0,6\n", "line 2: slip_rate has a decimal comma; decimal commas are not read, write points: `tr , . < OLD.csv"),
-    ('v,mu\n"0,5","0,6"\n', "line 2: slip_rate has a decimal comma"),
+    ("v;mu\n1,500;1,600\n", "line 2: slip_rate has a decimal comma, or one that groups thousands; write points: `tr , . < OLD.csv"),
+    ('v,mu\n"1,500","1,600"\n', "line 2: slip_rate has a decimal comma, or one that groups thousands"),
     ("v,mu\n0,5,0,6\n", "line 2: 4 cells, but the header has 2; decimal commas?"),
     ("v [kg],mu\n1,1\n2,2\n", "line 1, column 1: the unit in the heading does not convert to m/s; write it like m/s"),
     ("v [m**99],mu\n1,1\n2,2\n", "line 1, column 1: the unit in the heading does not convert"),

@@ -143,12 +143,12 @@ def test_a_load_point_that_is_hardly_in_metres_is_warned_about() -> None:
 FILES = [
     ("", "no column 'time'; there are no headings: is it empty?"),
     ("time (s),load point (m),mu\n", "at least two rows with a time are needed, got 0"),
-    ("time (s);load point (m);mu\n0,1;0,0;0,6\n", "has a decimal comma; decimal commas are not read"),
+    ("time (s);load point (m);mu\n1,100;2,000;1,600\n", "has a decimal comma, or one that groups thousands"),
     ("time (s),load point (m),mu\n0,1,0,0,0,6\n", "6 cells, but the header has 3; decimal commas?"),
     ("time,load point (m),mu\n2026-05-01 12:00:07,0,0.6\n", "times of day are not read, write seconds from the start"),
-    ("time,load point,mu\n(s),(g),(-)\n0,0,0.6\n", "a unit belongs in the heading, as in time (s)"),
+    ("time,load point,mu\n(s),(g),(-)\n0,0,0.6\n", "line 2, column 2: the unit in the heading does not convert to m"),
     ("time load_point mu\n0 0 0.6 7\n", "columns are separated by commas, semicolons, tabs or blanks"),
-    ("time (s),mu\n0,0.6\n1,0.6\nend of test\n", "time must be a number, got text"),
+    ("time (s),mu\n0,0.6\n1,0.6\nend of test\n2,0.6\n", "time must be a number, got text"),
 ]
 
 

@@ -5,37 +5,40 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain, islice, zip_longest
+from itertools import chain, islice, takewhile, zip_longest
 from typing import NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import PURE, FoundColumn, factor_of, find, has_unit, is_number
-from stickslip.foundation.record_files.sheet import PREAMBLE, Asked, Lines, Sheet
+from stickslip.foundation.record_files.number_rows import BLANKS, NumberRows, number_rows
+from stickslip.foundation.record_files.sheet import NO_NUMBER, PREAMBLE, Asked, Lines, Sheet
 
-BLANKS = " "
-"""The separator of columns that stand apart by blanks."""
 XLOOK_WIDTH = 12
 """Number of characters of a heading in text that xlook writes."""
 _XLOOK = re.compile(r"\s*(col\s+\d+\s*)+")
-_WORD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^()\[\]]*[)\]])?|[(\[][^()\[\]]*[)\]]|[(\[]")
-_APART = re.compile(r"\s{2,}")
 
 
 def sheet(lines: Lines, asked: Asked) -> Sheet:
     """Return what delimited text holds; see `stickslip.foundation.text_columns.read_text`."""
     begin = list(islice(lines, PREAMBLE))
     head = _head(begin, asked)
-    at_header = f"{asked.place}, line {head.number}"
     header = asked.header(head.cells, head.number)
-    chosen = find(header, asked.wanted, at_header)
-    behind = head.behind
-    below = next(((i, line) for i, line in enumerate(begin[head.behind :]) if not _is_empty(line)), None)
-    if below is not None and _are_units(units := _split(below[1], head.separator), header, chosen):
-        header = [name if has_unit(name) else f"{name} ({_bare(unit)})" for name, unit in zip_longest(header, units, fillvalue="")]
-        behind += below[0] + 1
+    chosen = find(header, asked.wanted, f"{asked.place}, line {head.number}")
+    notes, behind = list[str](), head.behind
+    for i in head.between:
+        row = head.rows.headings(begin[i].lstrip("#"))
+        if said := _units_in(row, header, chosen, f"{asked.place}, line {i + 1}"):
+            notes.append(f"{', '.join(said)}, as the row of units in line {i + 1} says")
+            both = zip_longest(header, row, fillvalue="")
+            header = [name if has_unit(name) else f"{name} ({_bare(unit)})" for name, unit in both]
+            behind = head.between[-1] + 1
+            break
     rows = _rows(chain(begin[behind:], lines), behind, head.separator, asked.place)
-    hint = "; decimal commas? Then separate columns by semicolons and write decimal points" if head.separator == "," else ""
-    return Sheet(header, head.number, rows, [], hint=hint)
+    if head.rows.has_commas:
+        notes.append("decimal commas are read as points")
+        rows = ((at, [cell.replace(",", ".") for cell in row]) for at, row in rows)
+    hint = "; decimal commas? Then separate columns by semicolons" if head.separator == "," else ""
+    return Sheet(header, head.number, rows, notes, hint=hint)
 
 
 def _rows(lines: Iterator[str], number: int, separator: str, place: str) -> Iterator[tuple[int, list[str]]]:
@@ -59,46 +62,53 @@ def _is_empty(line: str) -> bool:
 
 
 class _Head(NamedTuple):
-    """The headings of a text, the number of their line, the separator of columns, and how many lines stand before the rows."""
+    """The headings of a text, the number of their line, the separator of columns, and how many lines stand before the rows.
+
+    `rows` are the first numbers below them, and `between` the lines of words that stand between.
+    """
 
     cells: Sequence[str]
     number: int
     separator: str
     behind: int
+    rows: NumberRows = NumberRows()
+    between: Sequence[int] = ()
 
 
 def _head(lines: Sequence[str], asked: Asked) -> _Head:
-    """Return the header among the first lines of a text; see `read_text`."""
+    """Return the header among the first lines of a text: of the lines above numbers, that which names most of what is asked for."""
     rows = [i for i, line in enumerate(lines) if not _is_empty(line)]
     xlook = next((i for i in rows if _XLOOK.fullmatch(lines[i])), None)
     if xlook is not None and xlook + 2 < len(lines):
         return _xlook_head(lines, xlook)
     if not rows:
         return _Head([""], 1, ",", len(lines))
-    heads = {i: _header_in(lines, i) for i in rows}
-    named = {i: asked.count(head.cells) for i, head in heads.items()}
-    headers = [i for i in rows if named[i] > 1]
-    first = rows[0]
-    if named[first] == 0 and len(headers) == 1:
-        return heads[headers[0]]
-    comment = lines[first - 1].lstrip().lstrip("#") if first else ""
-    if named[first] == 0 and comment and all(map(is_number, _split(lines[first], heads[first].separator))):
-        header = _header_in([*lines[: first - 1], comment, *lines[first:]], first - 1)
-        if asked.count(header.cells) > 1:  # headings behind a #, as numpy.savetxt writes them
-            return header
-    return heads[first]
+    groups = number_rows(lines)
+    heads = [head for group in groups for i in group.above if is_words((head := _head_at(lines, i, group)).cells)]
+    named = [asked.count(head.cells) for head in heads]
+    named = [0 if count == 1 and _is_empty(lines[head.number - 1]) else count for count, head in zip(named, heads, strict=True)]
+    if any(named):  # a line in front of two that name as much is the one
+        fits = [len(head.cells) == head.rows.width for head in heads]
+        return heads[max(range(len(heads)), key=lambda i: (named[i] > 0, fits[i], named[i]))]
+    longest = max(groups, key=lambda group: len(group.lines), default=NumberRows())
+    first = _head_at(lines, rows[0], longest)
+    others = [head for i in rows if asked.count((head := _head_at(lines, i, NumberRows())).cells) > 1]
+    others += [head for head in heads if head.rows is longest and len(head.cells) == longest.width]
+    return first if asked.count(first.cells) or not others else others[0]
 
 
-def _header_in(lines: Sequence[str], i: int) -> _Head:
-    """Return line i of a text as a header; blanks separate columns if they make as many headings as there are cells below."""
-    line = lines[i]
-    separator = next((mark for mark in "\t;," if mark in line), None)
-    if separator is None and len(line.split()) > 1:
-        below = next((len(one.split()) for one in lines[i + 1 : i + 4] if not _is_empty(one)), 0)
-        for cells in (_WORD.findall(line), _APART.split(line.strip())):
-            if len(cells) == below:
-                return _Head(cells, i + 1, BLANKS, i + 1)
-    return _Head(_split(line, separator or ","), i + 1, separator or ",", i + 1)
+def _head_at(lines: Sequence[str], i: int, rows: NumberRows) -> _Head:
+    """Return line i of a text as the header of rows of numbers below it."""
+    text = lines[i].lstrip("#% ")
+    separator = rows.separator or next((mark for mark in "\t;," if mark in text), ",")
+    below = list(takewhile(lambda j: is_words(rows.headings(lines[j])), (j for j in rows.above if j > i)))
+    return _Head(rows.headings(text), i + 1, separator, i + 1, rows, below)
+
+
+def is_words(cells: Sequence[str]) -> bool:
+    """Return True for cells of which none is a number, and some are more than marks of missing ones."""
+    words = [cell.strip().casefold() for cell in cells]
+    return not any(map(is_number, words)) and not set(words) <= set(NO_NUMBER)
 
 
 def _xlook_head(lines: Sequence[str], i: int) -> _Head:
@@ -124,26 +134,25 @@ def _of_width(line: str, count: int) -> list[str]:
     return [line[begin + XLOOK_WIDTH * k : begin + XLOOK_WIDTH * (k + 1)].strip() for k in range(count)]
 
 
-def _split(line: str, separator: str) -> list[str]:
-    if separator == BLANKS:
-        return line.split()
-    try:
-        return next(csv.reader([line], delimiter=separator), [])
-    except csv.Error:
-        return line.split(separator)
+def _units_in(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, FoundColumn], at: str) -> list[str]:
+    """Return what a row below the headings says of the units of chosen columns; nothing if it contradicts one of the headings.
 
-
-def _are_units(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, FoundColumn]) -> bool:
-    """Return True if a row below the headings holds the units of the chosen columns, and contradicts none of the headings."""
-    cells = {name: _bare(row[one.place]) if one.place < len(row) else "" for name, one in chosen.items()}
-    try:
-        factors = {name: factor_of(cell, name, "") for name, cell in cells.items()}
-    except InputError:
-        return False
-    agrees = all(
-        one.unit is None or cells[name] in header[one.place] or factors[name] == one.factor for name, one in chosen.items()
-    )
-    return agrees and any(cell.casefold() not in PURE for cell in cells.values())
+    Raises InputError if it holds units of some and something else for others.
+    """
+    faults, said = list[InputError](), list[str]()
+    for name, one in chosen.items():
+        cell = _bare(row[one.place]) if one.place < len(row) else ""
+        try:
+            factor = factor_of(cell, name, f"{at}, column {one.place + 1}")
+        except InputError as error:
+            faults.append(error)
+            continue
+        if not (one.unit is None or cell in header[one.place] or factor == one.factor):
+            return []
+        said += [f"{name} (column {one.place + 1}) is in {cell}"] if cell.casefold() not in PURE else []
+    if said and faults:
+        raise faults[0]
+    return said
 
 
 def _bare(unit: str) -> str:

@@ -45,6 +45,13 @@ _FROM_58B = (
 _FROM_MDF = "from asammdf import MDF; MDF('FILE').export('csv', 'FILE.csv', single_time_base=True, add_units=True)"
 _FROM_MAT73 = "import mat73, pandas; pandas.DataFrame(mat73.loadmat('FILE')).to_csv('FILE.csv', index=False)"
 _FROM_HDF5 = "import h5py, pandas; f = h5py.File('FILE'); pandas.DataFrame({k: f[k][:] for k in f}).to_csv('FILE.csv', index=False)"
+_FROM_WAVE = (
+    "import scipy.io.wavfile, pandas; r, y = scipy.io.wavfile.read('FILE'); t = pandas.DataFrame(y); "
+    "t.insert(0, 'time (s)', t.index / r); t.to_csv('FILE.csv', index=False)"
+)
+_FROM_SQLITE = (
+    "import sqlite3, pandas; pandas.read_sql('select * from TABLE', sqlite3.connect('FILE')).to_csv('FILE.csv', index=False)"
+)
 _FROM_PARQUET = "import pandas; pandas.read_parquet('FILE').to_csv('FILE.csv', index=False)"
 _FROM_NUMPY = "import numpy; numpy.savetxt('FILE.csv', numpy.load('FILE'), delimiter=',', header='time (s),friction', comments='')"
 FOREIGN = (
@@ -67,6 +74,8 @@ FOREIGN = (
     Foreign(rb"\x1f\x8b", "a file compressed by gzip", "`gunzip FILE`"),
     Foreign(rb"PAR1", "a table in Parquet", _python(_FROM_PARQUET), "pandas pyarrow"),
     Foreign(rb"\x93NUMPY", "an array of NumPy", f"{_python(_FROM_NUMPY)} with the headings of its columns"),
+    Foreign(rb"RIFF.{4}WAVE", "a sound (.wav)", _python(_FROM_WAVE), "scipy pandas"),
+    Foreign(rb"SQLite format 3\x00", "a database of SQLite", f"{_python(_FROM_SQLITE)} with the name of its table", "pandas"),
     Foreign(rb"%PDF", "a document in PDF", "ask for its numbers"),
 )
 """The kinds of files that are known; `FILE` in a way stands for the file."""

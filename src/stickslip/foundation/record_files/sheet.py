@@ -12,6 +12,8 @@ from stickslip.foundation.named_columns import NamedColumns
 
 PREAMBLE = 200
 """Notes of an instrument may take this many lines before the header."""
+NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
+"""What instruments and people write where a number is missing."""
 
 
 class Sheet(NamedTuple):
