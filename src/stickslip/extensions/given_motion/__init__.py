@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 from stickslip.extension import Extension
 
 if TYPE_CHECKING:
+    from stickslip.problem.scenarios import ScenarioTable
     from stickslip.run import SolverKind
 
 
 class GivenMotionExtension(Extension):
-    """`ss.MovedContact` and its solver."""
+    """`ss.MovedContact`, the table [motion] of scenario files, and the solver of both."""
 
     name = "given_motion"
 
@@ -21,6 +22,12 @@ class GivenMotionExtension(Extension):
         from stickslip.extensions.given_motion.kind import MOVED
 
         return (MOVED,)
+
+    def tables(self) -> Mapping[str, ScenarioTable]:
+        """Return the table [motion]."""
+        from stickslip.extensions.given_motion.table import MotionTable
+
+        return {MotionTable.name: MotionTable()}
 
     def public(self) -> Mapping[str, str]:
         """Return `ss.MovedContact`."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,8 +22,10 @@ from stickslip.friction.contract import one_argument
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from stickslip.extensions.given_motion.moved import MovedContact
+    from stickslip.foundation.place import Place
 
 AT_ENDS = 1e-12
 """Times outside the run by this share (1) of its duration are its ends, rounded."""
@@ -247,6 +249,12 @@ class FrictionAlongMotion:
         table, target = self.at(self.times), Path(path)
         table.columns = [f"{name} ({self.units[name]})" for name in table.columns]
         return write_atomically(target, lambda draft: table.to_csv(draft, index=False))
+
+    def plot(self, **place: Unpack[Place]) -> Figure:
+        """Draw slip rate, states and traction against time; `figure`, `size` and `dpi` as for other figures."""
+        from stickslip.extensions.given_motion.figures.along import draw_along
+
+        return draw_along(self, **place)
 
     def __str__(self) -> str:
         return "\n".join(self.lines())

@@ -10,6 +10,7 @@ from stickslip.run import SolverKind
 
 if TYPE_CHECKING:
     from stickslip.extensions.given_motion.along import FrictionAlongMotion
+    from stickslip.problem.scenarios import Scenario
     from stickslip.run import CallOptions
 
 
@@ -36,11 +37,18 @@ def follow_motion(source: Any, options: CallOptions) -> FrictionAlongMotion:
     return FrictionAlongMotion.solved(moved, duration, checked.rtol, checked.title, None if report is None else tell)
 
 
+def _examine(scenario: Scenario) -> Any:
+    from stickslip.extensions.given_motion.examine import MotionExamination
+
+    return MotionExamination(scenario)
+
+
 MOVED = SolverKind(
     _solves,
     follow_motion,
     frozenset({"duration", "rtol", "title", "progress"}),
     "a MovedContact has no {}: leave it out",
+    examine=_examine,
     what="a MovedContact",
 )
 """The solver of contacts whose motion is given, and of scenarios with a [motion]."""

@@ -176,6 +176,13 @@ def _history(given: Any, name: str, units: str, plain: str) -> tuple[LoadingHist
     return PiecewiseLinear((0.0, 1.0), (value, value)), unit_among(given, units) or plain
 
 
+def with_unit_of_load(given: Any, unit: str) -> Any:
+    """Return a normal load in this unit if it says none itself."""
+    if isinstance(given, LoadingHistory):
+        return given.in_unit(unit) if " or " in given.unit else given
+    return f"{given!r} {unit}" if isinstance(given, float | int) else given
+
+
 def _stays_above(load: LoadingHistory) -> bool:
     """Return True if the last straight part of a normal load falls for ever, which ends with the run, and all before stay above 0.
 
