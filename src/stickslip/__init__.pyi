@@ -7,6 +7,7 @@ from .contact.uniqueness import uniqueness
 
 # One run
 from .extensions.explorer.notebook import explore
+from .extensions.given_motion.moved import MovedContact
 from .extensions.planar.slab import PlanarSlab
 from .extensions.sweeps.sweep import sweep
 
@@ -38,6 +39,7 @@ __all__ = [
     "ElasticSlab",
     "InputError",
     "LayeredSlab",
+    "MovedContact",
     "PlanarSlab",
     "Problem",
     "RotatingBlock",

@@ -1,5 +1,8 @@
 # What others take from engine. Each name is imported when it is first used; all else is the room's own.
 
+from stickslip.engine.compiled_formula import (
+    compile_formula,  # Return the compiled functions of a formula; equal formulas in problems that follow each other share them.
+)
 from stickslip.engine.history.history import (
     NO_LEAPS,  # Table of leaps over creep (`History.creep`) without rows.
     START,  # t = 0, the start of the run.
@@ -97,6 +100,7 @@ __all__ = [
     "Turn",
     "check_checkpoint",
     "check_history",
+    "compile_formula",
     "creep_note",
     "creep_table",
     "engine_key",

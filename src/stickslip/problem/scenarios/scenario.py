@@ -197,6 +197,8 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
 
 def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
     """Return a scenario from a parsed TOML document. Raises InputError as `load_scenario` does."""
+    for name, table in tables_of_extensions().items():
+        raw = table.completed(raw, source) if name in raw else raw
     document, file = read_document(raw, source), source.file
     body = read_part("body", document["body"], source)
     source = source._replace(load_unit=body.load_unit)

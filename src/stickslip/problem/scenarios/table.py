@@ -49,6 +49,10 @@ class ScenarioTable:
         """Return its keys that are no quantities."""
         return {}
 
+    def completed(self, raw: Mapping[str, Any], source: Source) -> Mapping[str, Any]:
+        """Return a document that has the table, with what the table makes needless filled in. Raises InputError."""
+        return raw
+
     def read(self, entries: Mapping[str, Any], problem: Problem, source: Source) -> Any:
         """Return what the table says, from its keys, which are read and checked. Raises InputError."""
         from stickslip.problem.scenarios.schema import without_owner

@@ -1,0 +1,37 @@
+"""Motion given: friction along a slip rate in time, and the law that fits friction along measured motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from stickslip.extension import Extension
+
+if TYPE_CHECKING:
+    from stickslip.problem.scenarios import ScenarioTable
+    from stickslip.run import SolverKind
+
+
+class GivenMotionExtension(Extension):
+    """`ss.MovedContact`, the table [motion] of scenario files, and the solver of both."""
+
+    name = "given_motion"
+
+    def solvers(self) -> Sequence[SolverKind]:
+        """Return the solver of contacts whose motion is given."""
+        from stickslip.extensions.given_motion.kind import MOVED
+
+        return (MOVED,)
+
+    def tables(self) -> Mapping[str, ScenarioTable]:
+        """Return the table [motion]."""
+        from stickslip.extensions.given_motion.table import MotionTable
+
+        return {MotionTable.name: MotionTable()}
+
+    def public(self) -> Mapping[str, str]:
+        """Return `ss.MovedContact`."""
+        return {"MovedContact": "stickslip.extensions.given_motion.moved:MovedContact"}
+
+
+EXTENSION = GivenMotionExtension()

@@ -1,0 +1,161 @@
+"""The table [motion] of scenario files: the motion of a contact is given, and its friction is what is sought."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from typing_extensions import override
+
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.conversion import Number, unit_among
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import KINDS_OF_BODY
+from stickslip.foundation.quantities import Choice, Quantity, quantity
+from stickslip.problem import LoadingHistory
+from stickslip.problem.scenarios import ScenarioTable, read_part, to_table, without_owner
+
+if TYPE_CHECKING:
+    from stickslip.extensions.given_motion.moved import MovedContact
+    from stickslip.problem import Problem
+    from stickslip.problem.scenarios import Key, Scenario, Source
+
+MOTION = "motion"
+"""The name of the table."""
+UNUSED_BODIES: dict[str, dict[str, Any]] = {
+    "N": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
+    "Pa": {"kind": "elastic-slab", "density": 1e3, "wave_speed": 1e3, "thickness": 1.0, "normal_stress": 1e6},
+    "N m": {"kind": "rotating-block", "inertia": 1.0, "stiffness": 1.0, "normal_torque": 1.0},
+}
+"""The [body] of a scenario that has none, by the unit of its normal load: nothing but that unit is used of it."""
+STILL: dict[str, Any] = {"pull_rate": 0.0}
+"""The [loading] of a scenario with a [motion]."""
+STARTS = ("initial_state", "initial_second_state")
+NO_LOADING = "[motion] gives slip rate and normal load: leave [loading] out"
+NO_START = "[motion] has initial_slip and initial_state: leave [initial] out"
+NEVER_STICKS_AT = 1.0
+"""A state for the unused start of the unused body, where none is given."""
+
+
+@dataclass(frozen=True)
+class GivenMotion:
+    """What a [motion] says: slip rate and normal load, numbers or histories, and where slip and states begin."""
+
+    slip_rate: Any
+    normal_load: Any = None
+    """None for that of the [body]."""
+    initial_slip: Number = quantity("m", "slip at the start", default=0.0)
+    initial_state: Any = None
+    initial_second_state: Any = None
+
+
+class MotionTable(ScenarioTable):
+    """The table [motion]: slip rate and normal load in time, in place of [body], [loading] and [initial]."""
+
+    name = MOTION
+    what = "a given [{}]"
+    instead = "leave out [{}], and give [body] and [loading], for a contact that moves by itself"
+    run_keys = frozenset({"duration", "rtol"})
+    why_no_others = "has no effect with a [motion], which says how the contact moves"
+
+    @override
+    def kind(self) -> type[GivenMotion]:
+        return GivenMotion
+
+    @override
+    def other_keys(self) -> Mapping[str, Key]:
+        from stickslip.problem.scenarios import Key
+
+        return {
+            "slip_rate": Key(_read_varying, meaning="slip rate, a number or a history [motion.slip_rate]"),
+            "normal_load": Key(_read_varying, None, "normal load, a number or a history [motion.normal_load]"),
+            **{name: Key(lambda value, place: value, None, "state of the law at the start, or 'steady'") for name in STARTS},
+        }
+
+    @override
+    def completed(self, raw: Mapping[str, Any], source: Source) -> Mapping[str, Any]:
+        motion = raw[MOTION]
+        if not isinstance(motion, dict) or not isinstance(raw.get("friction"), dict):
+            return raw  # which is refused in its turn
+        loading = raw.get("loading", {})
+        if not isinstance(loading, dict) or any(one != 0.0 for one in loading.values()):
+            raise InputError(f"{source.file}: {NO_LOADING}")
+        if raw.get("initial") is not None and not (isinstance(raw["initial"], dict) and raw["initial"].get("load") == 0.0):
+            raise InputError(f"{source.file}: {NO_START}")
+        if "body" not in raw and motion.get("normal_load") is None:
+            raise InputError(f"{source.file}: [motion] normal_load is missing: a number such as '100 N' or '5 MPa', or a history")
+        unit = _unit_of(motion.get("normal_load"))
+        law = read_part("friction", dict(raw["friction"]), source._replace(load_unit=unit if "body" not in raw else ""))
+        start: dict[str, Any] = {"load": 0.0}
+        if not law.sticks and not law.reverses:
+            given = (motion.get(name) for name in STARTS)
+            names = ("state", "second_state")[: len(law.states)]
+            start |= {name: NEVER_STICKS_AT if one in (None, "steady") else one for name, one in zip(names, given, strict=False)}
+        return {"body": UNUSED_BODIES[unit]} | dict(raw) | {"loading": STILL, "initial": start}
+
+    @override
+    def read(self, entries: Mapping[str, Any], problem: Problem, source: Source) -> GivenMotion:
+        found = GivenMotion(**entries)
+        try:
+            moved_of(found, problem)
+        except InputError as error:
+            raise InputError(f"{source.file}: [motion] {without_owner(error)}") from None
+        return found
+
+    @override
+    def write(self, value: GivenMotion) -> dict[str, Any]:
+        found = super().write(value)
+        return {name: to_table(one) if isinstance(one, LoadingHistory) else one for name, one in found.items()}
+
+    @override
+    def paths(self, value: GivenMotion, problem: Problem) -> Iterator[tuple[str, Quantity | Choice]]:
+        yield from super().paths(value, problem)
+        unit = problem.load_unit
+        numbers = {"slip_rate": ("rad/s" if unit == "N m" else "m/s", "slip rate"), "normal_load": (unit, "normal load")}
+        units = dict(zip(STARTS, ((one.unit, one.meaning) for one in problem.friction.states), strict=False))
+        for name, (of, meaning) in (numbers | units).items():
+            given = getattr(value, name)
+            if given is not None and not isinstance(given, LoadingHistory):
+                yield name, Quantity(of, meaning)
+
+    @override
+    def pressed(self, value: GivenMotion, factor: float) -> GivenMotion:
+        raise InputError("pressing changes a body's loads: with a [motion], change motion.normal_load")
+
+    @override
+    def problem(self, value: GivenMotion, scenario: Scenario) -> MovedContact:
+        return moved_of(value, scenario.problem)
+
+
+def moved_of(value: GivenMotion, problem: Problem) -> MovedContact:
+    """Return the contact of a [motion], with the law of a problem, and its normal load if the table has none. Raises InputError."""
+    from stickslip.extensions.given_motion.moved import MovedContact, with_unit_of_load
+
+    unit = problem.load_unit
+    load = f"{problem.body.normal_load!r} {unit}" if value.normal_load is None else with_unit_of_load(value.normal_load, unit)
+    starts = {name: getattr(value, name) for name in STARTS}
+    return MovedContact(problem.friction, value.slip_rate, load, value.initial_slip, **starts)
+
+
+def _unit_of(load: Any) -> str:
+    """Return the unit of a normal load in a file: that of a text, or of the first text among the values of a history."""
+    values = load.get("values", load.get("mean")) if isinstance(load, dict) else load
+    for one in values if isinstance(values, list) else [values]:
+        if found := unit_among(one, " or ".join(UNUSED_BODIES)):
+            return found
+    return "N"
+
+
+def _read_varying(value: Any, place: Any) -> Any:
+    """Return a number of [motion], or a history if it is a table. Raises InputError."""
+    if isinstance(value, dict):
+        own, of = place.inner, "loading.pull_rate" if place.key == "slip_rate" else "loading.normal_load"
+        heading = place.key if place.key == "slip_rate" else KINDS_OF_BODY[place.source.load_unit].normal
+        try:
+            return read_part(of, value, place.source, heading)
+        except InputError as error:
+            raise InputError(str(error).replace(of, own)) from None
+    if not isinstance(value, str | float | int) or isinstance(value, bool):
+        raise InputError(f"{place.source.file}: {place} must be a number, or a table [{place.inner}], got {shown(value)}")
+    return value
