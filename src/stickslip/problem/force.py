@@ -25,15 +25,13 @@ NO_JUMP_OF_FORCE = 1e-14
 def check_force(body: BodyOnCharacteristics, force: Given, pull: Given, ground: Ground | None) -> None:
     """Raise InputError for a force on a body that is not rigid, one with a second sinusoid, or a pull of what has no spring."""
     name = type(body).__name__
-    if force is not None and body.has_waves:
+    if force is not None and not body.takes_force:
         end = "far_stress acts on it through a driver of finite driver_impedance"
         raise InputError(f"Problem: force acts on a rigid body, and a {name} is none: {end}")
-    swings = [word for word, given in (("pull_rate", pull), ("force", force)) if _swings(given)]
-    if ground is not None and ground.tone.amplitude != 0.0 and not body.has_belt:
-        swings.append("the ground")
-    if force is not None and len(swings) > 1:
-        raise InputError(f"Problem: only one of {' and '.join(swings)} may have a sinusoid: give the other as straight lines")
-    if body.driver_kind == "free" and pull != 0.0 and not body.has_belt:
+    if _swings(force) and (_swings(pull) or (ground is not None and ground.tone.amplitude != 0.0)):
+        other = "pull_rate" if _swings(pull) else "the ground"
+        raise InputError(f"Problem: only one of force and {other} may have a sinusoid: give the other as straight lines")
+    if body.has_nothing_to_pull and pull != 0.0:
         cure = "leave it out, give body.stiffness, push with force, or set the body on a belt (.on_belt())"
         raise InputError(f"Problem: pull_rate has nothing to pull: a {name} of stiffness 0 has no spring: {cure}")
 

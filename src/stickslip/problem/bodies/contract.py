@@ -231,9 +231,17 @@ class BodyOnCharacteristics(Body, Protocol):
         """True if the ground is a belt, whose velocity is the pull rate, and the far end of the spring is at rest."""
         ...
 
+    takes_force: ClassVar[bool]
+    """True if a force may act on it, because it is rigid."""
+
     @property
     def is_free(self) -> bool:
         """True if no spring holds the body: its stiffness is 0."""
+        ...
+
+    @property
+    def has_nothing_to_pull(self) -> bool:
+        """True if a pull rate moves nothing: there is no spring, no dashpot, and no belt."""
         ...
 
     @property
@@ -315,10 +323,9 @@ class WithNormalLoad:
 
     has_belt: ClassVar[bool] = False
 
-    @property
-    def is_free(self) -> bool:
-        """False: a spring, or an elastic body, holds it."""
-        return False
+    takes_force: ClassVar[bool] = False
+    is_free: bool = False
+    has_nothing_to_pull: bool = False
 
     @property
     def normal_field(self: Body) -> str:

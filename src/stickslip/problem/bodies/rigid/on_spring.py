@@ -38,6 +38,7 @@ class OnSpring(WithOneDriver):
     structure: ClassVar[str] = "rigid"
     noun: ClassVar[str] = "block"
     driver_may_change: ClassVar[bool] = False
+    takes_force: ClassVar[bool] = True
     noun_with_driver: str = "slab"
     turn: ClassVar[str] = "period"
     what_is_heavy: ClassVar[str] = "block"
@@ -67,9 +68,14 @@ class OnSpring(WithOneDriver):
         return "spring_and_dashpot" if anywhere(self.driver_damping) else "free" if self.is_free else "spring"
 
     @property
-    def is_free(self: BodyOnSpring) -> bool:
+    def is_free(self: BodyOnSpring) -> bool:  # type: ignore[override] # a constant of all other bodies
         """True if the stiffness is 0: a dashpot may still pull the body."""
         return not anywhere(self.stiffness)
+
+    @property
+    def has_nothing_to_pull(self: BodyOnSpring) -> bool:  # type: ignore[override] # as for the one before
+        """True if there is no spring, no dashpot, and no belt."""
+        return self.driver_kind == "free" and not self.has_belt
 
     @property
     def total_damping(self: BodyOnSpring) -> float:
