@@ -40,6 +40,7 @@ SHAKEN = PiecewiseLinear([0.0, 1.0, 2.0], [0.0, 0.1, 0.0])
 FREED = Steps([0.0, 5.0], [-1.0, 0.5])
 DRIVEN = {
     "spring": PULLED,
+    "free": ss.Problem(ss.SpringBlock(1.0, 0.0, 10.0), LAW, force=7.0),
     "spring_and_dashpot": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0, driver_damping=2.0)),
     **{kind: ss.Problem(slab, LAW, **RUN) for kind, slab in SLABS.items()},
     "damper": ss.Problem(COLUMN, LAW, **RUN),

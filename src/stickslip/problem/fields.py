@@ -19,7 +19,7 @@ from stickslip.foundation.quantities import Quantity, check_fields, in_units, qu
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics
-from stickslip.problem.loading import VARYING, LoadingHistory
+from stickslip.problem.loading import VARYING, LoadingHistory, Sinusoidal
 from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
 
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
 HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driver_reflection")
 """Fields of a problem that are a loading history or nothing."""
-MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
+PULLS = ("pull_rate", "far_stress")
+"""Fields of a problem that are a number or a loading history, and of which only one may vary."""
+MAY_VARY = (*PULLS, "force", *HISTORIES_ONLY)
 """Fields of a problem that may be a loading history."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
@@ -94,6 +96,9 @@ class ProblemFields(CheckedArguments):
     driver_reflection: Converted[LoadingHistory | None, LoadingHistory | None] = quantity(
         "1", "reflection of waves at a driver that changes in steps: -1 rigid, 0 matched, 1 set free", default=None
     )
+    force: Converted[float | LoadingHistory | None, float | str | WithUnit | LoadingHistory | None] = quantity(
+        LOAD, "force on a rigid body, or torque on one that turns, that is added to its load", default=None
+    )
 
     def __post_init__(self) -> None:
         if isinstance(self.body, FrictionLaw) and _is_body(self.friction):
@@ -109,6 +114,10 @@ class ProblemFields(CheckedArguments):
         if isinstance(self.normal_load, LoadingHistory):
             object.__setattr__(self, "normal_load", begun_with_body(self.normal_load, self.body))
         self._check_varying()
+        if self.force is not None or self.body.is_free:
+            from stickslip.problem.force import check_force
+
+            check_force(self.body, self.force, self.pull_rate, self.ground)
         steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
         check_fields(self, but=(*self._varying, *steady), units=own_units(self.body.load_unit))
         self._check_kind()
@@ -134,7 +143,7 @@ class ProblemFields(CheckedArguments):
                     declared.check("Problem", name, value)
                 except InputError as error:
                     raise InputError(f"{error}{'' if is_number(value) else A_HISTORY}") from None
-        if sum(name not in HISTORIES_ONLY for name in self._varying) > 1:
+        if sum(name in PULLS for name in self._varying) > 1:
             raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
         if self.ground_velocity is not None and self.ground_acceleration is not None:
             raise InputError(
@@ -204,6 +213,9 @@ class ProblemFields(CheckedArguments):
             raise InputError(f"{name} begins with {history.first:.9g}, {own}")
 
     def _check_load(self) -> None:
+        given = self.initial_load is not None or self.initial_excess is not None
+        if self.body.is_free and not given and str(self.initial_rate) != STEADY:
+            object.__setattr__(self, "initial_load", 0.0)  # no spring holds a load before the force acts
         steady = self.has_initial_rate and not self.given_states
         if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
             found = "neither" if self.initial_load is None else "both"
@@ -287,8 +299,8 @@ class ProblemFields(CheckedArguments):
 
     @cached_property
     def varies(self) -> bool:
-        """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or moves by itself."""
-        moves = self.body.has_machine or self.body.is_damped
+        """True if the load at rest is no ramp: a history or a force is given, the ground moves, or the driver changes or moves."""
+        moves = self.body.has_machine or self.body.is_damped or self.force is not None
         return moves or self.driver_changes or any(name != "driver_reflection" for name in self._felt)
 
     @cached_property
@@ -338,7 +350,14 @@ class ProblemFields(CheckedArguments):
     @property
     def loading_varies(self) -> bool:
         """True if the pull rate or the far stress is a loading history, or the driver changes."""
-        return self.driver_changes or any(name not in HISTORIES_ONLY for name in self._felt)
+        return self.driver_changes or any(name in PULLS for name in self._felt)
+
+    @cached_property
+    def force_in_time(self) -> LoadingHistory | None:
+        """The force on the body (N, or N m) as a history; None if there is none."""
+        if self.force is None or isinstance(self.force, LoadingHistory):
+            return self.force
+        return Sinusoidal(self.force, amplitude=0.0, period=1.0)
 
     @cached_property
     def ground(self) -> Ground | None:

@@ -16,7 +16,7 @@ from stickslip.problem.problem import Problem
 P = ParamSpec("P")
 T = TypeVar("T")
 RATES = ("pull_rate", "initial_rate", "ground_velocity")
-LOADS = ("initial_load", "initial_excess", "far_stress", "normal_load")
+LOADS = ("initial_load", "initial_excess", "far_stress", "force", "normal_load")
 """Fields of a problem that are of the kind of a slip rate, and of a load, the nearest first."""
 
 

@@ -9,5 +9,5 @@ BODY_KINDS = {"rigid": "", "belt": "rigid", "uniform": "", "layered": ""}
 """Each kind of body (`Body.structure`)."""
 DRIVERS_OF_WAVES = {"rigid": "", "lossy": "", "machine": "lossy", "damper": "lossy", "changing": "lossy"}
 """Each kind of driver of a body with waves."""
-DRIVER_KINDS = {"spring": "", "spring_and_dashpot": "spring", **DRIVERS_OF_WAVES}
-"""Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, or one of waves."""
+DRIVER_KINDS = {"spring": "", "free": "spring", "spring_and_dashpot": "spring", **DRIVERS_OF_WAVES}
+"""Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, nothing, or one of waves."""

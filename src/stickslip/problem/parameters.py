@@ -32,10 +32,12 @@ from stickslip.problem.fields import HISTORIES_ONLY, ProblemFields
 from stickslip.problem.loading import VARYING, LoadingHistory
 
 PRESSING = "pressing"
-"""Name of the normal load with the initial load and the far stress in proportion: pressed harder, a contact is as near to slip."""
-LOADING = ("pull_rate", "far_stress", "far_stress_rate", *HISTORIES_ONLY)
+"""Name of the normal load with the initial load, the far stress and a force in proportion: pressed harder, a contact is as near to
+slip.
+"""
+LOADING = ("pull_rate", "far_stress", "far_stress_rate", "force", *HISTORIES_ONLY)
 """Fields of a problem that are in the table [loading] of a scenario."""
-STRESSES = ("far_stress", "far_stress_rate")
+STRESSES = ("far_stress", "far_stress_rate", "force")
 """Those of them that follow the normal load when a contact is pressed harder."""
 
 NUMBERS_LISTED = "problem.parameters lists all"

@@ -199,7 +199,8 @@ def loading_of(problem: Problem) -> at.Floats:
     start = np.unique(np.concatenate([ground.start, *(one.start for one in parts)]))
     table = LoadingSegment.table(len(start))
     segments = LoadingSegment.of(table)
-    segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, problem.ground is not None), strict=True)
+    joined = problem.ground is not None or problem.force is not None
+    segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, joined), strict=True)
     middle = start + 0.5 * np.diff(np.append(start, start[-1] + problem.round_trip_time))  # whatever the rounding of the starts
     of = inflow.segment(middle)
     driver_of(problem).put(problem, segments, start, middle)

@@ -231,6 +231,19 @@ class BodyOnCharacteristics(Body, Protocol):
         """True if the ground is a belt, whose velocity is the pull rate, and the far end of the spring is at rest."""
         ...
 
+    takes_force: ClassVar[bool]
+    """True if a force may act on it, because it is rigid."""
+
+    @property
+    def is_free(self) -> bool:
+        """True if no spring holds the body: its stiffness is 0."""
+        ...
+
+    @property
+    def has_nothing_to_pull(self) -> bool:
+        """True if a pull rate moves nothing: there is no spring, no dashpot, and no belt."""
+        ...
+
     @property
     def inflow_delay(self) -> float:
         """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
@@ -309,6 +322,10 @@ class WithNormalLoad:
     """The normal load of a body whose field for it has the usual name, and no belt under it: a base for bodies."""
 
     has_belt: ClassVar[bool] = False
+
+    takes_force: ClassVar[bool] = False
+    is_free: bool = False
+    has_nothing_to_pull: bool = False
 
     @property
     def normal_field(self: Body) -> str:

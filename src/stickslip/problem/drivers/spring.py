@@ -1,4 +1,7 @@
-"""The far end of a rigid body's spring, pulled as given: its load grows by K V(t), less the mass times the jerk of the ground."""
+"""The far end of a rigid body's spring, pulled as given: its load grows by K V(t), less the mass times the jerk of the ground.
+
+A force on the body is added to its load, whatever ends the spring.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.drivers.driver import Driver
 from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
+from stickslip.problem.force import jumps_of_force, pushed
 from stickslip.problem.inflow import Inflow
 from stickslip.problem.loading import Tone
 from stickslip.problem.problem import Problem
@@ -52,8 +56,13 @@ class Spring(Driver):
 
     def inflow(self, problem: Problem) -> Inflow:
         """Return the growth of the load, whether the pull varies or not."""
-        pulled = self.varying_inflow(problem)
-        return pulled if problem.ground is None else _on_ground(pulled, problem.ground, problem.body.inertia)
+        pulled, force = self.varying_inflow(problem), problem.force_in_time
+        found = pulled if problem.ground is None else _on_ground(pulled, problem.ground, problem.body.inertia)
+        return found if force is None else pushed(found, force)
+
+    def steps(self, problem: Problem) -> list[tuple[float, float]]:
+        """Return the times (s) at which a force on the body jumps, and by how much (N)."""
+        return [] if problem.force_in_time is None else jumps_of_force(problem.force_in_time)
 
 
 def _on_ground(pulled: Inflow, ground: Ground, mass: float) -> Inflow:

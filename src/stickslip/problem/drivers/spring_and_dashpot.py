@@ -47,14 +47,15 @@ class SpringAndDashpot(Spring):
         return found + as_on_spring(problem.body).driver_damping * grows
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
-        """Return the times (s) at which V jumps, and c times its jumps (N)."""
+        """Return the times (s) at which V or a force jumps, and c times the jumps of V, or those of the force (N)."""
+        found = super().steps(problem)
         if not isinstance(problem.pull_rate, LoadingHistory):
-            return []
+            return found
         start, value, slope = problem.pull_rate.parts
         jump = value[1:] - (value[:-1] + slope[:-1] * np.diff(start))
         jump[np.abs(jump) <= NO_JUMP_OF_PULL * np.abs(value).max()] = 0.0
         force = as_on_spring(problem.body).driver_damping * jump
-        return [(time, step) for time, step in zip(start[1:].tolist(), force.tolist(), strict=True) if step != 0.0]
+        return found + [(time, step) for time, step in zip(start[1:].tolist(), force.tolist(), strict=True) if step != 0.0]
 
 
 ANSWERS = SpringAndDashpot()

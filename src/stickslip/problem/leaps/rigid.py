@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from typing_extensions import override
+
 from stickslip.problem.leaps.asked import LeapsOfBody, Over
 from stickslip.problem.problem import Problem
 
@@ -24,7 +26,13 @@ class LeapsOfRigid(LeapsOfBody):
             return "a friction law under which slip begins at the friction of rest"
         if problem.ground is not None or problem.one_way:
             return "ground at rest, and slip in both directions"
-        return "a constant pull rate and normal load" if problem.varies else ""
+        return self.missing_for_steady(problem)
+
+    @override
+    def missing_for_steady(self, problem: Problem) -> str:
+        if problem.body.is_free:
+            return "a spring (a stiffness above 0)"
+        return "no force in time" if problem.force is not None else super().missing_for_steady(problem)
 
     def why_not_lumped(self, problem: Problem) -> str:
         """Return that there are no echoes."""

@@ -44,6 +44,8 @@ SOFT_TORQUE, WITH_SOFT_TORQUE = "soft_torque", "with_soft_torque"
 DRIVE = ("driver_impedance", "driver_inertia", "driver_integral_gain")
 RECORDED = "loading.ground_acceleration"
 """The table that is a record if it names a file and no kind."""
+OF_FORCE = {"N": "shear_force", "N m": "torque"}
+"""The heading of a force in a data file, which may be "force" alone, by its unit."""
 ONE_WAY = "true: the contact never slips backwards"
 """Meaning of the key one_way."""
 NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
@@ -151,7 +153,9 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
     varies = place.table == "loading" and place.key in MAY_VARY
     if varies and isinstance(value, dict):
         unit = declared.unit if isinstance(declared, Quantity) else ""
-        return read_part(place.inner, value, place.source) if place.key != "normal_load" else _read_normal_load(value, place, unit)
+        if place.key == "normal_load":
+            return _read_normal_load(value, place, unit)
+        return read_part(place.inner, value, place.source, OF_FORCE.get(unit, "") if place.key == "force" else "")
     if place.table == "body" and isinstance(value, dict) and any(place.key == kind.normal for kind in KINDS_OF_BODY.values()):
         raise InputError(f"{place.source.file}: {place} is one number, that at the start: a history is [loading.normal_load]")
     if place.source.load_unit:

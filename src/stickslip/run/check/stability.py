@@ -19,25 +19,27 @@ def start_of(problem: Problem) -> str:
         return f"slides from the start, at {exactly(problem.rate, slip_rate, 6)}: {_why_it_slides(problem)}"
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
-    excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
+    push = 0.0 if problem.force_in_time is None else problem.force_in_time.first
+    load, excess, unit, pulled = problem.load + push, problem.excess + push, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
+    what = "the load" if push == 0.0 else "the load, with the force,"
     rate = resolved(rate, problem.load, problem.body.total_damping)
     jump = f"; the slip rate jumps to {exactly(rate, slip_rate)}" if rate > 0.0 else ""
-    if problem.load < -problem.strength:
-        beyond = exactly(-problem.load - problem.strength, unit, 6)
-        return f"slips backwards at once: the load is {beyond} beyond the static strength"
+    if load < -problem.strength:
+        beyond = exactly(-load - problem.strength, unit, 6)
+        return f"slips backwards at once: {what} is {beyond} beyond the static strength"
     if excess > 0:
-        return f"slips at once: the load exceeds the static strength by {exactly(excess, unit, 6)}{jump}"
+        return f"slips at once: {what} exceeds the static strength by {exactly(excess, unit, 6)}{jump}"
     if excess == 0 and pulled:
-        return f"slips at 0+: the load is the static strength and grows{jump}"
+        return f"slips at 0+: {what} is the static strength and grows{jump}"
     if rate > 0.0:
         return f"slips at once, because the rule '{problem.rule}' leaves stick below the static strength{jump}"
     if excess == 0:
         held = "stuck until the load grows" if problem.varies else "stays stuck"
-        return f"{held}: the load is the static strength"
+        return f"{held}: {what} is the static strength"
     wait = wait_of(problem)
     when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
-    return f"stuck: the load is {exactly(-excess, unit, 6)} below the static strength{when}"
+    return f"stuck: {what} is {exactly(-excess, unit, 6)} below the static strength{when}"
 
 
 def _why_it_slides(problem: Problem) -> str:

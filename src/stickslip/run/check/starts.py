@@ -11,9 +11,12 @@ import numpy as np
 
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem import MAY_VARY, LoadingHistory, Problem
+from stickslip.problem import LoadingHistory, Problem
 from stickslip.run.check.asked import CHECK_KINDS
 from stickslip.run.check.ground import chosen_of_ground
+
+BEFORE = ("pull_rate", "far_stress", "normal_load")
+"""Fields of a problem that have, before the start, the value that they have then."""
 
 
 def chosen_starts(problem: Problem) -> list[str]:
@@ -41,8 +44,10 @@ def _states(problem: Problem) -> Iterator[str]:
 
 def _before(problem: Problem) -> Iterator[str]:
     """Yield what was before the start where something varies in time."""
-    varying = [name.replace("_", " ") for name in MAY_VARY[:3] if isinstance(getattr(problem, name), LoadingHistory)]
+    varying = [name.replace("_", " ") for name in BEFORE if isinstance(getattr(problem, name), LoadingHistory)]
     if varying:
         has = "have their values" if len(varying) > 1 else "has its value"
         yield f"before the start the {' and the '.join(varying)} {has} of 0 s"
+    if problem.force is not None:
+        yield "before the start no force acts: the initial load is that without it"
     yield from chosen_of_ground(problem)

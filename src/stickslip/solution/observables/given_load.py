@@ -105,6 +105,8 @@ def breaks_at_contact(problem: Problem) -> Floats:
     given = [one for one in (problem.pull_rate, problem.far_stress) if isinstance(one, LoadingHistory)]
     starts = np.concatenate([*(one.parts[0] for one in given), np.array([start for start, _ in problem.driver_steps])])
     found = [starts + way for way in observables_of(problem).ways(problem)]
+    if problem.force_in_time is not None:
+        found.append(problem.force_in_time.parts[0])
     if problem.ground is not None:
         found += [problem.ground.start + late for late in (0.0, problem.body.round_trip_time)]
     times = np.unique(np.concatenate(found))

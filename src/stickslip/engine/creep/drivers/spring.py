@@ -32,7 +32,7 @@ class LeapsOnSpring(SteadyLeaps):
 
     @override
     def held(self, body: BodyOnCharacteristics) -> float:
-        return 0.5 / body.stiffness
+        return math.inf if body.is_free else 0.5 / body.stiffness
 
     @override
     def least_slope(self, body: BodyOnCharacteristics) -> float:

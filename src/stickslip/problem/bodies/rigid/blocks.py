@@ -27,7 +27,7 @@ class SpringBlock(Declared, OnSpring):
     mass_field: ClassVar[str] = "mass"
 
     mass: Number = quantity("kg", "mass m", above=0)
-    stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
+    stiffness: Number = quantity("N/m", "stiffness K of the spring; 0: there is none", at_least=0)
     normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
     driver_damping: Number = quantity(
@@ -58,7 +58,7 @@ class RotatingBlock(Declared, OnSpring):
     mass_field: ClassVar[str] = "inertia"
 
     inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
-    stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)
+    stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring; 0: there is none", at_least=0)
     normal_torque: Number = quantity("N m", "torque of friction if mu is 1: clamping force times effective radius", above=0)
     damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
     driver_damping: Number = quantity(

@@ -1,4 +1,8 @@
-"""Rigid bodies on a spring: what follows from their numbers."""
+"""Rigid bodies on a spring, or on none: what follows from their numbers.
+
+A body of stiffness 0 is free. It has no period, and nothing comes back to it: its round trip is a measure of time alone, in which a
+history is written. It lasts FREE_TURN, unless its problem knows a time of its own (`Problem.round_trip_time`).
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,8 @@ from stickslip.problem.bodies.register import BODIES
 
 LONGEST_ROUND_TRIP = 1e6
 """Largest number of periods (1) in a block's round trip."""
+FREE_TURN = 1.0
+"""Length (s) of the round trip of a body that is free: any does, as long as it is no longer than what happens in it."""
 
 
 class BodyOnSpring(BodyOnCharacteristics, Protocol):
@@ -32,6 +38,7 @@ class OnSpring(WithOneDriver):
     structure: ClassVar[str] = "rigid"
     noun: ClassVar[str] = "block"
     driver_may_change: ClassVar[bool] = False
+    takes_force: ClassVar[bool] = True
     noun_with_driver: str = "slab"
     turn: ClassVar[str] = "period"
     what_is_heavy: ClassVar[str] = "block"
@@ -57,8 +64,18 @@ class OnSpring(WithOneDriver):
 
     @property
     def driver_kind(self: BodyOnSpring) -> str:
-        """The kind of driver: "spring_and_dashpot" if there is a dashpot beside the spring, else "spring"."""
-        return "spring_and_dashpot" if anywhere(self.driver_damping) else "spring"
+        """The kind of driver: "spring_and_dashpot" if there is a dashpot, "free" if there is nothing, else "spring"."""
+        return "spring_and_dashpot" if anywhere(self.driver_damping) else "free" if self.is_free else "spring"
+
+    @property
+    def is_free(self: BodyOnSpring) -> bool:  # type: ignore[override] # a constant of all other bodies
+        """True if the stiffness is 0: a dashpot may still pull the body."""
+        return not anywhere(self.stiffness)
+
+    @property
+    def has_nothing_to_pull(self: BodyOnSpring) -> bool:  # type: ignore[override] # as for the one before
+        """True if there is no spring, no dashpot, and no belt."""
+        return self.driver_kind == "free" and not self.has_belt
 
     @property
     def total_damping(self: BodyOnSpring) -> float:
@@ -72,8 +89,14 @@ class OnSpring(WithOneDriver):
 
     @property
     def round_trip_time(self: BodyOnCharacteristics) -> float:
-        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back."""
-        found: float = 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness)
+        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back.
+
+        That of a body without a spring is FREE_TURN.
+        """
+        if isinstance(self.stiffness, np.ndarray):
+            with np.errstate(divide="ignore"):
+                return np.where(self.stiffness > 0.0, 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness), FREE_TURN)
+        found: float = 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness) if self.stiffness else FREE_TURN
         return found
 
     @property
@@ -103,8 +126,13 @@ class OnSpring(WithOneDriver):
         raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
 
     def turn_time(self: BodyOnCharacteristics, longest: float) -> float:
-        """Return the period (s), or as long a time as is asked for if it never rests, up to LONGEST_ROUND_TRIP periods."""
+        """Return the period (s), or as long a time as is asked for if it never rests, up to LONGEST_ROUND_TRIP periods.
+
+        Of a body without a spring it is the time asked for.
+        """
         period = self.round_trip_time
+        if self.is_free:
+            return longest
         return max(period, min(LONGEST_ROUND_TRIP * period, longest))
 
     def meets_driver_at_first(self, excess: Any, rate: Any, shear: Any) -> Any:
@@ -118,7 +146,12 @@ class OnSpring(WithOneDriver):
 
     @property
     def impedance(self: BodyOnCharacteristics) -> float:
-        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
+        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance: the mass times 2 pi over the period.
+
+        It is a scale, of slip rates above all, and not 0 of a free body: that has 2 pi over its round trip in it.
+        """
+        if self.is_free:
+            return 2.0 * math.pi * self.inertia / self.round_trip_time
         found: float = np.sqrt(self.stiffness * self.inertia)
         return found
 

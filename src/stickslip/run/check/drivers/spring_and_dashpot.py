@@ -12,8 +12,9 @@ class _CheckOfDashpot(CheckOfDriver):
         """Return the damping ratio of free swings, and what the dashpot bears of the load at the start."""
         body = as_on_spring(problem.body)
         force, first = body.driver_damping * problem.first_pull_rate, ", at first" if problem.loading_varies else ""
+        ratio = 0.5 * body.total_damping / body.impedance
         return [
-            Fact("damping ratio", 0.5 * body.total_damping / body.impedance, "1", "(damping + driver_damping) / (2 sqrt(K m))"),
+            *[Fact("damping ratio", ratio, "1", "(damping + driver_damping) / (2 sqrt(K m))")] * (not body.is_free),
             Fact("c V", force, problem.load_unit, f"part of the load that the dashpot of the driver bears while stuck{first}"),
         ]
 

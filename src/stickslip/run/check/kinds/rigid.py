@@ -5,9 +5,11 @@ from __future__ import annotations
 import cmath
 import math
 
+from stickslip.contact import Uniqueness
 from stickslip.foundation.names import si_unit
 from stickslip.problem import Problem, loading_rate
 from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
+from stickslip.problem.scenarios import Scenario
 from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind, Fact
 from stickslip.run.reference.rate_and_state import SteadySliding
 
@@ -16,16 +18,19 @@ class CheckOfRigid(CheckOfKind):
     """The answers of rigid bodies."""
 
     def numbers(self, problem: Problem) -> list[Fact]:
-        """Return period, impedance and rate of loading."""
+        """Return period, impedance and rate of loading, as far as there is a spring, and the largest force."""
         body, first = problem.body, ", at first" if problem.loading_varies else ""
         size = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
         loads = "K V + c dV/dt" if problem.loading_varies and as_on_spring(body).driver_damping else "K V"
         rate, unit = loading_rate(problem), problem.unit_of("load_rate")
+        of_driver = [*CHECK_DRIVERS[problem.driver_kind].facts(problem, ""), *_force(problem)]
+        if body.is_free:
+            return of_driver
         return [
             Fact("period", body.round_trip_time, "s", "period 2 pi sqrt(m/K) of free oscillation"),
             Fact("sqrt(K m)", size, problem.unit_of("impedance"), f"impedance of the {body.noun}, in place of Z"),
             Fact(loads, rate, unit, f"rate of loading while stuck{first}"),
-            *CHECK_DRIVERS[problem.driver_kind].facts(problem, ""),
+            *of_driver,
         ]
 
     def mass_on_ground(self, body: BodyOnCharacteristics) -> float:
@@ -42,15 +47,40 @@ class CheckOfRigid(CheckOfKind):
         stiffness, impedance = si_unit("stiffness", body.load_unit), si_unit("impedance", body.load_unit)
         damping = "damping + driver_damping" if as_on_spring(body).driver_damping else "damping"
         values = f"K + S mu'(u) = {spring:.6g} {stiffness}, {damping} + S mu'(v) = {dash:.6g} {impedance}"
+        if body.is_free and spring == 0.0:
+            return f"no spring holds it, and friction does not change with slip: {damping} + S mu'(v) = {dash:.6g} {impedance}"
         if spring < 0 or (growth.real > 0 and growth.imag == 0):
             return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
         if growth.real > 0:
             return f"oscillates with growing amplitude: {values}; growth {growth.real:.6g} /s"
         return f"statically stable: {values}"
 
+    def warnings(self, scenario: Scenario, contact: Uniqueness) -> list[str]:
+        """Return a warning of a force that does not make the body slip, where nothing else can."""
+        problem = scenario.problem
+        rests = problem.friction.sticks and not problem.has_initial_rate and problem.ground is None
+        if problem.force_in_time is None or not rests or problem.normal_varies or problem.pull_rate != 0.0:
+            return []
+        most = problem.load + problem.force_in_time.highest
+        least = problem.load + problem.force_in_time.lowest
+        if most > problem.strength or (least < -problem.strength and not problem.one_way):
+            return []
+        return ["the force never reaches the static strength: nothing will slip"]
+
     def critical_stiffness(self, body: BodyOnCharacteristics, sliding: SteadySliding) -> tuple[str, float] | None:
         """Return the stiffness of the spring beside the one that mass and damping ask for."""
         return "stiffness K", sliding.critical_stiffness(body.inertia, body.total_damping)
+
+
+def _force(problem: Problem) -> list[Fact]:
+    """Return the largest and the least force on the body, if it varies."""
+    force, unit = problem.force_in_time, problem.load_unit
+    if force is None or force.lowest == force.highest:
+        return []
+    return [
+        Fact("largest force", force.highest, unit, "of the straight parts, with the amplitude of the sinusoid"),
+        Fact("least force", force.lowest, unit, "of the straight parts, less that amplitude"),
+    ]
 
 
 ANSWERS = CheckOfRigid()

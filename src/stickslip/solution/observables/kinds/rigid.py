@@ -104,9 +104,9 @@ def driver_force(history: History, at: Positions) -> Floats:
 
 
 def _held(history: History, at: Positions) -> Floats:
-    """Return the load minus the reference strength (N) without the inertia of moving ground."""
+    """Return the load minus the reference strength (N) without the inertia of moving ground, and without a force that is given."""
     force = history.excess(at)
-    return force if history.problem.ground is None else np.where(at.before, force, force + _pushing(history, at))
+    return np.where(at.before, force, force - _pushing(history, at)) if _is_pushed(history) else force
 
 
 def _pull_rate(history: History, at: Positions) -> Floats:
@@ -114,20 +114,28 @@ def _pull_rate(history: History, at: Positions) -> Floats:
     return value_at(history.problem.pull_rate, *history.times_inside(at))
 
 
+def _is_pushed(history: History) -> bool:
+    """Return True if a force acts on the body beside spring, dashpot, and friction: one that is given, or that of inertia."""
+    return history.problem.ground is not None or history.problem.force is not None
+
+
 def _pushing(history: History, at: Positions) -> Floats:
-    """Return the mass of the body times the acceleration of the ground, N."""
-    ground, mass = history.problem.ground, history.problem.body.inertia
-    return np.zeros(len(at.piece)) if ground is None else mass * ground.acceleration_at(*history.times_inside(at))
+    """Return the force on the body that is given, less its mass times the acceleration of the ground, N."""
+    problem, times = history.problem, history.times_inside(at)
+    _, acceleration = of_ground(problem, *times)
+    return np.asarray(value_at(problem.force_in_time or 0.0, *times) - problem.body.inertia * acceleration)
 
 
 def _pulling(history: History) -> Integrand:
-    """Return the power (W) of the driver, and of the inertial force where the ground moves, as a function of positions."""
+    """Return the power (W) of the driver, of a force, and of that of inertia where the ground moves, as a function of positions."""
     problem = history.problem
 
     def power(at: Positions) -> Floats:
         trip, offset = history.placed(at)
         pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + driver_force(history, at))
-        return np.asarray(pulling if problem.ground is None else pulling - _pushing(history, at) * history.rate(at))
+        if problem.body.is_free:  # no spring stores the work of the load of the start, which moves with the body
+            pulling += (problem.strength + spring_force(history, at)) * (history.rate(at) - _pull_rate(history, at))
+        return np.asarray(pulling + _pushing(history, at) * history.rate(at) if _is_pushed(history) else pulling)
 
     return power
 
@@ -156,6 +164,8 @@ def _stored(history: History, begin: Positions, end: Positions) -> Floats:
 def _stretching(history: History, force: Floats, later: Floats) -> Floats:
     """Return the energy (J) that the spring gains from one force to another (both minus the reference)."""
     body = history.problem.body
+    if body.is_free:
+        return np.zeros(len(later))
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
@@ -190,14 +200,15 @@ def _damped_at_rest(history: History, at: Positions) -> Floats:
 
 
 def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
-    """Return the load minus the reference strength (N): that of spring and dashpot, and inertia on moving ground."""
+    """Return the load minus the reference strength (N): that of spring and dashpot, a force, and inertia on moving ground."""
     problem = history.problem
     _, _, time, inside = times_in(history, piece, xi)
     slip = history.slipped(Positions.inside(piece, xi))
     _, acceleration = of_ground(problem, time, inside)
     spring = problem.excess + problem.body.stiffness * (pulled(problem, time) - slip)
     gained = value_at(problem.pull_rate, time, inside) - problem.first_pull_rate
-    return np.asarray(spring + as_on_spring(problem.body).driver_damping * gained - problem.body.inertia * acceleration)
+    pushing = value_at(problem.force_in_time or 0.0, time, inside) - problem.body.inertia * acceleration
+    return np.asarray(spring + as_on_spring(problem.body).driver_damping * gained + pushing)
 
 
 ANSWERS = ObservablesOfRigid()
