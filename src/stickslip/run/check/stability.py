@@ -23,8 +23,8 @@ def start_of(problem: Problem) -> str:
     rate = first_rate(problem)
     rate = resolved(rate, problem.load, problem.body.total_damping)
     jump = f"; the slip rate jumps to {exactly(rate, slip_rate)}" if rate > 0.0 else ""
-    if problem.load < -problem.strength:
-        beyond = exactly(-problem.load - problem.strength, unit, 6)
+    if problem.load < -problem.backward_strength:
+        beyond = exactly(-problem.load - problem.backward_strength, unit, 6)
         return f"slips backwards at once: the load is {beyond} beyond the static strength"
     if excess > 0:
         return f"slips at once: the load exceeds the static strength by {exactly(excess, unit, 6)}{jump}"
