@@ -28,7 +28,7 @@ def resistance(problem: Problem, law_slip: float | None = None, normal: float | 
         raise InputError("contact equation: a block has none, its slip rate follows from its inertia")
     slip = problem.law_slip if law_slip is None else float(law_slip)
     stress = problem.normal if normal is None else normal
-    return Resistance(problem.friction, problem.body.total_damping, stress, slip, problem.load_unit)
+    return Resistance(problem.friction.ways[0], problem.body.total_damping, stress, slip, problem.load_unit)
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:

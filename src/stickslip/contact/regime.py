@@ -6,7 +6,7 @@ Source: Campillo et al. 1996, section 3, the terms regular and irregular.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -16,14 +16,15 @@ from stickslip.foundation.show import brief
 from stickslip.problem import PERFECT_DELAY, Branch, Problem, Resistance
 
 Regime = Literal["regular", "irregular", "continuum"]
-"""Possible values of `Uniqueness.regime`."""
+"""Possible values of `Uniqueness.regime`, from one solution to many."""
 
 
 def regime_of(problem: Problem) -> Regime:
     """Return the `regime` of `uniqueness_of` without the jumps and loop of the rule: a sweep asks for it in each of its runs."""
     if problem.body.has_inertia or problem.friction.states:
         return "regular"
-    return regime_at(resistance(problem, None))
+    found = [regime_at(resistance(problem.facing(way), None)) for way in ((1, -1) if problem.friction.backward_from else (1,))]
+    return max(found, key=get_args(Regime).index)
 
 
 def regime_at(g: Resistance) -> Regime:

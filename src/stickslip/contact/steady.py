@@ -43,7 +43,12 @@ CRAWL, SAME = 1e-300, 1e-9
 @lru_cache(maxsize=64)
 def steady_slidings(problem: Problem) -> SteadySlidings:
     """Find the steady sliding of a contact under the loading of a problem (at the start if it varies), and its stability."""
-    return _Steady(problem).found()
+    return replace(_Steady(_driven(problem)).found(), problem=problem)
+
+
+def _driven(problem: Problem) -> Problem:
+    """Return the problem with the law of slip in the direction of the drive, if friction differs by direction."""
+    return problem.facing(-1 if problem.friction.backward_from and _Steady(problem).drive < 0.0 else 1)
 
 
 @lru_cache(maxsize=64)
@@ -54,13 +59,13 @@ def proven_slidings(problem: Problem) -> SteadySlidings:
 
 def steady_traction(problem: Problem, rates: Floats) -> Floats:
     """Return the size of the traction (Pa or N) of steady sliding at slip rates (m/s) in the direction of the drive."""
-    steady = _Steady(problem)
+    steady = _Steady(_driven(problem))
     return np.array([steady.traction(rate) for rate in rates.tolist()])
 
 
 def slip_rate_at(problem: Problem, pull_rate: float) -> float | None:
     """Return the fastest slip rate (m/s, without its sign) of steady sliding at another pull rate (m/s); None if there is none."""
-    return max(_Steady(replace(problem, pull_rate=pull_rate)).rates(), default=None)
+    return max(_Steady(_driven(replace(problem, pull_rate=pull_rate))).rates(), default=None)
 
 
 @dataclass(frozen=True)

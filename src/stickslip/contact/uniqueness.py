@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.contact.both_ways import of_both_ways
 from stickslip.contact.branches import branches_of, rates_at, resistance
 from stickslip.contact.critical import critical_normal_stress, nearest_critical
 from stickslip.contact.folds import Certificate, Fold, Verdict, sentence
@@ -56,7 +57,7 @@ MOST_LEFT = 16
 class Uniqueness(NamesAttributes, ShownAsTable):
     """The result of `stickslip.uniqueness`; `print` shows it in sentences.
 
-    Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.
+    Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image, or `backward` says otherwise.
     """
 
     regime: Regime
@@ -94,6 +95,8 @@ class Uniqueness(NamesAttributes, ShownAsTable):
     problem: Problem | None = None
     law_slip: float | None = None
     """The problem, and the slip (m) of its law for these results; None stands for the slip at the start."""
+    backward: Uniqueness | None = None
+    """What holds for backward slip where friction differs with the direction of slip."""
 
     def __str__(self) -> str:
         return self.summary
@@ -136,8 +139,9 @@ class Uniqueness(NamesAttributes, ShownAsTable):
 
         Raises InputError if the slip rate is a state: a block, a contact with mass, or a law with a state.
         """
-        g, rates = self._equation(), np.asarray(rate, float)
-        return np.where(rates < 0.0, -1.0, 1.0) * (g.strength + g.excess(np.abs(rates)))
+        rates = np.asarray(rate, float)
+        ways = [g.strength + g.excess(np.abs(rates)) for g in (self._equation(), (self.backward or self)._equation())]
+        return np.where(rates < 0.0, -ways[1], ways[0])
 
     def admissible(self, load: float) -> NDArray[np.float64]:
         """Return all slip rates (m/s) that solve the contact equation at a load (Pa), ascending, with stick (0) and backward slip.
@@ -165,7 +169,7 @@ class Uniqueness(NamesAttributes, ShownAsTable):
         return (at.rate_from, at.rate_to) if load >= 0.0 else (-at.rate_to, -at.rate_from)
 
     def _plateau(self, load: float) -> Plateau | None:
-        g = self._equation()
+        g = (self if load >= 0.0 else self.backward or self)._equation()
         rounding = 4.0 * float(np.spacing(max(abs(load), g.strength)))
         return next((p for p in g.plateaus if abs(p.excess - (abs(load) - g.strength)) <= rounding), None)
 
@@ -176,6 +180,8 @@ class Uniqueness(NamesAttributes, ShownAsTable):
 
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
+        behind = self.backward or self
+        other = behind._equation()
         if self.known_to is not None and abs(load) > self.known_to:
             unit = "Pa" if self.problem is None else self.problem.load_unit
             known = f"they are known for loads up to {self.known_to:.6g} {unit}"
@@ -183,8 +189,8 @@ class Uniqueness(NamesAttributes, ShownAsTable):
         # the plateau's own excess is exact, while load - strength carries the rounding of the load
         level = {} if plateau is None else {load >= 0.0: plateau.excess}
         forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
-        backward, mirrored = rates_at(g, self.branches, level.get(False, -load - g.strength))
-        moving, kept = backward > 0.0, forward > (-1.0 if abs(load) <= g.strength else 0.0)
+        backward, mirrored = rates_at(other, behind.branches, level.get(False, -load - other.strength))
+        moving, kept = backward > 0.0, forward > (-1.0 if -other.strength <= load <= g.strength else 0.0)
         rates = np.concatenate((-backward[moving][::-1], forward[kept]))
         kinds = np.concatenate((mirrored[moving][::-1], stable[kept]))
         if flat is None:
@@ -234,6 +240,9 @@ def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = No
 
 def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     """Determine the uniqueness at a slip (m) of the law; None stands for the initial one."""
+    if problem.friction.backward_from:
+        found: Uniqueness = of_both_ways(problem, *(_determined(problem.facing(way), slip) for way in (1, -1)))
+        return found
     if problem.body.has_inertia:
         said = INERTIA.format(body=problem.body.what_is_heavy, rule=problem.rule)
         return Uniqueness("regular", problem.rule, said, problem=problem, law_slip=slip)

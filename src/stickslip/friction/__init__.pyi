@@ -5,6 +5,7 @@ from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
 from stickslip.friction.custom.points import FromTable, Points
 from stickslip.friction.law import FrictionLaw
+from stickslip.friction.laws.both_ways import BothWays, SelfEnergising
 from stickslip.friction.laws.bristles import Dahl, LuGre
 from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
 from stickslip.friction.laws.of_rate import (
@@ -28,6 +29,7 @@ from stickslip.friction.register import LAWS
 
 __all__ = [
     "LAWS",
+    "BothWays",
     "Coulomb",
     "Dahl",
     "ExponentialCohesiveZone",
@@ -50,6 +52,7 @@ __all__ = [
     "PowerSlipWeakening",
     "PowerStribeck",
     "RateAndState",
+    "SelfEnergising",
     "SinusoidalSlip",
     "SlipPlusRate",
     "SlipTimesRate",

@@ -174,6 +174,21 @@ class LawContract(Declared, ABC):
         """How far the first state, in the form of the formulas, falls as the normal load grows by a factor e; 0 for most laws."""
         return 0.0
 
+    @property
+    def backward_from(self) -> int:
+        """The number of the first of `pieces` that holds in backward slip, which `knots` end with inf; 0 if all hold both ways."""
+        return 0
+
+    @property
+    def ways(self) -> tuple[Any, Any]:
+        """The laws that forward and backward slip see: this one twice, unless friction differs with the direction of slip."""
+        return self, self
+
+    @property
+    def said_of_uniqueness(self) -> str:
+        """What `uniqueness` says of the law besides what its values show, a sentence that begins with a space; empty for most."""
+        return ""
+
     # ---- state ----------------------------------------------------------------------------------------------------------------
 
     @property

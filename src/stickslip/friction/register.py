@@ -33,6 +33,8 @@ LAWS: ClassesByKind[FrictionLaw] = ClassesByKind(
         "flash-heating": "laws.rate_and_state.FlashHeating",
         "sum": "laws.combined.SlipPlusRate",
         "product": "laws.combined.SlipTimesRate",
+        "both-ways": "laws.both_ways.BothWays",
+        "self-energising": "laws.both_ways.SelfEnergising",
         "expression": "custom.from_expression.FromExpression",
         "table": "custom.points.FromTable",
     },

@@ -127,6 +127,7 @@ class ProblemFields(CheckedArguments):
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
         self._check_one_way()
+        self._check_both_ways()
 
     def _check_varying(self) -> None:
         for name in MAY_VARY:
@@ -287,6 +288,18 @@ class ProblemFields(CheckedArguments):
             raise InputError(f"Problem: one_way needs a law with a static strength, and {name} never sticks")
         if self.one_way and is_number(self.initial_rate) and self.initial_rate < 0.0:  # type: ignore[operator]
             raise InputError("Problem: initial_rate is backwards, where a contact that slips one way only does not go")
+
+    def _check_both_ways(self) -> None:
+        law = self.friction
+        if not law.backward_from:
+            return
+        if self.normal_load is not None:
+            raise InputError(f"Problem: normal_load varies, which is not followed under {type(law).__name__}: leave it out")
+        if law.depends_on_slip and law.depends_on_rate and not self.body.has_inertia:
+            why = "the folds of a contact without mass move with slip, which is followed under one law for both directions only"
+            raise InputError(
+                f"Problem: friction: {type(law).__name__} depends on slip and slip rate: {why}: give the contact a mass"
+            )
 
     @cached_property
     def _varying(self) -> tuple[str, ...]:
@@ -449,3 +462,9 @@ class ProblemFields(CheckedArguments):
         in the healed state 0. For a law that never sticks it is 0.
         """
         return self.normal * float(self.friction.static_coefficient(self.law_slip))
+
+    @cached_property
+    def backward_strength(self) -> float:
+        """The static strength against backward slip at the start (Pa, N or N m), where it may differ."""
+        law = self.friction
+        return self.normal * float(law.ways[1].static_coefficient(self.law_slip)) if law.backward_from else self.strength

@@ -236,6 +236,14 @@ class Problem(ShownAsTable, ProblemFields):
         """The numbers of the problem by name: `problem.parameters["friction.alpha"].value`, in SI."""
         return Parameters(self, self.load, self.excess)
 
+    def facing(self, direction: int) -> Self:
+        """Return the problem with the law that slip in a direction sees, forwards or (below 0) backwards, for both directions."""
+        law, load = self.friction, None if self.initial_excess is None else self.load
+        if not law.backward_from:
+            return self
+        given: dict[str, Any] = {} if load is None else {"initial_load": load, "initial_excess": None}
+        return replace(self, friction=law.ways[1 if direction < 0 else 0], **given)
+
     @property
     def folds_move(self) -> bool:
         """True if the folds of the contact equation move with slip: no mass, and a law of slip and slip rate without a state."""
@@ -312,7 +320,7 @@ class Problem(ShownAsTable, ProblemFields):
             return self.initial_excess
         load = self.load
         rounding = 4 * np.spacing(self.strength)
-        for edge in (self.strength, -self.strength):  # strengths against forward and against backward slip
+        for edge in (self.strength, -self.backward_strength):  # strengths against forward and against backward slip
             if abs(load - edge) <= rounding:
                 return edge - self.strength
         return load - self.strength

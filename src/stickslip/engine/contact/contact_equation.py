@@ -31,12 +31,35 @@ def constants_of(run: Run, piece: int) -> Floats:
 
 
 @kernel
+def first_piece(run: Run) -> int:
+    """Return the first piece of the law that holds in the present direction of slip, or in the one that a contact at rest faces."""
+    return int(run.params.backward_piece) if run.counts.piece >= run.params.backward_piece else 0
+
+
+@kernel
+def last_piece(run: Run) -> int:
+    """Return the last piece of the law that holds in that direction."""
+    return run.pieces - 1 if run.counts.piece >= run.params.backward_piece else int(run.params.backward_piece) - 1
+
+
+@kernel
+def face(run: Run, direction: int) -> None:
+    """Set the piece of the law to the one for slip from here in a direction, at slip rate 0, if friction differs by direction."""
+    if run.params.backward_piece > 0.0:
+        piece = int(run.params.backward_piece) if direction < 0 else 0
+        reached = 0.0 if run.counts.knots_in_rate == 1 else run.state.law_slip
+        while reached >= run.law[piece].knot:  # the last one has no end
+            piece += 1
+        run.counts.piece = piece
+
+
+@kernel
 def piece_at(run: Run, rate: float) -> int:
     """Return the piece of the law at a slip rate (m/s), or, if the knots are in slip, the piece that slip has reached."""
     if run.counts.knots_in_rate == 0:
         return run.counts.piece
-    piece = 0
-    while piece < run.pieces - 1 and rate >= run.law[piece].knot:
+    piece, last = first_piece(run), last_piece(run)
+    while piece < last and rate >= run.law[piece].knot:
         piece += 1
     return piece
 
@@ -45,7 +68,7 @@ def piece_at(run: Run, rate: float) -> int:
 def is_knot(run: Run, rate: float) -> bool:
     """Return True if the law has a knot at this slip rate (m/s)."""
     if run.counts.knots_in_rate == 1:
-        for knot in range(run.pieces - 1):
+        for knot in range(first_piece(run), last_piece(run)):
             if abs(run.law[knot].knot - rate) <= NEAR_KNOT * rate:
                 return True
     return False
@@ -88,25 +111,40 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
 
 
 @kernel
+def step_at_rest(run: Run) -> float:
+    """Return the step from sliding to static friction (1) in the direction that the contact faces, under the first normal load."""
+    backward = run.params.backward_piece
+    return run.params.backward_excess if 0.0 < backward <= run.counts.piece else run.params.static_excess
+
+
+@kernel
 def static_step(run: Run, states: Floats) -> float:
     """Return the step from sliding to static friction (1, as a share of the normal load at t = 0) under the present normal load."""
-    step = run.params.static_excess
+    step = step_at_rest(run)
     return step * (1.0 + states[own_states(run)]) if run.counts.given > 0 else step
 
 
 @kernel
-def rest_limit(run: Run) -> float:
-    """Return the load (Pa or N, minus the reference) where the selection rule leaves rest forwards.
+def rest_limit(run: Run, direction: int) -> float:
+    """Return the load (Pa or N, as seen in a direction, minus the reference) where the selection rule leaves rest in it.
 
     It is the static strength, or less if the rule lets slip begin below it. A strength that is not finite ends the run: no load
     would ever exceed a strength that is not a number.
     """
+    face(run, direction)
     friction_at(run, run.state.law_slip, 0.0)
     if not math.isfinite(run.friction.stress):
         run.counts.breach = Stop.FAILED
     # The step to static friction is added to the coefficient before any product, so that the two cancel exactly if they cancel.
     coefficient = run.friction.coefficient + static_step(run, run.state.state_now)
-    return run.params.normal * coefficient + run.params.stick_to
+    two_ways = run.params.backward_piece > 0.0
+    return run.params.normal * coefficient + (run.params.backward_stick_to if two_ways and direction < 0 else run.params.stick_to)
+
+
+@kernel
+def limit_towards(run: Run, direction: int, forward: float) -> float:
+    """Return the load (Pa or N, as seen in a direction) that ends rest in it: `forward`, unless friction differs by direction."""
+    return forward if run.params.backward_piece == 0.0 else rest_limit(run, direction)
 
 
 @kernel
@@ -150,7 +188,8 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
             break
         for k in range(at.TERMS):
             part[k] = strength[k] - way * load[k]
-        part[0] = 0.0 if run.counts.leaving_rest == way else strength[0] - towards(run, load[0], way)
+        limit = limit_towards(run, way, strength[0])
+        part[0] = 0.0 if run.counts.leaving_rest == way else limit - towards(run, load[0], way)
         first = first_descent(part, run.spare)
         if first < onset:
             onset, direction = first, way
@@ -238,10 +277,22 @@ def is_taken(branch: BranchRow, load: float) -> bool:
 
 
 @kernel
+def first_branch(run: Run) -> int:
+    """Return the first branch in the present direction of slip."""
+    return int(run.params.backward_branch) if run.counts.mode < 0 else 0
+
+
+@kernel
+def end_of_branches(run: Run) -> int:
+    """Return the number of the branch after the last one in the present direction of slip."""
+    return int(run.params.backward_branch) if run.counts.mode > 0 and run.params.backward_branch > 0.0 else run.branches
+
+
+@kernel
 def choose_branch(run: Run, load: float) -> None:
     """Leave rest for the first branch that the rule allows at this load (minus the reference)."""
     run.state.exit = math.nan
-    for n in range(run.branches):
+    for n in range(first_branch(run), end_of_branches(run)):
         if is_taken(run.branch_table[n], load):
             run.counts.branch = n
             return
@@ -274,11 +325,11 @@ def leave_branch(run: Run, load: float) -> None:
     branch = run.counts.branch
     run.state.exit = math.nan
     if load >= run.branch_table[branch].keep_to:
-        for other in range(branch + 1, run.branches):
+        for other in range(branch + 1, end_of_branches(run)):
             if is_taken(run.branch_table[other], load):
                 run.counts.branch = other
                 return
-    for other in range(branch - 1, -1, -1):
+    for other in range(branch - 1, first_branch(run) - 1, -1):
         if run.branch_table[other].keep_from <= min(load, run.branch_table[other].keep_to):
             run.counts.branch = other
             return
@@ -318,7 +369,7 @@ def end_branch(run: Run) -> None:
     if run.counts.mode == 0:
         note_jump(run, 0.0, Cause.FOLD)
         run.state.rate_now = 0.0
-        if abs(level - rest_limit(run)) <= SAME_LEVEL * run.params.normal:
+        if abs(level - rest_limit(run, direction)) <= SAME_LEVEL * run.params.normal:
             run.counts.leaving_rest = direction  # Rest ends where the branch does: the slope of the load decides.
     else:
         run.counts.leaving_rest = direction

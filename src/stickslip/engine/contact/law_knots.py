@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from stickslip.engine.contact.contact_equation import NEAR_KNOT, friction_of, is_knot, piece_at
+from stickslip.engine.contact.contact_equation import (
+    NEAR_KNOT,
+    first_piece,
+    friction_of,
+    is_knot,
+    last_piece,
+    piece_at,
+)
 from stickslip.engine.series.polynomial import NONE, first_descent
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats
@@ -18,7 +25,7 @@ def settle_piece(run: Run, rate: float) -> None:
     starts or ends at the knot, the piece with rising g is taken.
     """
     piece = run.counts.piece
-    below = piece > 0 and rate < run.law[piece - 1].knot * (1.0 - NEAR_KNOT)
+    below = piece > first_piece(run) and rate < run.law[piece - 1].knot * (1.0 - NEAR_KNOT)
     if below or rate > run.law[piece].knot * (1.0 + NEAR_KNOT):
         piece = piece_at(run, rate)
     if run.counts.is_algebraic == 1 and is_knot(run, rate):
@@ -46,7 +53,7 @@ def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
     first, turn, part = NONE, 1, run.trial
     for way in (1, -1):
         knot = run.counts.piece if way == 1 else run.counts.piece - 1
-        if knot < 0 or knot >= run.pieces - 1 or is_end_of_branch(run, run.law[knot].knot):
+        if knot < first_piece(run) or knot >= last_piece(run) or is_end_of_branch(run, run.law[knot].knot):
             continue
         for k in range(at.TERMS):
             part[k] = -way * rate[k]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.engine.contact.contact_equation import TIE
+from stickslip.engine.contact.contact_equation import TIE, first_piece, last_piece
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
 from stickslip.engine.contact_step.stick_or_slip import come_to_rest
 from stickslip.engine.folds.fold import reach_end
@@ -49,7 +49,7 @@ def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
     """
     grown = run.k.chi * growth(run, rate, length, end)
     next_knot = run.counts.piece if grown > 0.0 else run.counts.piece - 1
-    if next_knot < 0 or next_knot >= run.pieces - 1:
+    if next_knot < first_piece(run) or next_knot >= last_piece(run):
         return NONE
     distance = abs(run.law[next_knot].knot - run.state.law_slip)
     if distance >= abs(grown):

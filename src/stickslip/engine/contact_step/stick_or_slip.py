@@ -8,13 +8,16 @@ from stickslip.engine.contact.contact_equation import (
     SAME_LEVEL,
     TIE,
     choose_branch,
+    face,
     friction_at,
     is_outdated,
     leave_branch,
+    limit_towards,
     needs_branches,
     onset_of_slip,
     rest_limit,
     settle_branch,
+    step_at_rest,
     towards,
 )
 from stickslip.engine.contact.pieces import keep_state, note_jump, record
@@ -37,7 +40,6 @@ def arrive(run: Run) -> None:
         if run.counts.has_inertia == 0 and run.counts.reverses == 0 and load != -run.params.reference:
             run.counts.mode = 1 if load > -run.params.reference else -1
         return
-    limit = rest_limit(run)
     mode = run.counts.mode
     if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == Cause.NO_CAUSE:
         pass  # The load continues without a jump, and so does the slip rate.
@@ -53,8 +55,9 @@ def arrive(run: Run) -> None:
         if towards(run, load, mode) < run.friction.stress:
             run.counts.mode = 0
     if run.counts.mode == 0 and run.counts.leaving_rest == 0:
+        limit = rest_limit(run, 1)
         for direction in (1, -1):
-            if towards(run, load, direction) > limit:
+            if run.counts.mode == 0 and towards(run, load, direction) > limit_towards(run, direction, limit):
                 start_slip(run, direction, towards(run, load, direction))
     if run.counts.mode == 0:
         note_jump(run, 0.0, run.counts.arriving)
@@ -71,6 +74,7 @@ def start_slip(run: Run, direction: int, load: float) -> None:
         run.counts.leaving_rest = direction
         return
     run.counts.mode = direction
+    face(run, direction)
     choose_branch(run, load)
 
 
@@ -82,7 +86,7 @@ def end_of_rest(run: Run, load: Floats, width: float) -> tuple[float, int]:
     """
     strength = run.jet
     fill(strength, 0.0)
-    strength[0] = rest_limit(run)
+    strength[0] = rest_limit(run, 1)
     if run.counts.states > 0:
         states_ahead(run, width)
     if is_pressing(run):
@@ -109,9 +113,9 @@ def heal(run: Run, load: float) -> None:
 
     The contact slips at once if the healed strength cannot hold the load (Pa or N, minus the reference).
     """
-    before = rest_limit(run)
+    before = rest_limit(run, 1)
     run.state.law_slip, run.counts.piece = 0.0, int(run.params.healed_piece)
-    limit = rest_limit(run)
+    limit = rest_limit(run, 1)
     if limit == before:
         return
     run.counts.leaving_rest = 0
@@ -148,7 +152,7 @@ def stick(run: Run, xi_to: float) -> None:
     if slips:
         run.counts.leaving_rest = direction
         run.counts.stiff = run.counts.steps = 0
-        start_slip(run, direction, rest_limit(run))
+        start_slip(run, direction, rest_limit(run, direction))
 
 
 @kernel
@@ -165,10 +169,12 @@ def come_to_rest(run: Run) -> None:
         return
     run.counts.mode = 0
     if run.counts.has_inertia == 0:
-        run.counts.leaving_rest = before if run.params.static_excess == 0.0 else 0
+        run.counts.leaving_rest = before if step_at_rest(run) == 0.0 else 0
         return
     load = evaluate(run.load, run.state.xi)
-    limit = rest_limit(run)
+    limit = rest_limit(run, 1)
     for direction in (1, -1):
-        if towards(run, load, direction) > limit:
+        if towards(run, load, direction) > limit_towards(run, direction, limit):
             run.counts.mode = direction
+            face(run, direction)
+            return

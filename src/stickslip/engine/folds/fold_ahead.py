@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from stickslip.engine.contact.contact_equation import first_piece, last_piece
 from stickslip.engine.series.polynomial import NONE
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run, borrow
@@ -103,13 +104,13 @@ def way_to_fold(run: Run, unit: float) -> float:
         return NONE
     piece = run.counts.piece
     if run.counts.knots_in_rate == 1:
-        if rate > run.law[piece].knot or (piece > 0 and rate < run.law[piece - 1].knot):
+        if rate > run.law[piece].knot or (piece > first_piece(run) and rate < run.law[piece - 1].knot):
             return NONE
     elif run.pieces > 1:
         walked = max(rate, run.jet[0]) * (run.k.speed + 0.5 * run.k.bend * eta) * eta
         slip = run.state.law_slip
         knot = piece if run.k.chi > 0.0 else piece - 1
-        if 0 <= knot < run.pieces - 1 and abs(run.law[knot].knot - slip) <= abs(walked):
+        if first_piece(run) <= knot < last_piece(run) and abs(run.law[knot].knot - slip) <= abs(walked):
             return NONE
     run.state.fold_rate = rate
     return eta * unit

@@ -388,7 +388,11 @@ class History:
         for n in law.reverses:
             states[n] = np.where(self.mode(at) < 0, -states[n], states[n])
         slip = self.law_slip(at) if law.depends_on_slip else 0.0
-        return np.asarray(self.problem.normal * law.coefficient(slip, np.abs(self.rate(at)), one_argument(states)))
+        place = (slip, np.abs(self.rate(at)), one_argument(states))
+        mu = law.coefficient(*place)
+        if law.backward_from:
+            mu = np.where(self.mode(at) < 0, law.ways[1].coefficient(*place), mu)
+        return np.asarray(self.problem.normal * mu)
 
     def friction(self, at: Positions) -> Floats:
         """Return the friction traction minus the reference strength, with the sign of the load."""

@@ -57,6 +57,23 @@ def table_of_branches(problem: Problem, law_slip: float, pressing: float = 0.0) 
     return table, levels.stick_to
 
 
+def branches_both_ways(problem: Problem) -> tuple[Floats, dict[str, float]]:
+    """Return the table of branches at the start, and the numbers of `Params` that belong to it.
+
+    Where friction differs with the direction of slip, the branches of forward slip come first, then those of backward slip.
+    """
+    table, stick_to = table_of_branches(problem.facing(1), 0.0)
+    if not (problem.friction.backward_from and is_algebraic(problem)):
+        return table, {"stick_to": stick_to}
+    backward = problem.facing(-1)
+    other, back_to = table_of_branches(backward, 0.0)
+    rows = BranchRow.of(other)
+    for name in ("keep_from", "keep_to", "excess_from", "excess_to"):
+        setattr(rows, name, getattr(rows, name) + (backward.strength - problem.strength))
+    numbers = {"stick_to": stick_to, "backward_branch": float(len(table)), "backward_stick_to": back_to}
+    return np.concatenate((table, other)), numbers
+
+
 def strength_change(problem: Problem, law_slip: float) -> float:
     """Return the static strength (Pa) at a law slip (m, minus the initial one), minus that at the start.
 

@@ -13,7 +13,7 @@ from stickslip.contact import folds_not_followed, rule_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.contact_step.certificate import RATIOS
 from stickslip.engine.input.asked import INPUTS, AtRest, Shaken
-from stickslip.engine.input.branch_table import branch_of, is_algebraic, table_of_branches
+from stickslip.engine.input.branch_table import branch_of, branches_both_ways, is_algebraic
 from stickslip.engine.input.first_pieces import pieces_of, together
 from stickslip.engine.input.limits import set_length, set_lumping
 from stickslip.engine.state import layout as at
@@ -75,7 +75,9 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
         raise InputError(why)
     check_driver(problem)
     params = parameters_of(problem)
-    branches, params.stick_to = table_of_branches(problem, 0.0)
+    branches, found = branches_both_ways(problem)
+    for name, value in found.items():
+        setattr(params, name, value)
     own = INPUTS[problem.body.structure]
     first = _parts(problem, own.first_load_varying(problem)) if problem.varies else own.first_load(problem)
     setup = Setup(params, *law_tables(problem), branches, first, loading_of(problem), own.ladder(problem))
@@ -83,7 +85,9 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
         shared.flags.writeable = False
     state, counts = start_of(problem)
     if counts.is_algebraic and counts.mode != 0:
-        counts.branch = branch_of(at.BranchRow.of(branches), abs(problem.rate))
+        turn = int(params.backward_branch) or len(branches)
+        begin, end = (turn, len(branches)) if counts.mode < 0 and turn < len(branches) else (0, turn)
+        counts.branch = begin + branch_of(at.BranchRow.of(branches[begin:end]), abs(problem.rate))
     return setup, state, counts
 
 
@@ -108,6 +112,8 @@ def parameters_of(problem: Problem) -> Params:
         "reference": problem.strength,
         "counts_net": 1.0 if law.counts == "net" else 0.0,
         "static_excess": law.static_excess,
+        "backward_piece": float(law.backward_from),
+        "backward_excess": law.ways[1].static_excess if law.backward_from else 0.0,
         "state_scale": [state.scale for state in law.states] + [0.0] * (at.STATES - len(law.states)),
         "rate_floor": SMALLEST if law.sticks else SLOWEST * min(law.rate_scales, default=1.0),
         "healed_piece": int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1,
@@ -245,9 +251,13 @@ def references_of(problem: Problem, home: int, static: Any, friction: Callable[[
     of a piece at a slip and v = 0. If any number is an array, the numbers have a column for each member of a batch.
     """
     law, start, pieces = problem.contact_law, problem.law_slip, range(len(problem.friction.pieces))
-    in_slip = law.knot_variable == "slip"
-    references = [start if i == home or not in_slip else law.knots[i - 1 if i > home else i] for i in pieces]
+    in_slip, first = law.knot_variable == "slip", law.backward_from
+    turned = first + int(law.ways[1].piece_at(start)) if first else home
+    homes = [turned if i >= first else home for i in pieces]
+    references = [start if i == homes[i] or not in_slip else law.knots[i - 1 if i > homes[i] else i] for i in pieces]
     offsets = [-law.static_excess if i == home else friction(i, references[i]) - static for i in pieces]
+    if first:  # the step to static friction is added last, so that the same law both ways has the same numbers
+        offsets[turned] = float(law.ways[1].static_coefficient(start)) - static - law.ways[1].static_excess
     knots = [*(knot - start if in_slip else knot for knot in law.knots), math.inf]
     return references, together([*(start - reference for reference in references), *offsets, *knots])
 
@@ -301,6 +311,8 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     if problem.has_initial_rate or not problem.friction.sticks:
         state.rate_now = problem.rate
         count.mode = 1 if (problem.rate or problem.load) >= 0.0 else -1
+        if count.mode < 0 and problem.friction.backward_from:
+            count.piece = problem.friction.backward_from + int(problem.friction.ways[1].piece_at(problem.law_slip))
     for n, value in enumerate(problem.contact_states):
         state.state_now[n] = -value if count.mode < 0 and n in problem.friction.reverses else value
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_step
+from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_step, step_at_rest
 from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
 from stickslip.engine.radau.parts import share_of_step
@@ -138,7 +138,7 @@ def start_of_step(run: Run) -> float:
     run.stage_rate[0] = abs(state.rate_now)
     if run.counts.mode == 0:
         run.stage_rate[0] = 0.0
-    elif run.counts.leaving_rest != 0 and (run.counts.has_inertia == 1 or run.params.static_excess == 0.0):
+    elif run.counts.leaving_rest != 0 and (run.counts.has_inertia == 1 or step_at_rest(run) == 0.0):
         contact_at(run, state.law_slip, 0.0, state.state_now)
         force = run.load_along_slip[0] - run.params.normal * (run.value.mu + static_step(run, state.state_now))
         if run.counts.has_inertia == 0:

@@ -50,6 +50,10 @@ class Params(MemoryRecord):
     counts_net: float  # 1 if the law counts net slip, 0 if it counts the path
     static_excess: float  # 1: static friction coefficient minus that of sliding at slip rate 0
     stick_to: float  # Pa or N: load that ends rest, minus the static strength at the present slip; never above 0
+    backward_piece: float  # first piece of the law that holds in backward slip; 0 if all hold both ways
+    backward_branch: float  # first row of the table of branches that holds in backward slip; 0 if all hold both ways
+    backward_excess: float  # 1: `static_excess` in backward slip, where the law differs
+    backward_stick_to: float  # Pa or N: `stick_to` in backward slip, where the law differs
     ramp: float  # Pa or N: growth of the load at rest in one round trip; 0 for a loading that varies
     tolerance: float  # 1: local error allowed to a step, relative to the slip rate
     first_disc: float  # disc on which the run tries to prove its first step, as an index of `contact_step.certificate.RATIOS`

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from stickslip.engine.contact.contact_equation import limit_towards
 from stickslip.engine.contact.far_end import has_faded
 from stickslip.engine.state.layout import NEVER
 from stickslip.engine.state.workspace import Run
@@ -56,6 +57,6 @@ def trips_of_machine(run: Run, limit: float, room: float, top: float, bottom: fl
     ramp = ramp_of_machine(run, segment)
     if ramp == 0.0:
         return int(max(room, 0.0))
-    free = limit - top if ramp > 0.0 else limit + 2.0 * params.reference - bottom
+    free = limit - top if ramp > 0.0 else limit_towards(run, -1, limit) + 2.0 * params.reference - bottom
     trips = min(math.floor(free / abs(ramp)) - 1.0, room)
     return min(int(max(trips, 0.0)), NEVER) if trips < 9e18 else NEVER

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.contact.contact_equation import limit_towards, rest_limit
 from stickslip.engine.contact.far_end import is_rigid
 from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers, Task
@@ -133,7 +133,8 @@ def room(run: Run, n: int, way: int, limit: float) -> float:
     `way` is 1 for slip forwards, -1 for slip backwards; `limit` (Pa) is measured from the reference strength.
     """
     top = run.echoes[n].high if way > 0 else run.echoes[n].low - 2.0 * run.params.reference
-    return limit - NEARLY * abs(run.params.reference) - top
+    held = limit if way > 0 else limit_towards(run, way, limit)
+    return held - NEARLY * abs(run.params.reference) - top
 
 
 @kernel
@@ -261,7 +262,7 @@ def next_echo(run: Run) -> int:
         source = first_of(run, run.counts.ahead)
     else:
         add_new(run)
-        source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.trip)
+        source = first_to_break(run, run.counts.ahead, rest_limit(run, 1), run.counts.trip)
     if source != NO_PIECE:
         pass_to(run, source)
         plan_group(run, source)
@@ -306,7 +307,7 @@ def end_trip(run: Run) -> None:
     run.counts.previous_from, run.counts.previous_to = run.counts.trip_from, run.counts.length
     add_new(run)
     whole = join(run.echoes, run.params.ramp, run.counts.behind, run.counts.ahead)
-    trip = run.counts.trip + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
+    trip = run.counts.trip + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run, 1))
     settled = run.params.ramp == 0.0 and run.counts.moved == 0
     run.counts.is_locked = 1 if trip == NEVER or settled else 0
     run.counts.trip = trip

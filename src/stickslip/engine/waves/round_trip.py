@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.contact.contact_equation import limit_towards, rest_limit
 from stickslip.engine.contact.far_end import has_faded, is_dead_load, is_rigid
 from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.series.polynomial import total
@@ -33,7 +33,7 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
     if ramp == 0.0:
         return NEVER
     least, largest = span_of_load(run)
-    room = limit - largest if ramp > 0.0 else limit - (-least - 2.0 * params.reference)
+    room = limit - largest if ramp > 0.0 else limit_towards(run, -1, limit) - (-least - 2.0 * params.reference)
     trips = math.floor(room / abs(ramp)) - 1.0
     return min(max(int(trips), 0), NEVER) if trips < 9e18 else NEVER
 
@@ -92,7 +92,7 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     leap, locked = 0, False
     if run.counts.moved == 0:
         run.counts.trips_at_rest += 1
-        leap = trips_certain_at_rest(run, rest_limit(run))
+        leap = trips_certain_at_rest(run, rest_limit(run, 1))
         locked = leap >= NEVER or swings_for_ever(run)
         room = last_trip - run.counts.trip - 1
         if leap > room and run.counts.to_the_end == 0:

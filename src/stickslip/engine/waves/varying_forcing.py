@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from stickslip.engine.contact.contact_equation import limit_towards
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import phase_at, span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at, tone_series
@@ -236,7 +237,7 @@ def trips_withstood(run: Run, limit: float) -> int:
         return int(max(room, 0.0))
     least, largest = span_of_load(run)
     top = limit - largest
-    bottom = math.inf if run.counts.one_way == 1 else limit + 2.0 * run.params.reference + least
+    bottom = math.inf if run.counts.one_way == 1 else limit_towards(run, -1, limit) + 2.0 * run.params.reference + least
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)

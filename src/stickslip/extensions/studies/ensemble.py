@@ -64,7 +64,7 @@ class Ensemble(RunsCompared):
         """A warning if a disturbance of the initial load can only shift the whole run in time; otherwise ""."""
         problem = self.problem
         shifted = not problem.friction.states and not is_lossy(problem) and not problem.varies
-        if not (shifted and -2.0 * problem.strength < problem.excess < 0.0):
+        if not (shifted and -problem.strength - problem.backward_strength < problem.excess < 0.0):
             return ""
         return "the run begins at rest: its members do the same, earlier or later; give initial excess 0 to disturb what they do"
 

@@ -60,7 +60,7 @@ def _kept_going(problem: Problem, pushes: Floats) -> Floats:
     A contact that is held back starts from rest, and its run is the same one a little later.
     """
     # excess of the load over the strength for forward and for backward slip
-    ahead, behind = problem.excess, -problem.excess - 2.0 * problem.strength
+    ahead, behind = problem.excess, -problem.excess - problem.strength - problem.backward_strength
     held_back = ahead + pushes < 0.0 if ahead >= 0.0 else (behind >= 0.0) & (behind - pushes < 0.0)
     return np.where(held_back, -pushes, pushes)
 

@@ -252,7 +252,7 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     found = doubts(problem) + _noise(problem.friction, contact)
     steady = problem.body.is_driven_rigidly
     rests = problem.friction.sticks and not problem.has_initial_rate
-    held = rests and -problem.strength <= problem.load and problem.excess <= 0
+    held = rests and -problem.backward_strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     found += CHECK_KINDS[problem.body.structure].warnings(scenario, contact)

@@ -46,7 +46,7 @@ def _yields(problem: Problem, ground: Ground) -> Iterator[Fact]:
     if mass is not None and problem.friction.sticks:
         ways = [("", -1.0, problem.strength - problem.load, "forwards, by an acceleration of the ground backwards")]
         if not problem.one_way:
-            ways.append((" back", 1.0, problem.strength + problem.load, "backwards, by an acceleration forwards"))
+            ways.append((" back", 1.0, problem.backward_strength + problem.load, "backwards, by an acceleration forwards"))
         for name, sign, left, way in ways:
             passed = _passed(ground, sign, left / mass) if ground.tone.amplitude == 0.0 else None
             often = "" if passed is None else f": passed {passed} time{'s' * (passed != 1)}"

@@ -25,8 +25,8 @@ def start_of(problem: Problem) -> str:
     what = "the load" if push == 0.0 else "the load, with the force,"
     rate = resolved(rate, problem.load, problem.body.total_damping)
     jump = f"; the slip rate jumps to {exactly(rate, slip_rate)}" if rate > 0.0 else ""
-    if load < -problem.strength:
-        beyond = exactly(-load - problem.strength, unit, 6)
+    if load < -problem.backward_strength:
+        beyond = exactly(-load - problem.backward_strength, unit, 6)
         return f"slips backwards at once: {what} is {beyond} beyond the static strength"
     if excess > 0:
         return f"slips at once: {what} exceeds the static strength by {exactly(excess, unit, 6)}{jump}"

@@ -6,10 +6,13 @@ large. The strength is taken from the law and from the normal load of the proble
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from stickslip.engine import History, Positions, values_at
 from stickslip.foundation.arrays import Floats
+from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
 from stickslip.problem import PERFECT_DELAY, Problem
 from stickslip.solution.observables.given_on_discs import NormalLoads
@@ -40,17 +43,30 @@ def _recorded(history: History) -> Places:
     return n[np.unique(np.linspace(0, len(n) - 1, RECORDED).astype(int))] if len(n) > RECORDED else n
 
 
-def _strength(history: History, at: Positions, grown: Floats) -> Floats:
-    """Return the static strength at positions (Pa, N or N m), under a normal load that has grown by a share (1)."""
-    law, own = history.problem.friction, len(history.problem.friction.states)
+class Strengths(NamedTuple):
+    """Static strengths at positions (Pa, N or N m) against forward and against backward slip; the second may be the first."""
+
+    forward: Floats
+    backward: Floats
+
+
+def _strengths(history: History, at: Positions, grown: Floats) -> Strengths:
+    """Return the static strengths at positions, under a normal load that has grown by a share (1)."""
+    law = history.problem.friction
+    forward = _strength(history, law.ways[0], at, grown)
+    return Strengths(forward, _strength(history, law.ways[1], at, grown) if law.backward_from else forward)
+
+
+def _strength(history: History, law: FrictionLaw, at: Positions, grown: Floats) -> Floats:
+    own = len(law.states)
     coefficient = law.coefficient(history.law_slip(at), 0.0, one_argument(history.states(at)[:own]))
     return np.asarray(history.problem.normal * (1.0 + grown) * (coefficient + law.static_excess))
 
 
-def _over(problem: Problem, excess: Floats, strength: Floats) -> float:
+def _over(problem: Problem, excess: Floats, strength: Strengths) -> float:
     """Return how far loads, minus the reference, exceed strengths at most, backwards too if slip may go there."""
-    forward = excess - (strength - problem.strength)
-    backward = -excess - (strength + problem.strength)
+    forward = excess - (strength.forward - problem.strength)
+    backward = -excess - (strength.backward + problem.strength)
     return float(np.max(forward if problem.one_way else np.maximum(forward, backward), initial=0.0))
 
 
@@ -61,7 +77,7 @@ def _in_recorded(history: History, n: Places) -> float:
     at = Positions.inside(np.repeat(n, len(POINTS_OF_STEP)), np.tile(POINTS_OF_STEP, len(n)))
     varies = history.problem.normal_load is not None
     grown = NormalLoads.of(history, n).at(POINTS_OF_STEP)[0].centre.ravel() if varies else np.zeros(len(at.piece))
-    return _over(history.problem, history.excess(at), _strength(history, at, grown))
+    return _over(history.problem, history.excess(at), _strengths(history, at, grown))
 
 
 def _in_leaped(history: History) -> float:
@@ -80,7 +96,8 @@ def _in_leaped(history: History) -> float:
     grown = np.zeros(len(times)) if normal is None else normal.at(since) / history.problem.normal - 1.0
     stands = Positions.inside(at.last, 1.0)
     resting = history.mode(at) == 0
-    return _over(history.problem, history.excess(at)[resting], _strength(history, stands, grown)[resting])
+    held = Strengths(*(one[resting] for one in _strengths(history, stands, grown)))
+    return _over(history.problem, history.excess(at)[resting], held)
 
 
 def _where_slip_begins(history: History) -> float:
@@ -95,6 +112,7 @@ def _where_slip_begins(history: History) -> float:
         return 0.0
     varies = problem.normal_load is not None
     grown = NormalLoads.of(history, n).at(np.zeros(1))[0].centre[:, 0] if varies else np.zeros(len(n))
-    strength = _strength(history, Positions.inside(n - 1, 1.0), grown)
+    held = _strengths(history, Positions.inside(n - 1, 1.0), grown)
+    strength = np.where(store.mode[n] < 0, held.backward, held.forward)
     load = problem.strength + values_at(store.load, n, np.zeros(len(n)))
     return float(np.max(strength - store.mode[n] * load, initial=0.0))

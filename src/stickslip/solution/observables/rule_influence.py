@@ -7,7 +7,7 @@ At any other load one slip rate solves it, and every rule takes that one.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -84,7 +84,7 @@ def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floa
         return RuleInfluence(problem.rule, _regime_on_the_way(history, contact), np.zeros(0, bool), folds_move=True)
     shocks = shock_columns(history)
     time, cause = shocks["time"], np.array(shocks["cause"], object)
-    if contact.window is None:
+    if contact.window is None and (contact.backward is None or contact.backward.window is None):
         return RuleInfluence(problem.rule, contact.regime, np.zeros(len(time), bool))
     before, after = (_side_of_folds(contact, _load(history, time, side)) == 0.0 for side in ("left", "right"))
     decided = (cause == "fold") | (before & (cause != "start")) | after
@@ -97,7 +97,11 @@ def _load(history: History, time: Floats, side: Side = "right") -> Floats:
 
 def _side_of_folds(contact: Uniqueness, load: Floats) -> Floats:
     """Return -1 below the folds, 0 strictly between them and +1 above, for loads of either sign."""
-    assert contact.window is not None
+    if contact.backward is not None:
+        ahead = replace(contact, backward=None)
+        return np.where(load < 0.0, _side_of_folds(contact.backward, load), _side_of_folds(ahead, load))
+    if contact.window is None:
+        return np.full(load.shape, -1.0)
     assert contact.resistance is not None
     low, high = contact.window
     excess, rounding = np.abs(load) - contact.resistance.strength, _ROUNDING * (high - low)
