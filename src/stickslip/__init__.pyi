@@ -17,6 +17,8 @@ from .problem import Problem, selection
 from .problem.bodies import (
     ElasticSlab,
     LayeredSlab,
+    PositionLoop,
+    RotaryLoop,
     RotatingBlock,
     SectionedString,
     SoilColumn,
@@ -39,7 +41,9 @@ __all__ = [
     "InputError",
     "LayeredSlab",
     "PlanarSlab",
+    "PositionLoop",
     "Problem",
+    "RotaryLoop",
     "RotatingBlock",
     "SectionedString",
     "SoilColumn",

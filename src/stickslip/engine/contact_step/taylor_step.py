@@ -21,6 +21,7 @@ from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, note_jump
 from stickslip.engine.contact.pressing import states_ahead
 from stickslip.engine.contact.stiffness import judge_stiffness
+from stickslip.engine.contact.winding import SERIES_PASSES, feel_slip
 from stickslip.engine.contact_step.certificate import (
     begin_step,
     bound_straight_bit,
@@ -130,6 +131,16 @@ def expand_series(run: Run, target: float) -> float:
 def calculate_series(run: Run, unit: float) -> None:
     """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `unit` (in xi)."""
     prepare_series(run, unit)
+    expand(run)
+    if run.params.winding != 0.0:
+        for _ in range(SERIES_PASSES):
+            feel_slip(run, run.jet)
+            expand(run)
+
+
+@inlined
+def expand(run: Run) -> None:
+    """Write the series under the prepared load into run.jet."""
     piece = run.counts.piece
     call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.load_along_slip, run.jet)
 

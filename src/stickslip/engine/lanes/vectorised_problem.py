@@ -49,6 +49,7 @@ ONE_AT_A_TIME = {
     "layered": "[body] a {}",
     "machine": f"[body] {MACHINE}",
     "damper": "[body] a column that is damped",
+    "loop": "[body] a {}",
     "changing": "[loading] driver_reflection: a driver that changes",
 }
 """What a batch does not follow, by kind of body or of driver: what its lanes know of waves is one echo at a constant share."""

@@ -54,7 +54,7 @@ class ObservablesOfRigid(ObservablesOfKind):
         return {
             "released": spring + 0.5 * body.inertia * (history.rate(first) ** 2 - history.rate(last) ** 2),
             "work": between(history, first, last, _pulling(history)),
-            "damped": between(history, first, last, _damping(history)),
+            "damped": between(history, first, last, damped_power(history)),
             "trapped": np.zeros(len(force)),
         }
 
@@ -159,7 +159,7 @@ def _stretching(history: History, force: Floats, later: Floats) -> Floats:
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
-def _damping(history: History) -> Integrand:
+def damped_power(history: History) -> Integrand:
     """Return the power that the damping dissipates as a function of positions, W."""
     damping, dashpot = history.problem.body.damping, as_on_spring(history.problem.body).driver_damping
     if not dashpot:
@@ -173,7 +173,7 @@ def _damped(history: History, at: Positions, nodes: int) -> Floats:
     if not body.total_damping:
         return np.zeros(len(at.piece))
     pieces = None if body.driver_damping else np.flatnonzero(history.store.mode)
-    return up_to(history, at, _damping(history), pieces, nodes=nodes) + _damped_at_rest(history, at)
+    return up_to(history, at, damped_power(history), pieces, nodes=nodes) + _damped_at_rest(history, at)
 
 
 def _damped_at_rest(history: History, at: Positions) -> Floats:
