@@ -56,7 +56,7 @@ def _values(places: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _integrals(ends: NDArray[np.float64], twice: bool = False) -> NDArray[np.float64]:
-    """Return a matrix whose row i gives the integral of that polynomial from 0 to end i, by Gauss's rule, or that of its integral."""
+    """Return a matrix whose row i gives the integral of that polynomial from 0 to end i, by Gauss's rule, or its integral."""
     nodes, weights = legendre.leggauss(NODES_OF_STEP)
     matrix = np.zeros((len(ends), NODES_OF_STEP))
     for i, end in enumerate(ends):

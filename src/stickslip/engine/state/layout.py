@@ -74,6 +74,10 @@ class Params(MemoryRecord):
     first_lag: float  # m: how far slip is behind the reference of a position loop at the start
     pull_tone: float  # m/s: amplitude of a tone in the rate of that reference
     pull_phase: float  # rad: phase of that tone at t = 0
+    stop_ahead: float  # m: slip at which a hard stop bars slip forwards (`contact_step.hard_stop`); inf without one
+    stop_behind: float  # m: slip at which another bars slip backwards; -inf without one
+    restitution: float  # 1: share of the slip rate with which a body bounces off a stop
+    least_bounce: float  # m/s: a body that would bounce off at no more than this rate stays at the stop
     slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative
@@ -265,6 +269,8 @@ class Cause(IntEnum):
     """The loading jumps."""
     HEALING = 5
     """Rest gives the contact its initial strength back."""
+    STOP = 6
+    """The body meets a hard stop."""
 
 
 class NearFold(IntEnum):
@@ -287,6 +293,8 @@ class StepEvent(IntEnum):
     """The slip rate reaches zero."""
     KNOT = 2
     """Slip, or the slip rate, reaches a knot of the law."""
+    STOP = 3
+    """Slip reaches a hard stop."""
 
 
 class EnginePart(IntEnum):

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 import math
 
+from stickslip.engine.contact.contact_equation import is_barred
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import phase_at, span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at, tone_series
-from stickslip.engine.contact.winding import wind_up
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
 from stickslip.engine.waves.merged_pieces import gather, plan_merging
+from stickslip.engine.waves.winding_up import wind_up
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
 from stickslip.foundation.phasors import dirichlet
@@ -240,8 +241,8 @@ def trips_withstood(run: Run, limit: float) -> int:
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
     least, largest = span_of_load(run)
-    top = limit - largest
-    bottom = math.inf if run.counts.one_way == 1 else limit + 2.0 * run.params.reference + least
+    top = math.inf if is_barred(run, 1) else limit - largest
+    bottom = math.inf if is_barred(run, -1) else limit + 2.0 * run.params.reference + least
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)

@@ -7,6 +7,8 @@ from typing import ClassVar
 from stickslip.problem.leaps.asked import LeapsOfBody, Over
 from stickslip.problem.problem import Problem
 
+NO_STOPS = "a body without hard stops"
+
 
 class LeapsOfRigid(LeapsOfBody):
     """Answers of a rigid body."""
@@ -24,7 +26,13 @@ class LeapsOfRigid(LeapsOfBody):
             return "a friction law under which slip begins at the friction of rest"
         if problem.ground is not None or problem.one_way:
             return "ground at rest, and slip in both directions"
+        if problem.body.has_stops:
+            return NO_STOPS
         return "a constant pull rate and normal load" if problem.varies else ""
+
+    def missing_for_steady(self, problem: Problem) -> str:
+        """Return that stops would end it, or what changes."""
+        return NO_STOPS if problem.body.has_stops else super().missing_for_steady(problem)
 
     def why_not_lumped(self, problem: Problem) -> str:
         """Return that there are no echoes."""

@@ -2,25 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
 
 from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import quantity
+from stickslip.foundation.quantities import declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import BodyOnCharacteristics, check_body
-from stickslip.problem.bodies.rigid.on_spring import OnSpring
+from stickslip.problem.bodies.contract import BodyOnCharacteristics
+from stickslip.problem.bodies.rigid.on_spring import BodyOnSpring, OnSpring
+from stickslip.problem.bodies.rigid.stops import AHEAD, BEHIND, RESTITUTION, check_with_stops
 
 PERIODS = 1000.0
 """A rest winds up the integral, so that no two periods are alike and none is leapt over: a round trip has this many of them (1)."""
 
 
+class BodyInLoop(BodyOnSpring, Protocol):
+    """A rigid body in a position loop: its integral gain (N/m/s), the first step of its reference (m), and its period (s)."""
+
+    integral_gain: float
+    reference_step: float
+
+    @property
+    def period(self) -> float:
+        """The period of free oscillation without an integral (s)."""
+        ...
+
+
 class InLoop(OnSpring):
-    """What differs from a body on a spring: the proportional gain is the spring, the derivative gain a dashpot, and one term winds up.
+    """What differs from a body on a spring: the proportional gain is the spring, the derivative gain a dashpot; a third winds up.
 
     The pull rate is the rate of the reference.
     """
@@ -60,6 +74,11 @@ class InLoop(OnSpring):
         return found * (PERIODS if self.has_machine else 1.0)
 
     @property
+    def longest_way(self) -> float:
+        """The period (s)."""
+        return self.period
+
+    @property
     def period(self) -> float:
         """The period of free oscillation without an integral, 2 pi sqrt(m / kp) (s)."""
         found: float = 2.0 * np.pi * np.sqrt(self.inertia / self.stiffness)  # type: ignore[attr-defined]
@@ -86,13 +105,16 @@ class PositionLoop(Declared, InLoop):
     mass: Number = quantity("kg", "mass m that is moved", above=0)
     proportional_gain: Number = quantity("N/m", "proportional gain kp, force per lag behind the reference", above=0)
     normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
-    integral_gain: Number = quantity("N/(m s)", "integral gain ki, growth of the force per lag", at_least=0, default=0.0)
+    integral_gain: Number = quantity("N/m/s", "integral gain ki, growth of the force per lag", at_least=0, default=0.0)
     derivative_gain: Number = quantity("N s/m", "derivative gain kd, force per rate of the lag", at_least=0, default=0.0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
-    reference_step: Number = quantity("m", "step of the reference at the start, which adds kp times itself to the load", default=0.0)
+    reference_step: Number = quantity("m", "step of the reference at the start, which the load follows", default=0.0)
+    stop_ahead: Number = quantity("m", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("m", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_body(self)
+        check_with_stops(self)
 
     @property
     def inertia(self) -> float:
@@ -116,15 +138,18 @@ class RotaryLoop(Declared, InLoop):
     inertia: Number = quantity("kg m^2", "moment of inertia I that is turned", above=0)
     proportional_gain: Number = quantity("N m/rad", "proportional gain kp, torque per lag behind the reference", above=0)
     normal_torque: Number = quantity("N m", "torque of friction if mu is 1", above=0)
-    integral_gain: Number = quantity("N m/(rad s)", "integral gain ki, growth of the torque per lag", at_least=0, default=0.0)
+    integral_gain: Number = quantity("N m/rad/s", "integral gain ki, growth of the torque per lag", at_least=0, default=0.0)
     derivative_gain: Number = quantity("N m s", "derivative gain kd, torque per rate of the lag", at_least=0, default=0.0)
     damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
-    reference_step: Number = quantity("rad", "step of the reference at the start, which adds kp times itself to the load", default=0.0)
+    reference_step: Number = quantity("rad", "step of the reference at the start, which the load follows", default=0.0)
+    stop_ahead: Number = quantity("rad", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("rad", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_body(self)
+        check_with_stops(self)
 
 
-def as_in_loop(body: BodyOnCharacteristics) -> InLoop:
+def as_in_loop(body: BodyOnCharacteristics) -> BodyInLoop:
     """Return a body that must be in a loop, as one, with the numbers that only such a body has."""
-    return cast(InLoop, body)
+    return cast(BodyInLoop, body)

@@ -25,6 +25,10 @@ class BodyOnSpring(BodyOnCharacteristics, Protocol):
         """The damping of a dashpot between the body and the pulled end of its spring (N s/m)."""
         ...
 
+    stop_ahead: float
+    stop_behind: float
+    restitution: float
+
 
 class OnSpring(WithOneDriver):
     """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
@@ -59,6 +63,11 @@ class OnSpring(WithOneDriver):
     def driver_kind(self: BodyOnSpring) -> str:
         """The kind of driver: "spring_and_dashpot" if there is a dashpot beside the spring, else "spring"."""
         return "spring_and_dashpot" if anywhere(self.driver_damping) else "spring"
+
+    @property
+    def has_stops(self: BodyOnSpring) -> bool:  # type: ignore[override]
+        """True if a hard stop bars its way."""
+        return anywhere(self.stop_ahead < math.inf) or anywhere(self.stop_behind < math.inf)
 
     @property
     def total_damping(self: BodyOnSpring) -> float:

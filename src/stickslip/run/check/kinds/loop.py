@@ -1,4 +1,4 @@
-"""What `check` says of axes in a position loop: how near its gains are to the edge of stability, and whether friction makes it hunt."""
+"""What `check` says of axes in a position loop: how near the gains are to the edge of stability, and whether friction hunts."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def why_it_hunts(problem: Problem) -> str:
     share = law.static_excess * problem.normal
     fall = float(law.slopes(0.0)[1])
     if share > 0.0:
-        drop = brief(share, problem.load_unit)
-        return f"hunts about a reference at rest: static friction exceeds that of sliding by {drop}: a break-away jumps however small the lag is"
+        why = f"static friction exceeds that of sliding by {brief(share, problem.load_unit)}"
+        return f"hunts about a reference at rest: {why}, so that a break-away jumps however small the lag is"
     if fall < 0.0:
         return "may hunt about a reference at rest: friction falls as slip begins"
     return "does not hunt about a reference at rest if it is stable in slip: friction does not fall as slip begins"

@@ -1,7 +1,7 @@
-"""What a finished run of an axis in a position loop says: the lag stretches the proportional gain, and the integral works beside it.
+"""What a finished run of an axis in a position loop says: the lag stretches the proportional gain, the integral works beside it.
 
-With the lag e = r - u the force of the controller is kp e + kd (V - v) + q. Of its work, kp e stores 1/2 kp e^2 as a spring does, and
-kd (V - v)^2 is damped; q works along the way of the axis, and nothing is stored in it.
+With the lag e = r - u the force of the controller is kp e + kd (V - v) + q. Of its work, kp e stores 1/2 kp e^2 as a spring does,
+and kd (V - v)^2 is damped; q works along the way of the axis, and nothing is stored in it.
 """
 
 from __future__ import annotations
@@ -12,8 +12,14 @@ from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import as_in_loop
 from stickslip.solution.observables.asked import LoadCompared
-from stickslip.solution.observables.given_load import pulled, value_at
-from stickslip.solution.observables.kinds.rigid import ObservablesOfRigid, damped_power, driver_force
+from stickslip.solution.observables.given_load import of_ground, pulled, value_at
+from stickslip.solution.observables.kinds.rigid import (
+    ObservablesOfRigid,
+    damped_power,
+    driver_force,
+    inertia_of_ground,
+    lost_between,
+)
 from stickslip.solution.observables.proof import Places
 from stickslip.solution.observables.proof_of_load import compared_in_steps, times_in
 from stickslip.solution.observables.quadrature import between, up_to
@@ -36,14 +42,12 @@ class ObservablesOfLoop(ObservablesOfRigid):
         body = history.problem.body
         if not body.has_machine:
             return super().event_energies(history, first, last)
-        stored = (
-            body.stiffness * lag(history, one) ** 2 + body.inertia * history.rate(one) ** 2 for one in (first, last)
-        )
+        stored = (body.stiffness * lag(history, one) ** 2 + body.inertia * history.rate(one) ** 2 for one in (first, last))
         begun, ended = stored
         return {
             "released": 0.5 * (begun - ended),
             "work": between(history, first, last, lambda some: _power(history, some)),
-            "damped": between(history, first, last, damped_power(history)),
+            "damped": between(history, first, last, damped_power(history)) + lost_between(history, first, last),
             "trapped": np.zeros(len(begun)),
         }
 
@@ -59,13 +63,13 @@ def lag(history: History, at: Positions) -> Floats:
 
 
 def _power(history: History, at: Positions) -> Floats:
-    """Return the power of the controller (W): as if it pulled the end of a spring, and what its integral gives to the lag besides."""
+    """Return the power (W) of the controller, as if it pulled the end of a spring, and what its integral gives to the lag."""
     problem, body = history.problem, as_in_loop(history.problem.body)
     time, inside = history.times_inside(at)
     pull, rate = value_at(problem.pull_rate, time, inside), history.rate(at)
     force = problem.strength + driver_force(history, at)
     integral = force - body.stiffness * lag(history, at) - body.driver_damping * (pull - rate)
-    return np.asarray(pull * force - integral * (pull - rate))
+    return np.asarray(pull * force - integral * (pull - rate) - inertia_of_ground(history, at) * rate)
 
 
 def _of_controller(history: History, piece: Places, xi: Floats) -> Floats:
@@ -73,12 +77,13 @@ def _of_controller(history: History, piece: Places, xi: Floats) -> Floats:
     problem, body = history.problem, as_in_loop(history.problem.body)
     places, first = Positions.inside(piece, xi), Positions.inside(np.zeros(1, int), 0.0)
 
-    def straight(at: Positions, time: Floats, inside: Floats) -> Floats:
-        """Return what the proportional and the derivative gain make of the reference (N)."""
-        return np.asarray(body.stiffness * lag(history, at) + body.driver_damping * value_at(problem.pull_rate, time, inside))
+    def at_once(at: Positions, time: Floats, inside: Floats) -> Floats:
+        """Return what the proportional and the derivative gain make of the reference, less the inertia of moving ground (N)."""
+        straight = body.stiffness * lag(history, at) + body.driver_damping * value_at(problem.pull_rate, time, inside)
+        return np.asarray(straight - body.inertia * of_ground(problem, time, inside)[1])
 
     _, _, time, inside = times_in(history, piece, xi)
-    found = history.excess(first) + straight(places, time, inside) - straight(first, *history.times_inside(first))
+    found = history.excess(first) + at_once(places, time, inside) - at_once(first, *history.times_inside(first))
     if not body.has_machine:
         return np.asarray(found)
     return np.asarray(found + body.integral_gain * up_to(history, places, lambda at: lag(history, at)))

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from stickslip.engine import History, Positions, Side
+from stickslip.engine import Cause, History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
@@ -41,7 +41,7 @@ class ObservablesOfRigid(ObservablesOfKind):
             "elastic": spring,
             "kinetic": 0.5 * body.inertia * rate**2,
             "heat": heat(history, at, nodes),
-            "damped": _damped(history, at, nodes),
+            "damped": _damped(history, at, nodes) + lost_at_stops(history, at),
             "radiated": np.zeros(len(force)),
             "trapped": np.zeros(len(force)),
         }
@@ -54,7 +54,7 @@ class ObservablesOfRigid(ObservablesOfKind):
         return {
             "released": spring + 0.5 * body.inertia * (history.rate(first) ** 2 - history.rate(last) ** 2),
             "work": between(history, first, last, _pulling(history)),
-            "damped": between(history, first, last, damped_power(history)),
+            "damped": between(history, first, last, damped_power(history)) + lost_between(history, first, last),
             "trapped": np.zeros(len(force)),
         }
 
@@ -106,7 +106,7 @@ def driver_force(history: History, at: Positions) -> Floats:
 def _held(history: History, at: Positions) -> Floats:
     """Return the load minus the reference strength (N) without the inertia of moving ground."""
     force = history.excess(at)
-    return force if history.problem.ground is None else np.where(at.before, force, force + _pushing(history, at))
+    return force if history.problem.ground is None else np.where(at.before, force, force + inertia_of_ground(history, at))
 
 
 def _pull_rate(history: History, at: Positions) -> Floats:
@@ -114,7 +114,7 @@ def _pull_rate(history: History, at: Positions) -> Floats:
     return value_at(history.problem.pull_rate, *history.times_inside(at))
 
 
-def _pushing(history: History, at: Positions) -> Floats:
+def inertia_of_ground(history: History, at: Positions) -> Floats:
     """Return the mass of the body times the acceleration of the ground, N."""
     ground, mass = history.problem.ground, history.problem.body.inertia
     return np.zeros(len(at.piece)) if ground is None else mass * ground.acceleration_at(*history.times_inside(at))
@@ -127,7 +127,7 @@ def _pulling(history: History) -> Integrand:
     def power(at: Positions) -> Floats:
         trip, offset = history.placed(at)
         pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + driver_force(history, at))
-        return np.asarray(pulling if problem.ground is None else pulling - _pushing(history, at) * history.rate(at))
+        return np.asarray(pulling if problem.ground is None else pulling - inertia_of_ground(history, at) * history.rate(at))
 
     return power
 
@@ -187,6 +187,19 @@ def _damped_at_rest(history: History, at: Positions) -> Floats:
         return np.asarray(damping * (squared_pull(problem, high) - squared_pull(problem, low)))
 
     return _in_rests(history, at, gained)
+
+
+def lost_at_stops(history: History, at: Positions) -> Floats:
+    """Return the energy (J) that a body has lost at hard stops up to each position."""
+    met = np.flatnonzero(history.store.cause == Cause.STOP)
+    rates = history.rate(history.just_before(met)) ** 2 - history.rate(Positions.inside(met, 0.0)) ** 2
+    lost = np.append(0.0, np.cumsum(0.5 * history.problem.body.inertia * rates))
+    return np.asarray(lost[np.searchsorted(met, at.last, side="right")])
+
+
+def lost_between(history: History, first: Positions, last: Positions) -> Floats:
+    """Return the same between pairs of positions."""
+    return lost_at_stops(history, last) - lost_at_stops(history, first)
 
 
 def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
