@@ -42,6 +42,7 @@ DRIVEN = {
     "spring": PULLED,
     "free": ss.Problem(ss.SpringBlock(1.0, 0.0, 10.0), LAW, force=7.0),
     "spring_and_dashpot": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0, driver_damping=2.0)),
+    "position_loop": replace(PULLED, body=ss.PositionLoop(1.0, 20.0, 10.0, integral_gain=5.0, derivative_gain=2.0)),
     **{kind: ss.Problem(slab, LAW, **RUN) for kind, slab in SLABS.items()},
     "damper": ss.Problem(COLUMN, LAW, **RUN),
     "changing": ss.Problem(SLABS["rigid"], LAW, **RUN, far_stress=6e7, driver_reflection=FREED),
@@ -50,6 +51,7 @@ DRIVEN = {
 MADE = {
     "rigid": PULLED,
     "belt": replace(PULLED, body=ss.SpringBlock(1.0, 20.0, 10.0).on_belt()),
+    "loop": DRIVEN["position_loop"],
     "uniform": DRIVEN["rigid"],
     "layered": ss.Problem(ss.LayeredSlab([4e3, 6e3], [2600.0, 2800.0], [3000.0, 3500.0], 1e8), LAW, **RUN),
 }

@@ -18,6 +18,8 @@ from .problem import Problem, selection
 from .problem.bodies import (
     ElasticSlab,
     LayeredSlab,
+    PositionLoop,
+    RotaryLoop,
     RotatingBlock,
     SectionedString,
     SoilColumn,
@@ -41,7 +43,9 @@ __all__ = [
     "LayeredSlab",
     "MovedContact",
     "PlanarSlab",
+    "PositionLoop",
     "Problem",
+    "RotaryLoop",
     "RotatingBlock",
     "SectionedString",
     "SoilColumn",

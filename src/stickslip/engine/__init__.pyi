@@ -67,6 +67,7 @@ from stickslip.engine.session import (
 )
 from stickslip.engine.state.layout import (
     TERMS,  # Coefficients of every polynomial and series (1): the orders 0 to ORDER.
+    Cause,  # Name what makes the slip rate jump.
     Floats,  # An array of float64.
     HistoryPiece,  # Hold one piece of the history: a step of the contact, with load and slip rate as polynomials in xi on [0, 1].
     Integers,  # An array of int64.
@@ -84,6 +85,7 @@ __all__ = [
     "SPARE",
     "START",
     "TERMS",
+    "Cause",
     "Checkpoint",
     "Epoch",
     "Floats",

@@ -1,6 +1,6 @@
 from stickslip.extensions.strong_motion.record import record
 from stickslip.problem.accelerogram import Accelerogram
-from stickslip.problem.loading import HISTORIES, HoldAndSlide, PiecewiseLinear, Sinusoidal, Steps
+from stickslip.problem.loading import HISTORIES, HoldAndSlide, PiecewiseLinear, Sinusoidal, Steps, Waypoints
 from stickslip.problem.loading_history import VARYING, LoadingHistory, Segment, Tone
 
 __all__ = [
@@ -14,5 +14,6 @@ __all__ = [
     "Sinusoidal",
     "Steps",
     "Tone",
+    "Waypoints",
     "record",
 ]

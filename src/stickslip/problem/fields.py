@@ -184,7 +184,8 @@ class ProblemFields(CheckedArguments):
         if not self.body.has_ground:
             why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
             raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
-        self._refuse_machine("Problem: ground that moves is not followed under", "leave the ground at rest")
+        if self.body.has_waves:
+            self._refuse_machine("Problem: ground that moves is not followed under", "leave the ground at rest")
         if self.body.has_inertia and ground.velocity_jumps:
             unit = self.unit_of("ground_velocity")
             why = f"an infinite force on a mass: join the points (piecewise-linear), beginning with 0 {unit}"
@@ -237,6 +238,10 @@ class ProblemFields(CheckedArguments):
             self.friction.check_start(self.law_slip)
         except InputError as error:
             raise InputError(f"Problem: friction: {error}") from None
+        if self.body.has_stops and not self.friction.sticks:
+            name = type(self.friction).__name__
+            why = f"hard stops need a law that knows rest, which {name} does not: leave them out, or give one such as Coulomb"
+            raise InputError(f"Problem: friction: {why}")
 
     def _check_state(self) -> None:
         law, name = self.friction, type(self.friction).__name__

@@ -5,9 +5,15 @@ Each stands here with the kind that it is like, whose answers are its own wherev
 
 from __future__ import annotations
 
-BODY_KINDS = {"rigid": "", "belt": "rigid", "uniform": "", "layered": ""}
+BODY_KINDS = {"rigid": "", "belt": "rigid", "loop": "rigid", "uniform": "", "layered": ""}
 """Each kind of body (`Body.structure`)."""
 DRIVERS_OF_WAVES = {"rigid": "", "lossy": "", "machine": "lossy", "damper": "lossy", "changing": "lossy"}
 """Each kind of driver of a body with waves."""
-DRIVER_KINDS = {"spring": "", "free": "spring", "spring_and_dashpot": "spring", **DRIVERS_OF_WAVES}
+DRIVER_KINDS = {
+    "spring": "",
+    "free": "spring",
+    "spring_and_dashpot": "spring",
+    "position_loop": "spring_and_dashpot",
+    **DRIVERS_OF_WAVES,
+}
 """Each kind of driver (`Problem.driver_kind`): the far end of a rigid body's spring, nothing, or one of waves."""

@@ -8,18 +8,21 @@ To add one, add its class to this file and to HISTORIES.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 from typing_extensions import override
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.conversion import Number, Numbers
+from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, declare, quantity
+from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, check_fields, declare, quantity
 from stickslip.problem.loading_history import VARYING, InParts, LoadingHistory, Segment, Tone, fixed
+
+WAY = "m or rad"
+"""Unit of a position: m of what slides, rad of what turns."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,42 @@ class Steps(PiecewiseLinear):
 
 
 @dataclass(frozen=True)
+class Waypoints(InParts):
+    """The rate of a straight way from position to position, at rest before the first and after the last: a reference of an axis."""
+
+    kind = "waypoints"
+    example: ClassVar = {"times": [0.0, "1 s", "3 s"], "positions": [0.0, 0.01, 0.01]}
+    columns: ClassVar = {"time": "times", "position": "positions"}
+
+    times: Numbers = declare(
+        NumberSeries(Quantity("s", "times of the positions", at_least=0), ascending=True, least=2, most=MOST_SAMPLES)
+    )
+    positions: Numbers = declare(NumberSeries(Quantity(WAY, "positions at these times"), least=2, most=MOST_SAMPLES))
+
+    def __post_init__(self) -> None:
+        if isinstance(self.positions, list | tuple):
+            given = [unit for one in self.positions if (unit := unit_among(one, WAY))]
+            if given:
+                object.__setattr__(self, "unit", f"{given[0]}/s")
+        check_fields(self)
+        if len(self.times) != len(self.positions):
+            raise InputError(f"Waypoints: {len(self.times)} times but {len(self.positions)} positions")
+
+    @override
+    def scaled(self, factor: float) -> Self:
+        return replace(self, positions=tuple(factor * one for one in self.positions))
+
+    @cached_property
+    @override
+    def parts(self) -> Floats:
+        times, ways = np.array(self.times, float), np.array(self.positions, float)
+        with np.errstate(over="ignore"):  # `check` refuses a rate that is not finite
+            rates = np.append(np.diff(ways) / np.diff(times), 0.0)
+        parts = np.array([times, rates, np.zeros(len(times))])
+        return fixed(parts if times[0] == 0.0 else np.insert(parts, 0, 0.0, axis=1))
+
+
+@dataclass(frozen=True)
 class Sinusoidal(LoadingHistory):
     """mean + amplitude sin(2 pi t / period + phase)."""
 
@@ -117,7 +156,7 @@ class HoldAndSlide(LoadingHistory):
 
 
 HISTORIES: dict[str, type[LoadingHistory]] = {
-    history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide)
+    history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, Waypoints, HoldAndSlide)
 }
 """Every built-in loading history by its name in scenario files."""
 __all__ = [
@@ -130,4 +169,5 @@ __all__ = [
     "Sinusoidal",
     "Steps",
     "Tone",
+    "Waypoints",
 ]

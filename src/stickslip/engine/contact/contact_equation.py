@@ -148,12 +148,20 @@ def limit_towards(run: Run, direction: int, forward: float) -> float:
 
 
 @kernel
+def is_barred(run: Run, direction: int) -> bool:
+    """Return True if slip in a direction cannot begin: the contact slips the other way only, or is at a hard stop."""
+    if direction > 0:
+        return run.state.slip_now >= run.params.stop_ahead
+    return run.counts.one_way == 1 or run.state.slip_now <= run.params.stop_behind
+
+
+@kernel
 def towards(run: Run, load: float, direction: int) -> float:
     """Return the load (Pa or N, minus the reference) as seen in the direction of slip, again minus the reference.
 
-    A contact that slips one way only sees no load at all in the other direction.
+    It sees no load at all in a direction in which it cannot slip.
     """
-    if direction < 0 and run.counts.one_way == 1:
+    if is_barred(run, direction):
         return -math.inf
     return load if direction > 0 else -load - 2.0 * run.params.reference
 
@@ -184,8 +192,8 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
     """
     part, onset, direction = run.trial, NONE, 0
     for way in (1, -1):
-        if way < 0 and run.counts.one_way == 1:
-            break
+        if is_barred(run, way):
+            continue
         for k in range(at.TERMS):
             part[k] = strength[k] - way * load[k]
         limit = limit_towards(run, way, strength[0])

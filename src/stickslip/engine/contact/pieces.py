@@ -34,9 +34,9 @@ def xi_at(run: Run, phase: float) -> float:
 def note_degree(run: Run) -> None:
     """Note the degree of a new piece of load and clear run.local and run.load_along_slip.
 
-    Beyond that degree the load's series over a step is zero too.
+    Beyond that degree the load's series over a step is zero too. The load of a position loop has all degrees, since slip bends it.
     """
-    run.counts.degree = degree(run.load)
+    run.counts.degree = degree(run.load) if run.params.winding == 0.0 else TERMS - 1
     fill(run.local, 0.0)
     fill(run.load_along_slip, 0.0)
 

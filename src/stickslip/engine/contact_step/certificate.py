@@ -193,6 +193,8 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
     put_states(run, ratio)
     call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
     force = force_on_disc(run.k, run.ball, load_on_disc(run.load_along_slip, run.powers, ratio, run.counts.degree))
+    if run.params.winding != 0.0:  # the load has the integral of slip but for its last terms, whose bound is that of all
+        force += run.params.winding * ratio * length * abs(run.k.speed) * run.ball.slip
     if run.counts.has_inertia == 1:
         missed = (length * abs(run.k.speed) / run.k.inertia * force + bound_of_slope(terms, ratio)) * SHRUNK_SLOPE[disc]
     else:

@@ -6,6 +6,7 @@ import math
 
 from stickslip.engine.contact.contact_equation import friction_at
 from stickslip.engine.contact.pieces import record
+from stickslip.engine.contact.winding import unwind
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import RECIPROCAL, evaluate, multiply, total
 from stickslip.engine.state import layout as at
@@ -34,6 +35,8 @@ def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> N
     if run.counts.is_block == 1:
         unload_spring(direction * run.params.stiffness * speed, direction * run.params.stiffness * bend, rate, load)
         run.load[0] -= run.params.stiffness * direction * grown
+        if run.params.winding != 0.0:
+            unwind(run, rate, speed, grown, to)
     if direction < 0:
         for k in range(at.TERMS):
             rate[k] = -rate[k]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from stickslip.engine.contact.contact_equation import TIE, first_piece, last_piece
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
+from stickslip.engine.contact_step.hard_stop import meet_stop, way_to_stop
 from stickslip.engine.contact_step.stick_or_slip import come_to_rest
 from stickslip.engine.folds.fold import reach_end
 from stickslip.engine.series.polynomial import NONE, first_descent, integral, magnitude, multiply, powers_of
@@ -51,8 +53,13 @@ def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
     next_knot = run.counts.piece if grown > 0.0 else run.counts.piece - 1
     if next_knot < first_piece(run) or next_knot >= last_piece(run):
         return NONE
-    distance = abs(run.law[next_knot].knot - run.state.law_slip)
-    if distance >= abs(grown):
+    return place_of_slip(run, rate, length, end, abs(run.law[next_knot].knot - run.state.law_slip))
+
+
+@kernel
+def place_of_slip(run: Run, rate: Floats, length: float, end: float, distance: float) -> float:
+    """Return where on [0, end] slip in the step reaches a distance (m), or NONE if it does not."""
+    if distance >= abs(growth(run, rate, length, end)):
         return NONE
     low, high = 0.0, end
     for _ in range(60):
@@ -91,12 +98,14 @@ def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
     if (run.counts.is_algebraic == 0 or run.counts.folds_move == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
     knot, turn = next_knot(run, rate, length, min(arrest, 1.0)) if run.pieces > 1 else (NONE, 0)
-    end = min(arrest, knot)
+    way = way_to_stop(run)
+    stop = place_of_slip(run, rate, length, min(arrest, 1.0), way) if way < math.inf else NONE
+    end = min(arrest, knot, stop)
     if end > 1.0 - TIE:
         return Cut(StepEvent.NONE, 0, 1.0)
     if end < 1.0:
         stretch(run, length * end, rate)
-    return Cut(StepEvent.ARREST if arrest == end else StepEvent.KNOT, turn, end)
+    return Cut(StepEvent.ARREST if arrest == end else StepEvent.KNOT if knot == end else StepEvent.STOP, turn, end)
 
 
 @kernel
@@ -106,3 +115,5 @@ def resolve(run: Run, cut: Cut) -> None:
         come_to_rest(run)
     elif cut.event == StepEvent.KNOT:
         pass_knot(run, cut.turn)
+    elif cut.event == StepEvent.STOP:
+        meet_stop(run)

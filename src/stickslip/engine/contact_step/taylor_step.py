@@ -21,6 +21,7 @@ from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, note_jump
 from stickslip.engine.contact.pressing import states_ahead
 from stickslip.engine.contact.stiffness import judge_stiffness
+from stickslip.engine.contact.winding import feel_slip
 from stickslip.engine.contact_step.certificate import (
     begin_step,
     bound_straight_bit,
@@ -48,6 +49,8 @@ LONGEST_GUESS = 2.0
 SHORTEST_GUESS = 1e-16
 """Least unit, as a share of the way to go (1). After a last step of almost no length the unit would be so small that high orders
 vanish or overflow."""
+PASSES = (at.TERMS + 2) // 3
+"""Passes (1) until a series under the integral of its own slip has all its terms: each makes three orders more right."""
 HALVINGS_OF_STEP = 40
 """Halve a step with friction below zero at most this many times (1): 2^-40 of a step is next to nothing."""
 
@@ -131,7 +134,10 @@ def calculate_series(run: Run, unit: float) -> None:
     """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `unit` (in xi)."""
     prepare_series(run, unit)
     piece = run.counts.piece
-    call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.load_along_slip, run.jet)
+    for _ in range(1 if run.params.winding == 0.0 else PASSES):
+        call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.load_along_slip, run.jet)
+        if run.params.winding != 0.0:
+            feel_slip(run, run.jet)
 
 
 @kernel

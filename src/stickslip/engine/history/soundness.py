@@ -30,7 +30,7 @@ from stickslip.problem import Problem, Stop
 
 ROUND_TRIP_ROUNDING = 1e-9
 """Rounding may carry an offset beyond the end of a round trip by this share of it; also the tolerance of xi around 0 and 1."""
-LAST_CAUSE = Cause.HEALING
+LAST_CAUSE = Cause.STOP
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""

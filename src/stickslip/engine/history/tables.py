@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Columns = dict[str, Any]
 """Arrays or lists of one length, by name: a table that needs no pandas, which takes a fifth of a second to import."""
 
-CAUSES = ("", "start", "fold", "echo", "loading", "healing")
+CAUSES = ("", "start", "fold", "echo", "loading", "healing", "stop")
 """Names of the causes of shocks, by their code in the history; code 0 is no shock."""
 
 

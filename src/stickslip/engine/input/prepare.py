@@ -124,6 +124,8 @@ def parameters_of(problem: Problem) -> Params:
         "reflection": body.reflection,
         "inertia": body.inertia,
         "shortest": automatic_length(body),
+        "stop_ahead": math.inf,
+        "stop_behind": -math.inf,
     }
     numbers |= own.numbers(problem) | driver.numbers(problem)
     numbers |= {"tone_frequency": tone_of(problem).frequency} if problem.varies else own.steady_numbers(problem)

@@ -49,6 +49,7 @@ ONE_AT_A_TIME = {
     "layered": "[body] a {}",
     "machine": f"[body] {MACHINE}",
     "damper": "[body] a column that is damped",
+    "loop": "[body] a {}",
     "changing": "[loading] driver_reflection: a driver that changes",
 }
 """What a batch does not follow, by kind of body or of driver: what its lanes know of waves is one echo at a constant share."""
@@ -196,6 +197,8 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield "[loading] a batch needs a pull, far stress and normal load that do not vary in time"
     if problem.one_way or "loading.one_way" in parameters:
         yield "[loading] one_way: a batch slips both ways"
+    if problem.body.has_stops or any(name.startswith("body.stop_") for name in parameters):
+        yield "[body] a hard stop is followed one run at a time"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
         yield "[run] creep_rtol: a batch cannot leap over creep from the start of a run"
 

@@ -20,6 +20,7 @@ from stickslip.engine.series.radau_nodes import (
     DERIVATIVE_IN_MIDDLE,
     INTEGRAL,
     INTEGRAL_TO_MIDDLE,
+    INTEGRAL_TWICE,
     MIDDLE,
     NODES_OF_STEP,
     POINT,
@@ -85,17 +86,20 @@ def assemble(run: Run, h: float, force: float) -> None:
     mass, chi = params.inertia / h, run.k.chi * h
     size = STAGES * (1 + states)
     for i in range(1, NODES_OF_STEP):
-        row, walked, change = ahead(m, WIDTH_OF_ROW * (i - 1)), 0.0, 0.0
+        row, walked, wound, change = ahead(m, WIDTH_OF_ROW * (i - 1)), 0.0, 0.0, 0.0
         for j in range(NODES_OF_STEP):
             walked += INTEGRAL[i, j] * v[j]
+            wound += INTEGRAL_TWICE[i, j] * v[j]
             change += DERIVATIVE[i, j] * v[j]
         contact_at(run, run.state.law_slip + chi * walked, v[i], states_at_point(run, i))
         value = run.value
         resisted = params.damping * v[i] + params.normal * value.mu + params.stiffness * h * walked
-        by_walk = params.stiffness * h + params.normal * value.by_slip * chi
+        by_walk, by_wind = params.stiffness * h + params.normal * value.by_slip * chi, params.winding * h * h
         for j in range(1, NODES_OF_STEP):
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
+            row[j - 1] += by_wind * INTEGRAL_TWICE[i, j] if moving else 0.0
         row[i - 1] += params.damping + params.normal * value.by_rate if moving else 1.0
+        resisted += by_wind * wound
         row[size] = evaluate(run.load_along_slip, POINT[i]) - force - resisted - mass * change if moving else 0.0
         for n in range(states):
             assemble_state(run, h, i, n)

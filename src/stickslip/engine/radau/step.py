@@ -10,6 +10,7 @@ import math
 from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_step, step_at_rest
 from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
+from stickslip.engine.contact.winding import feel_slip
 from stickslip.engine.radau.parts import share_of_step
 from stickslip.engine.radau.proof import begin_proof, measured_anywhere, step_proof
 from stickslip.engine.radau.stages import (
@@ -408,6 +409,8 @@ def collocate(run: Run, left: float) -> float:
             interpolate(run.stage_rate, run.jet, run.spare)
             for n in range(run.counts.states):
                 interpolate(ahead(run.stage_state, TERMS * n), ahead(run.state_jet, TERMS * n), run.spare)
+            if run.params.winding != 0.0 and run.counts.mode != 0:
+                feel_slip(run, run.jet)
             error = judged_error(run, force, before)
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0

@@ -55,13 +55,14 @@ def _values(places: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(basis / basis.sum(axis=1, keepdims=True))
 
 
-def _integrals(ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return a matrix whose row i gives the integral of that polynomial from 0 to end i, by Gauss's rule."""
+def _integrals(ends: NDArray[np.float64], twice: bool = False) -> NDArray[np.float64]:
+    """Return a matrix whose row i gives the integral of that polynomial from 0 to end i, by Gauss's rule, or its integral."""
     nodes, weights = legendre.leggauss(NODES_OF_STEP)
     matrix = np.zeros((len(ends), NODES_OF_STEP))
     for i, end in enumerate(ends):
         if end > 0.0:
-            matrix[i] = 0.5 * end * weights @ _values(0.5 * end * (1.0 + nodes))
+            until = 0.5 * end * (1.0 - nodes) if twice else 1.0  # the time left is the weight of a rate in the integral of slip
+            matrix[i] = 0.5 * end * weights * until @ _values(0.5 * end * (1.0 + nodes))
     return matrix
 
 
@@ -70,6 +71,8 @@ POINT = _radau()
 _WEIGHT = _barycentric()
 DERIVATIVE, INTEGRAL = _derivatives(), _integrals(POINT)
 """Matrices from values at the points to derivatives at the points and to integrals from 0 to each of them."""
+INTEGRAL_TWICE = _integrals(POINT, twice=True)
+"""Matrix from values at the points to the integral of the integral from 0 to each of them."""
 MIDDLE = 0.5 * (POINT[1:] + POINT[:-1])
 """Places halfway between the points (1), where a step is verified: its defect in the governing equation is largest near them."""
 VALUE_IN_MIDDLE, INTEGRAL_TO_MIDDLE = _values(MIDDLE), _integrals(MIDDLE)

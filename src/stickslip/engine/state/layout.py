@@ -74,6 +74,14 @@ class Params(MemoryRecord):
     damper_pace: float  # 1/s: how fast the damper of a column takes up what it meets (`waves.damper`); 0 of any other driver
     damper_share: float  # 1: share of a sharp front that it sends back
     pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
+    winding: float  # N/(m s): integral gain of a position loop (`contact.winding`); 0 of any other body
+    first_lag: float  # m: how far slip is behind the reference of a position loop at the start
+    pull_tone: float  # m/s: amplitude of a tone in the rate of that reference
+    pull_phase: float  # rad: phase of that tone at t = 0
+    stop_ahead: float  # m: slip at which a hard stop bars slip forwards (`contact_step.hard_stop`); inf without one
+    stop_behind: float  # m: slip at which another bars slip backwards; -inf without one
+    restitution: float  # 1: share of the slip rate with which a body bounces off a stop
+    least_bounce: float  # m/s: a body that would bounce off at no more than this rate stays at the stop
     slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative
@@ -265,6 +273,8 @@ class Cause(IntEnum):
     """The loading jumps."""
     HEALING = 5
     """Rest gives the contact its initial strength back."""
+    STOP = 6
+    """The body meets a hard stop."""
 
 
 class NearFold(IntEnum):
@@ -287,6 +297,8 @@ class StepEvent(IntEnum):
     """The slip rate reaches zero."""
     KNOT = 2
     """Slip, or the slip rate, reaches a knot of the law."""
+    STOP = 3
+    """Slip reaches a hard stop."""
 
 
 class EnginePart(IntEnum):
@@ -404,8 +416,9 @@ class LoadingSegment(MemoryRecord):
     offset: float  # s: phase of its arrival
     value: float  # inflow there; of a machine the force that drives it, kp V0 + far stress, minus the reference strength (Pa)
     slope: float  # its growth per second
-    pull: float  # m/s: pull rate V0 of a machine there, but for its tone
+    pull: float  # m/s: pull rate V0 of a machine, or of a position loop, there, but for its tone
     pull_slope: float  # m/s^2: how fast it grows
+    pulled: float  # m: way of a position loop's reference since the start, but for its tone; its rate is `pull`
     jump: float  # 1 if the inflow or the normal load jumps there, else 0
     pressing: float  # 1: growth of the normal load since t = 0 there, but for its tone, as a share of that at t = 0
     pressing_rate: float  # 1/s: how fast it grows

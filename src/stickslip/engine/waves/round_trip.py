@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.contact_equation import limit_towards, rest_limit
+from stickslip.engine.contact.contact_equation import is_barred, limit_towards, rest_limit
 from stickslip.engine.contact.far_end import has_faded, is_dead_load, is_rigid
 from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.series.polynomial import total
@@ -28,9 +28,7 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
         return int(call_part(run.loading_history, run, Task.COUNT_TRIPS_AT_REST, limit))
     if not is_ramp(run):
         return 0
-    if run.counts.one_way == 1 and ramp < 0.0:
-        return NEVER
-    if ramp == 0.0:
+    if ramp == 0.0 or is_barred(run, 1 if ramp > 0.0 else -1):
         return NEVER
     least, largest = span_of_load(run)
     room = limit - largest if ramp > 0.0 else limit_towards(run, -1, limit) - (-least - 2.0 * params.reference)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.contact_equation import limit_towards
+from stickslip.engine.contact.contact_equation import is_barred, limit_towards
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import phase_at, span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at, tone_series
@@ -19,6 +19,7 @@ from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
 from stickslip.engine.waves.merged_pieces import gather, plan_merging
+from stickslip.engine.waves.winding_up import wind_up
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import call_part
 from stickslip.foundation.phasors import dirichlet
@@ -178,6 +179,8 @@ def pull_block(run: Run) -> None:
     slope = run.loading[segment].slope
     run.load[1] += pace * (run.loading[segment].value + slope * since)
     run.load[2] += 0.5 * pace * pace * slope
+    if run.params.winding != 0.0:
+        wind_up(run, since)
     if run.loading[segment].tone != 0.0:
         time = run.counts.trip * run.params.round_trip_time + run.state.phase_from
         tone_series(run, run.loading[segment].tone, run.loading[segment].tone_phase, time)
@@ -225,6 +228,8 @@ def trips_withstood(run: Run, limit: float) -> int:
     room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(NEVER)
     if is_pressing(run) or (run.counts.given > 0 and segment != run.counts.trip_segment):
         return 0  # the round trip just past does not predict the next one
+    if run.params.winding != 0.0:
+        return 0  # no two periods are alike
     if run.loading[segment].shakes == 1.0:
         return 0  # the work of moving ground is added up over recorded pieces, so that no round trip may be left out
     if run.counts.driven == 1:
@@ -236,8 +241,8 @@ def trips_withstood(run: Run, limit: float) -> int:
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
     least, largest = span_of_load(run)
-    top = limit - largest
-    bottom = math.inf if run.counts.one_way == 1 else limit_towards(run, -1, limit) + 2.0 * run.params.reference + least
+    top = math.inf if is_barred(run, 1) else limit - largest
+    bottom = math.inf if is_barred(run, -1) else limit_towards(run, -1, limit) + 2.0 * run.params.reference + least
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)

@@ -245,6 +245,11 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def has_stops(self) -> bool:
+        """True if a hard stop bars its way, ahead or behind."""
+        ...
+
+    @property
     def inflow_delay(self) -> float:
         """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
         ...
@@ -322,6 +327,7 @@ class WithNormalLoad:
     """The normal load of a body whose field for it has the usual name, and no belt under it: a base for bodies."""
 
     has_belt: ClassVar[bool] = False
+    has_stops: bool = False
 
     takes_force: ClassVar[bool] = False
     is_free: bool = False

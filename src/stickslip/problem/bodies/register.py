@@ -16,6 +16,8 @@ BODIES: ClassesByKind[BodyOnCharacteristics] = ClassesByKind(
         "rotating-block": "rigid.blocks.RotatingBlock",
         "block-on-belt": "rigid.on_belt.BlockOnBelt",
         "block-on-disc": "rigid.on_belt.BlockOnDisc",
+        "position-loop": "rigid.in_loop.PositionLoop",
+        "rotary-loop": "rigid.in_loop.RotaryLoop",
         "torsional-string": "uniform.string.TorsionalString",
         "sectioned-string": "layered.string.SectionedString",
     },

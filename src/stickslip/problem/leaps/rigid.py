@@ -9,6 +9,8 @@ from typing_extensions import override
 from stickslip.problem.leaps.asked import LeapsOfBody, Over
 from stickslip.problem.problem import Problem
 
+NO_STOPS = "a body without hard stops"
+
 
 class LeapsOfRigid(LeapsOfBody):
     """Answers of a rigid body."""
@@ -26,10 +28,15 @@ class LeapsOfRigid(LeapsOfBody):
             return "a friction law under which slip begins at the friction of rest"
         if problem.ground is not None or problem.one_way:
             return "ground at rest, and slip in both directions"
+        if problem.body.has_stops:
+            return NO_STOPS
         return self.missing_for_steady(problem)
 
     @override
     def missing_for_steady(self, problem: Problem) -> str:
+        """Return that stops would end it, that nothing pulls it, or what changes."""
+        if problem.body.has_stops:
+            return NO_STOPS
         if problem.body.is_free:
             return "a spring (a stiffness above 0)"
         return "no force in time" if problem.force is not None else super().missing_for_steady(problem)

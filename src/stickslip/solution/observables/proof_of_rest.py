@@ -14,7 +14,8 @@ from stickslip.engine import History, Positions, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
-from stickslip.problem import PERFECT_DELAY, Problem
+from stickslip.problem import PERFECT_DELAY
+from stickslip.problem.bodies import as_on_spring
 from stickslip.solution.observables.given_on_discs import NormalLoads
 from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 
@@ -63,10 +64,14 @@ def _strength(history: History, law: FrictionLaw, at: Positions, grown: Floats) 
     return np.asarray(history.problem.normal * (1.0 + grown) * (coefficient + law.static_excess))
 
 
-def _over(problem: Problem, excess: Floats, strength: Strengths) -> float:
-    """Return how far loads, minus the reference, exceed strengths at most, backwards too if slip may go there."""
+def _over(history: History, at: Positions, strength: Strengths) -> float:
+    """Return how far loads exceed strengths at most, in the directions in which slip may go."""
+    problem, excess = history.problem, history.excess(at)
     forward = excess - (strength.forward - problem.strength)
     backward = -excess - (strength.backward + problem.strength)
+    if problem.body.has_stops:
+        stops, slip = as_on_spring(problem.body), history.slipped(at)
+        forward[slip >= stops.stop_ahead], backward[slip <= -stops.stop_behind] = 0.0, 0.0
     return float(np.max(forward if problem.one_way else np.maximum(forward, backward), initial=0.0))
 
 
@@ -77,7 +82,7 @@ def _in_recorded(history: History, n: Places) -> float:
     at = Positions.inside(np.repeat(n, len(POINTS_OF_STEP)), np.tile(POINTS_OF_STEP, len(n)))
     varies = history.problem.normal_load is not None
     grown = NormalLoads.of(history, n).at(POINTS_OF_STEP)[0].centre.ravel() if varies else np.zeros(len(at.piece))
-    return _over(history.problem, history.excess(at), _strengths(history, at, grown))
+    return _over(history, at, _strengths(history, at, grown))
 
 
 def _in_leaped(history: History) -> float:
@@ -97,7 +102,7 @@ def _in_leaped(history: History) -> float:
     stands = Positions.inside(at.last, 1.0)
     resting = history.mode(at) == 0
     held = Strengths(*(one[resting] for one in _strengths(history, stands, grown)))
-    return _over(history.problem, history.excess(at)[resting], held)
+    return _over(history, history.find(np.clip(times, *history.span)[resting], "right"), held)
 
 
 def _where_slip_begins(history: History) -> float:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine import History, Positions
+from stickslip.engine import Cause, History, Positions
 from stickslip.foundation.arrays import Floats
 from stickslip.solution.observables.proof import POINTS_OF_STEP, Places
 
@@ -70,5 +70,6 @@ def _of_times(history: History, n: Places) -> float:
 def _of_rates(history: History, n: Places) -> float:
     """Return the largest jump of the slip rate behind one of pieces n."""
     store = history.store
+    n = n[store.cause[n + 1] != Cause.STOP]
     ends: Floats = store.rate[n].sum(axis=1)
     return float(np.max(np.abs(store.rate[n + 1, 0] - ends), initial=0.0))

@@ -8,6 +8,11 @@ from stickslip.engine.input.asked import InputOfBody, Shaken
 from stickslip.engine.input.first_pieces import pieces_of
 from stickslip.engine.state import layout as at
 from stickslip.problem import EVENT_SHARE, Problem, driver_of
+from stickslip.problem.bodies import as_on_spring
+
+LEAST_BOUNCE = 1e-9
+"""A body stays at a hard stop that it would leave at no more than this share (1) of the rate that the normal load gives it in a
+period."""
 
 
 class InputOfRigid(InputOfBody):
@@ -17,7 +22,13 @@ class InputOfRigid(InputOfBody):
         """Return its stiffness, and the slip rate (m/s) below which it is slow."""
         body = problem.body
         slow = EVENT_SHARE * problem.normal * problem.contact_law.variation / body.impedance
-        return {"stiffness": body.stiffness, "slow": slow}
+        numbers = {"stiffness": body.stiffness, "slow": slow}
+        if body.has_stops:
+            stops = as_on_spring(body)
+            least = LEAST_BOUNCE * problem.normal * body.longest_way / body.inertia
+            numbers |= {"stop_ahead": stops.stop_ahead, "stop_behind": -stops.stop_behind}
+            numbers |= {"restitution": stops.restitution, "least_bounce": least}
+        return numbers
 
     def steady_numbers(self, problem: Problem) -> dict[str, Any]:
         """Return the growth of the load in a period."""

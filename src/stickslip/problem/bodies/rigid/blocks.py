@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import quantity
+from stickslip.foundation.quantities import declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import BodyOnCharacteristics, check_body
+from stickslip.problem.bodies.contract import BodyOnCharacteristics
 from stickslip.problem.bodies.rigid.on_spring import OnSpring
+from stickslip.problem.bodies.rigid.stops import AHEAD, BEHIND, RESTITUTION, check_with_stops
 
 
 @dataclass(frozen=True)
@@ -33,9 +35,12 @@ class SpringBlock(Declared, OnSpring):
     driver_damping: Number = quantity(
         "N s/m", "damping of a dashpot beside the spring, between block and driver", at_least=0, default=0.0
     )
+    stop_ahead: Number = quantity("m", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("m", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_body(self)
+        check_with_stops(self)
 
     @property
     def inertia(self) -> float:
@@ -64,9 +69,12 @@ class RotatingBlock(Declared, OnSpring):
     driver_damping: Number = quantity(
         "N m s", "damping of a dashpot beside the spring, between body and driver", at_least=0, default=0.0
     )
+    stop_ahead: Number = quantity("rad", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("rad", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_body(self)
+        check_with_stops(self)
 
 
 def as_block(body: BodyOnCharacteristics) -> SpringBlock:

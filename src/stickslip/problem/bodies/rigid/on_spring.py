@@ -31,6 +31,10 @@ class BodyOnSpring(BodyOnCharacteristics, Protocol):
         """The damping of a dashpot between the body and the pulled end of its spring (N s/m)."""
         ...
 
+    stop_ahead: float
+    stop_behind: float
+    restitution: float
+
 
 class OnSpring(WithOneDriver):
     """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
@@ -76,6 +80,11 @@ class OnSpring(WithOneDriver):
     def has_nothing_to_pull(self: BodyOnSpring) -> bool:  # type: ignore[override] # as for the one before
         """True if there is no spring, no dashpot, and no belt."""
         return self.driver_kind == "free" and not self.has_belt
+
+    @property
+    def has_stops(self: BodyOnSpring) -> bool:  # type: ignore[override]
+        """True if a hard stop bars its way."""
+        return anywhere(self.stop_ahead < math.inf) or anywhere(self.stop_behind < math.inf)
 
     @property
     def total_damping(self: BodyOnSpring) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
@@ -12,8 +12,10 @@ from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import Quantity, declare, quantity
 from stickslip.foundation.show import Declared
 from stickslip.problem.bodies.contract import BodyOnCharacteristics, check_body, check_driver, check_equivalent
-from stickslip.problem.bodies.rigid.blocks import SpringBlock
 from stickslip.problem.bodies.uniform.with_waves import WithWaves, contact_damping
+
+if TYPE_CHECKING:
+    from stickslip.problem.bodies.rigid.blocks import SpringBlock
 
 DRIVER_INERTIA = Quantity(
     "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid"
@@ -143,6 +145,8 @@ class ElasticSlab(Declared, WithWaves):
         """
         check_equivalent(self)
         mass = self.density * self.thickness / 3.0 + self.contact_mass
+        from stickslip.problem.bodies.rigid.blocks import SpringBlock  # few slabs are asked for one
+
         return SpringBlock(mass, self.stiffness, self.normal_stress, self.contact_damping)
 
 

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from stickslip.engine import History, Positions, Side
+from stickslip.engine import Cause, History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
@@ -41,7 +41,7 @@ class ObservablesOfRigid(ObservablesOfKind):
             "elastic": spring,
             "kinetic": 0.5 * body.inertia * rate**2,
             "heat": heat(history, at, nodes),
-            "damped": _damped(history, at, nodes),
+            "damped": _damped(history, at, nodes) + lost_at_stops(history, at),
             "radiated": np.zeros(len(force)),
             "trapped": np.zeros(len(force)),
         }
@@ -54,7 +54,7 @@ class ObservablesOfRigid(ObservablesOfKind):
         return {
             "released": spring + 0.5 * body.inertia * (history.rate(first) ** 2 - history.rate(last) ** 2),
             "work": between(history, first, last, _pulling(history)),
-            "damped": between(history, first, last, _damping(history)),
+            "damped": between(history, first, last, damped_power(history)) + lost_between(history, first, last),
             "trapped": np.zeros(len(force)),
         }
 
@@ -106,7 +106,7 @@ def driver_force(history: History, at: Positions) -> Floats:
 def _held(history: History, at: Positions) -> Floats:
     """Return the load minus the reference strength (N) without the inertia of moving ground, and without a force that is given."""
     force = history.excess(at)
-    return np.where(at.before, force, force - _pushing(history, at)) if _is_pushed(history) else force
+    return np.where(at.before, force, force - pushing(history, at)) if is_pushed(history) else force
 
 
 def _pull_rate(history: History, at: Positions) -> Floats:
@@ -114,12 +114,12 @@ def _pull_rate(history: History, at: Positions) -> Floats:
     return value_at(history.problem.pull_rate, *history.times_inside(at))
 
 
-def _is_pushed(history: History) -> bool:
+def is_pushed(history: History) -> bool:
     """Return True if a force acts on the body beside spring, dashpot, and friction: one that is given, or that of inertia."""
     return history.problem.ground is not None or history.problem.force is not None
 
 
-def _pushing(history: History, at: Positions) -> Floats:
+def pushing(history: History, at: Positions) -> Floats:
     """Return the force on the body that is given, less its mass times the acceleration of the ground, N."""
     problem, times = history.problem, history.times_inside(at)
     _, acceleration = of_ground(problem, *times)
@@ -135,7 +135,7 @@ def _pulling(history: History) -> Integrand:
         pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + driver_force(history, at))
         if problem.body.is_free:  # no spring stores the work of the load of the start, which moves with the body
             pulling += (problem.strength + spring_force(history, at)) * (history.rate(at) - _pull_rate(history, at))
-        return np.asarray(pulling + _pushing(history, at) * history.rate(at) if _is_pushed(history) else pulling)
+        return np.asarray(pulling + pushing(history, at) * history.rate(at) if is_pushed(history) else pulling)
 
     return power
 
@@ -169,7 +169,7 @@ def _stretching(history: History, force: Floats, later: Floats) -> Floats:
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
-def _damping(history: History) -> Integrand:
+def damped_power(history: History) -> Integrand:
     """Return the power that the damping dissipates as a function of positions, W."""
     damping, dashpot = history.problem.body.damping, as_on_spring(history.problem.body).driver_damping
     if not dashpot:
@@ -183,7 +183,7 @@ def _damped(history: History, at: Positions, nodes: int) -> Floats:
     if not body.total_damping:
         return np.zeros(len(at.piece))
     pieces = None if body.driver_damping else np.flatnonzero(history.store.mode)
-    return up_to(history, at, _damping(history), pieces, nodes=nodes) + _damped_at_rest(history, at)
+    return up_to(history, at, damped_power(history), pieces, nodes=nodes) + _damped_at_rest(history, at)
 
 
 def _damped_at_rest(history: History, at: Positions) -> Floats:
@@ -197,6 +197,19 @@ def _damped_at_rest(history: History, at: Positions) -> Floats:
         return np.asarray(damping * (squared_pull(problem, high) - squared_pull(problem, low)))
 
     return _in_rests(history, at, gained)
+
+
+def lost_at_stops(history: History, at: Positions) -> Floats:
+    """Return the energy (J) that a body has lost at hard stops up to each position."""
+    met = np.flatnonzero(history.store.cause == Cause.STOP)
+    rates = history.rate(history.just_before(met)) ** 2 - history.rate(Positions.inside(met, 0.0)) ** 2
+    lost = np.append(0.0, np.cumsum(0.5 * history.problem.body.inertia * rates))
+    return np.asarray(lost[np.searchsorted(met, at.last, side="right")])
+
+
+def lost_between(history: History, first: Positions, last: Positions) -> Floats:
+    """Return the same between pairs of positions."""
+    return lost_at_stops(history, last) - lost_at_stops(history, first)
 
 
 def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
