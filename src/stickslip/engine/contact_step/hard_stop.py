@@ -26,7 +26,7 @@ def meet_stop(run: Run) -> None:
     """Turn the body round at the stop that it has reached, or bring it to rest there."""
     way, bounce = run.counts.mode, run.params.restitution * abs(run.state.rate_now)
     run.state.slip_now = run.params.stop_ahead if way > 0 else run.params.stop_behind
-    pulled_off = towards(run, evaluate(run.load, run.state.xi), -way) > rest_limit(run)
+    pulled_off = towards(run, evaluate(run.load, run.state.xi), -way) > rest_limit(run, -way)
     if pulled_off or bounce > run.params.least_bounce:
         run.counts.mode = -way
         turn_states(run, run.state.state_now)
