@@ -33,10 +33,7 @@ from stickslip.foundation.unit_doubts import doubts_of
 
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
-POINTS = (
-    "write points: `tr , . < OLD.csv > NEW.csv` replaces decimal commas, "
-    "or in Python pass pandas.read_csv(FILE, sep=';', decimal=',')"
-)
+POINTS = "write points: `tr , . < OLD.csv > NEW.csv`, or in Python pass pandas.read_csv(FILE, sep=';', decimal=',')"
 """The cure for commas that may be either."""
 LONGEST_FOOTER = 50
 """So many lines without a number may follow the numbers."""

@@ -128,7 +128,7 @@ def test_chosen_features_must_be_as_many_as_the_numbers() -> None:
         (
             block_record(duration=0.4),
             {},
-            "record: 3 whole slip events are too few for the scatter of 4 features: fit event",
+            "record: 3 whole slip events are too few for the scatter of 4 features: an event is a fall of",
         ),
         (block_record(duration=0.1), {}, "record: no two drops of shear_force stand out of its noise"),
         (block_record(), {"parts": "rests"}, "infer: by='features' and parts='rests' are two ways to fit stick-slip: choose one"),

@@ -29,6 +29,7 @@ from stickslip.extensions.inference.fit.asides import with_servo
 from stickslip.extensions.inference.fit.asked import FITTED_KINDS
 from stickslip.extensions.inference.fit.by_features import FeatureModel, by_features, scatter_of
 from stickslip.extensions.inference.fit.estimate import Estimate, estimate, windows_of
+from stickslip.extensions.inference.fit.event_part import are_tables, parts_of_events
 from stickslip.extensions.inference.fit.free import LOAD, Free, read_free, with_scale
 from stickslip.extensions.inference.fit.model import Model
 from stickslip.extensions.inference.fit.part import Part, first_sizes, share_of, shortened
@@ -176,7 +177,10 @@ def infer(wishes: Wishes) -> Inference:
     records = _records(wishes)
     observed = wishes.observe if wishes.by == "samples" else None
     _check_normal(given, wishes)
-    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor, pressed=wishes.normal == "record")
+    if are_tables(records, wishes):
+        recorded, notes = parts_of_events(given, records, wishes.start, wishes.sensor)
+    else:
+        recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor, pressed=wishes.normal == "record")
     whole = recorded
     if wishes.parts == "rests":
         between = [piece for part in whole for piece in at_rests(part)]
@@ -184,7 +188,7 @@ def infer(wishes: Wishes) -> Inference:
         notes.append(f"{len(whole)} parts between rests, each with a run of its own")
         if len(whole) < len(between):
             notes[-1] += f", evenly spread among {len(between)}; by features all of them are fitted, with their scatter"
-    whole, notes = _resampled(whole, notes)
+    whole, notes = (whole, notes) if whole[0].record.shear_of_events else _resampled(whole, notes)
     share = share_of(wishes.held_out, whole)
     fitted = shortened(whole, share)
     if wishes.by == "features":

@@ -79,7 +79,7 @@ WORDS = {
     "by": Said(
         '{"samples", "features"}',
         "What is fitted: samples, or features of slip events.",
-        "Features are those of stick-slip, with their scatter from event to event.",
+        "Features are those of stick-slip, with their scatter from event to event. A table may have them, a row for each event.",
     ),
     "observe": Said(
         "str or list of str, optional",

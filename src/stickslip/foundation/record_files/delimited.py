@@ -30,7 +30,7 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
         if said := _units_in(row, header, chosen, f"{asked.place}, line {i + 1}"):
             notes.append(f"{', '.join(said)}, as the row of units in line {i + 1} says")
             both = zip_longest(header, row, fillvalue="")
-            header = [name if has_unit(name) else f"{name} ({_bare(unit)})" for name, unit in both]
+            header = [name if has_unit(name) or not _bare(unit) else f"{name} ({_bare(unit)})" for name, unit in both]
             behind = head.between[-1] + 1
             break
     rows = _rows(chain(begin[behind:], lines), behind, head.separator, asked.place)
@@ -88,12 +88,12 @@ def _head(lines: Sequence[str], asked: Asked) -> _Head:
     named = [asked.count(head.cells) for head in heads]
     named = [0 if count == 1 and _is_empty(lines[head.number - 1]) else count for count, head in zip(named, heads, strict=True)]
     if any(named):  # a line in front of two that name as much is the one
-        fits = [len(head.cells) == head.rows.width for head in heads]
+        fits = [head.rows.width <= len(head.cells) <= head.rows.most for head in heads]
         return heads[max(range(len(heads)), key=lambda i: (named[i] > 0, fits[i], named[i]))]
     longest = max(groups, key=lambda group: len(group.lines), default=NumberRows())
     first = _head_at(lines, rows[0], longest)
     others = [head for i in rows if asked.count((head := _head_at(lines, i, NumberRows())).cells) > 1]
-    others += [head for head in heads if head.rows is longest and len(head.cells) == longest.width]
+    others += [head for head in heads if head.rows is longest and longest.width <= len(head.cells) <= longest.most]
     return first if asked.count(first.cells) or not others else others[0]
 
 

@@ -49,9 +49,7 @@ _FROM_WAVE = (
     "import scipy.io.wavfile, pandas; r, y = scipy.io.wavfile.read('FILE'); t = pandas.DataFrame(y); "
     "t.insert(0, 'time (s)', t.index / r); t.to_csv('FILE.csv', index=False)"
 )
-_FROM_SQLITE = (
-    "import sqlite3, pandas; pandas.read_sql('select * from TABLE', sqlite3.connect('FILE')).to_csv('FILE.csv', index=False)"
-)
+_FROM_SQLITE = "import sqlite3, pandas; pandas.read_sql('select * from TABLE', sqlite3.connect('FILE')).to_csv('FILE.csv')"
 _FROM_PARQUET = "import pandas; pandas.read_parquet('FILE').to_csv('FILE.csv', index=False)"
 _FROM_NUMPY = "import numpy; numpy.savetxt('FILE.csv', numpy.load('FILE'), delimiter=',', header='time (s),friction', comments='')"
 FOREIGN = (

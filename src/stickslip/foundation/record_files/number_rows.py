@@ -22,11 +22,15 @@ _APART = re.compile(r"\s{2,}")
 
 
 class NumberRows(NamedTuple):
-    """Lines of numbers one below the other: which lines, what separates their cells, how many columns, and the lines above them."""
+    """Lines of numbers one below the other: which lines, what separates their cells, and the lines above them.
+
+    `width` is the number of columns with numbers, and `most` that of all cells, also of empty ones at the end.
+    """
 
     lines: Sequence[int] = ()
     separator: str = ""
     width: int = 0
+    most: int = 0
     above: Sequence[int] = ()
     has_commas: bool = False
 
@@ -35,7 +39,7 @@ class NumberRows(NamedTuple):
         own = next((mark for mark in _MARKS if mark in line), ",")
         apart = [_WORD.findall(line), _APART.split(line.strip())] if own not in line else []
         ways = [split(line, self.separator or own), split(line, own), *apart]
-        return next((cells for cells in ways if len(cells) == self.width), ways[1])
+        return next((cells for cells in ways if self.width <= len(cells) <= self.most), ways[1])
 
 
 def number_rows(lines: Sequence[str]) -> list[NumberRows]:
@@ -53,7 +57,8 @@ def number_rows(lines: Sequence[str]) -> list[NumberRows]:
             above = []
         one = found[-1]
         has_commas = one.has_commas or _has_commas([cell.strip() for cell in cells])
-        found[-1] = one._replace(lines=[*one.lines, i], width=max(one.width, len(cells)), has_commas=has_commas)
+        width, most = max(one.width, len(cells)), max(one.most, len(split(line, separator)))
+        found[-1] = one._replace(lines=[*one.lines, i], width=width, most=most, has_commas=has_commas)
     return found
 
 

@@ -12,17 +12,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.extensions.inference.fit.event_part import CYCLES, EventPart
 from stickslip.extensions.inference.fit.memory import ResidualBlock
 from stickslip.extensions.inference.fit.model import FAILED, JUMPING, LARGEST_RESIDUAL, Model, breaks_of, is_at_driver, measured
 from stickslip.extensions.inference.fit.part import Part
-from stickslip.extensions.inference.record.features import FEATURES, LEVELS_OF_SHEAR, Samples, features_in
+from stickslip.extensions.inference.record.features import FEATURES, LEVELS_OF_SHEAR, Samples, about_falls, features_in, levels_in
 from stickslip.extensions.inference.record.record import Record
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution import Solution
 
-CYCLES = 6.0
-"""Length of a run, in recurrence times of the record; the first events are skipped."""
 SETTLING = 2
 """This many first events of a run do not count."""
 SPARE = 2
@@ -70,6 +69,8 @@ class FeaturePart(Part):
     @cached_property
     def duration(self) -> float:
         """The length of a run (s): enough for several events."""
+        if isinstance(self.samples, EventPart):
+            return self.samples.duration
         recurrence = self.record.measured["recurrence"]
         begins = float(self.record.time[0] - self.samples.record.time[0])
         return min(self.samples.duration, max(begins, 0.0) + CYCLES * float(np.median(recurrence)))
@@ -92,14 +93,24 @@ class FeaturePart(Part):
 def means_of(features: Floats) -> Means:
     """Return the means of features, shape (features, events), and the covariance of these means.
 
-    The covariance also holds if neighbouring events depend on each other: a high static friction, for example, lengthens the time
-    before its event and the time after it. It is the power of the features at low frequencies, in the first terms of a cosine
-    transform over all events (Lazarus, Lewis, Stock & Watson 2018, J. Bus. Econ. Stat. 36, 541). The number of terms is the number
-    of events to the power 2/3, so that more events allow for longer correlations.
+    Events that lack a number (NaN) are left out, unless these are more than half: then the errors are those of independent features
+    of the events that have them. Else the covariance also holds if neighbouring events depend on each other: a high static
+    friction, for example, lengthens the time before its event and the time after it. It is the power of the features at low
+    frequencies, in the first terms of a cosine transform over all events (Lazarus, Lewis, Stock & Watson 2018, J. Bus. Econ. Stat.
+    36, 541). The number of terms is the number of events to the power 2/3, so that more events allow for longer correlations.
     """
     from scipy.fft import dct
 
     count, events = features.shape
+    whole = np.isfinite(features).all(axis=0)
+    if whole.sum() >= max(count + SPARE, 0.5 * events):
+        features = features[:, whole]
+        events = features.shape[1]
+    else:
+        known = np.isfinite(features).sum(axis=1)
+        errors = np.nanstd(features, axis=1, ddof=1) / np.sqrt(known)
+        means = np.nanmean(features, axis=1)
+        return Means(means, np.diag(np.sqrt(errors**2 + (MEASURED * means) ** 2 + 1e-300)), int(known.min()) - 1)
     means = features.mean(axis=1)
     used = min(events - 1, max(count + 1, math.ceil(events ** (2.0 / 3.0))))
     waves = dct(features - means[:, None], norm="ortho", axis=1)[:, 1 : used + 1]
@@ -123,20 +134,28 @@ def by_features(parts: Sequence[Part], observe: Sequence[str] | str | None) -> t
         record, said = events_of(part)
         names = _chosen(wanted, record)
         if len(record) < len(names) + SPARE:
-            raise InputError(
-                f"{record.name}: {len(record)} whole slip events are too few for the scatter of {len(names)} features: "
-                "fit event by event, with parts='rests'"
-            )
+            raise InputError(f"{record.name}: {_too_few(part, record, names)}")
         found.append(FeaturePart(record, part.loading, tuple(names), part.sensor, part.start, whole=part))
         notes += [*said, f"{len(record)} slip events of {record.name}, each with its {', '.join(names)}"]
     return found, notes
 
 
+def _too_few(part: Part, events: Record, names: Sequence[str]) -> str:
+    """Return why events are too few, and how they were found."""
+    few = f"{len(events)} whole slip events are too few for the scatter of {len(names)} features"
+    if isinstance(part, EventPart):
+        return f"{few}: observe fewer, or add events, {len(names) + SPARE} in all"
+    assert part.record.shear is not None
+    shear = part.record.measured[part.record.shear]
+    return f"{few}: {about_falls(shear, part.record.unit_of(part.record.shear))}; fit event by event, with parts='rests'"
+
+
 def _chosen(wanted: Sequence[str] | None, record: Record) -> list[str]:
     """Return the full names of features; by default all but the drop, the difference of two of them. Raises InputError."""
-    levels = dict(zip(LEVELS_OF_SHEAR, record.measured, strict=False))
+    levels = {level: f"{record.shear_of_events}_{level}" for level in LEVELS_OF_SHEAR}
     if wanted is None:
-        return [name for name in record.measured if name != levels["drop"]]
+        both = levels["peak"] in record.measured and levels["rest"] in record.measured
+        return [name for name in record.measured if not (both and name == levels["drop"])]
     names = list(dict.fromkeys(levels.get(name, name) for name in wanted))
     for name in names:
         if name not in record.measured:
@@ -148,6 +167,8 @@ def _chosen(wanted: Sequence[str] | None, record: Record) -> list[str]:
 
 def events_of(part: Part) -> tuple[Record, list[str]]:
     """Return the features of the events of a record as a record at the times of the events, and sentences on what was left out."""
+    if isinstance(part, EventPart):
+        return part.record, []
     record, shear = part.record, part.record.shear
     if shear is None:
         raise InputError(f"{record.name}: by='features' needs shear, whose drops are the slip events")
@@ -273,7 +294,7 @@ class FeatureModel(Model):
             run, means = self.solve(searched, i), self.part_of(i).means
             found = {} if run is None else self._found(run, i)
             for name, mean, error in zip(part.observed, means.values.tolist(), means.errors.tolist(), strict=True):
-                value, scatter = found.get(name, math.nan), float(np.std(part.record.measured[name]))
+                value, scatter = found.get(name, math.nan), float(np.nanstd(part.record.measured[name]))
                 missed = not abs(value - mean) <= MISSED * math.hypot(error, ALLOWED * scatter)
                 rows.append((i, name, mean, error, value, self.problem.unit_of(name), missed))
         return pd.DataFrame(rows, columns=["part", "feature", "mean", "error", "run", "unit", "missed"])
@@ -284,14 +305,14 @@ def scatter_of(parts: Sequence[Part]) -> dict[str, float]:
     found = {}
     for name in dict.fromkeys(name for part in parts for name in part.observed):
         of = [part.record.measured[name] for part in parts if name in part.observed]
-        least = MEASURED * max(float(np.max(np.abs(values))) for values in of)
-        found[name] = max(math.sqrt(float(np.mean([np.var(values, ddof=1) for values in of]))), least)
+        least = MEASURED * max(float(np.nanmax(np.abs(values))) for values in of)
+        found[name] = max(math.sqrt(float(np.mean([np.nanvar(values, ddof=1) for values in of]))), least)
     return found
 
 
 def features_of_run(run: Solution, part: FeaturePart) -> dict[str, float]:
     """Return the mean features of the events of a run, without the first ones if there are enough; empty for fewer than two."""
-    shear = part.samples.record.shear
+    shear = part.record.shear_of_events
     assert shear is not None
     names = [shear, *(name for name, of in (("slip", "event_slip"), ("slip_rate", "peak_rate")) if of in part.observed)]
 
@@ -312,5 +333,7 @@ def features_of_run(run: Solution, part: FeaturePart) -> dict[str, float]:
     found = features_in(between(0.0, run.history.span[1], COARSE), between, shear)
     if not found:
         return {}
+    if isinstance(part.samples, EventPart):
+        found |= levels_in(found, between, shear)
     settled = min(SETTLING, len(found["time"]) - 1)
     return {name: float(np.mean(values[settled:])) for name, values in found.items() if name != "time"}

@@ -14,7 +14,7 @@ from stickslip.extensions.inference.fit.by_features import events_of
 from stickslip.extensions.inference.fit.free import DRIFT, TREND, Free
 from stickslip.extensions.inference.fit.part import Part, StickSlip, changed
 from stickslip.extensions.inference.fit.plateaus import PlateauDrift, drift_of, plateaus_of, transients_of
-from stickslip.extensions.inference.record.features import arrests_in
+from stickslip.extensions.inference.record.features import LEVELS_OF_SHEAR, arrests_in
 from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
@@ -67,6 +67,11 @@ def _allowed(problem: Problem, values: Mapping[str, float]) -> bool:
 
 def _shown(problem: Problem, part: Part, drift: PlateauDrift | None, names: set[str]) -> Iterator[tuple[str, float]]:
     """Yield names and values (SI) of the numbers that a part of a record shows."""
+    if part.record.shear_of_events is not None:
+        if (cycles := stick_slip(problem, part)) is not None:
+            yield from _of_law(problem, cycles, names)
+            yield from FITTED_KINDS[problem.body.structure].shown(problem, part, cycles, names)
+        return
     if part.record.shear is None:
         return
     friction, stepped = friction_of(problem, part), _is_stepped(problem, part)
@@ -123,18 +128,22 @@ def stick_slip(problem: Problem, part: Part) -> StickSlip | None:
         events, _ = events_of(part)
     except InputError:
         return None
-    if len(events) < 2:
+    levels = [f"{events.shear_of_events}_{level}" for level in LEVELS_OF_SHEAR]
+    if len(events) < 2 or not set(levels) <= set(events.measured):
         return None
-    (peak, rest, drop), scale = list(events.measured.values())[:3], 1.0 if part.record.shear == "friction" else problem.normal
+    (peak, rest, drop), scale = (
+        (events.measured[name] for name in levels),
+        1.0 if events.shear_of_events == "friction" else problem.normal,
+    )
     clock = events.time - part.record.time[0]
     loading = problem.pull_rate if part.loading is None else part.loading
     if isinstance(loading, LoadingHistory):
         loading = float(np.mean(loading.at(np.linspace(clock[0], clock[-1], 1000))))
     pull = abs(loading)
-    moved = pull * float(np.mean(events.measured["recurrence"]))
-    rise = float(np.mean(drop)) / scale * problem.normal / moved if moved > 0.0 else math.nan
+    moved = pull * float(np.nanmean(events.measured["recurrence"]))
+    rise = float(np.nanmean(drop)) / scale * problem.normal / moved if moved > 0.0 else math.nan
     lasting = events.measured.get("duration", np.array([math.nan]))
-    return StickSlip(float(np.median(peak)) / scale, float(np.median(rest)) / scale, rise, float(np.median(lasting)))
+    return StickSlip(float(np.nanmedian(peak)) / scale, float(np.nanmedian(rest)) / scale, rise, float(np.median(lasting)))
 
 
 def _of_law(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.extensions.inference.record.noise import noise_of
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.show import brief
 
 LEVELS_OF_SHEAR = ("peak", "rest", "drop")
 """Features of shear, appended to its name as in "friction_peak": shear before the fall, after it, and the difference."""
@@ -72,6 +73,22 @@ def features_in(all_of_it: Samples, between: Between, shear: str) -> dict[str, F
         return {}
     found = {name: np.array([this[name] for _, this in pairs]) for name in pairs[0][1]}
     return {**found, "recurrence": np.array([this["time"] - before["time"] for before, this in pairs])}
+
+
+def levels_in(found: Mapping[str, Floats], between: Between, shear: str) -> dict[str, Floats]:
+    """Return the levels of shear as tables of events have them: the largest before a fall, the smallest after it.
+
+    `found` are the features of events, with their times. Half a recurrence belongs to each side of an event.
+    """
+    peaks, rests = list[float](), list[float]()
+    for at, lasts in zip(found["time"].tolist(), (0.5 * found["recurrence"]).tolist(), strict=True):
+        around = between(at - lasts, at + lasts)
+        values = direction_of(around.values[shear]) * around.values[shear]
+        top = int(np.argmax(np.where(around.time <= at, values, -math.inf)))
+        peaks.append(float(values[top]))
+        rests.append(float(np.min(values[top:])))
+    peak, rest = np.array(peaks), np.array(rests)
+    return dict(zip((f"{shear}_{level}" for level in LEVELS_OF_SHEAR), (peak, rest, peak - rest), strict=True))
 
 
 def direction_of(shear: Floats) -> float:
@@ -186,15 +203,33 @@ def arrests_in(values: Floats) -> NDArray[np.intp]:
     if len(known) < 2:
         return np.zeros(0, np.intp)
     shear = _without_lone(direction_of(values) * values[known])
+    least, heights = _least_drop(shear)
+    found = _drops(shear, least) if len(heights) else []
+    return np.asarray(known[np.array([bottom for bottom, _ in found], int)], np.intp)
+
+
+def about_falls(values: Floats, unit: str) -> str:
+    """Return how the slip events of a record are found: the least drop that counts, and how many drops of its shear do not."""
+    shear = _without_lone(direction_of(values) * values[np.isfinite(values)])
+    least, heights = _least_drop(shear)
+    told = (
+        f"an event is a fall of more than {brief(least, unit, 3)}, the largest of {DROP:g} of the usual fall, {OF_RANGE:g} of the"
+    )
+    found, seen = len(_drops(shear, least)), len(heights)
+    told += f" range of shear and {ABOVE_NOISE:g} times its noise: {found} of {seen} falls above the noise are as large"
+    return f"{told}, and the first of them has no event before it" if found else told
+
+
+def _least_drop(shear: Floats) -> tuple[float, Floats]:
+    """Return the least drop of a slip event, and the heights of all drops above the noise."""
     noise = ABOVE_NOISE * noise_of(shear)
     heights = np.array([height for _, height in _drops(shear, max(noise, SMALLEST_DROP * float(np.ptp(shear))))])
     if not len(heights):
-        return np.zeros(0, np.intp)
+        return noise, heights
     sizes = np.sort(heights)[::-1]
     usual = sizes[int(np.searchsorted(np.cumsum(sizes), 0.5 * float(sizes.sum())))]  # half of all that falls, falls in such drops
     low, high = np.quantile(_without_trend(shear), [0.01, 0.99])
-    found = _drops(shear, max(DROP * float(usual), OF_RANGE * float(high - low), noise))
-    return np.asarray(known[np.array([bottom for bottom, _ in found], int)], np.intp)
+    return max(DROP * float(usual), OF_RANGE * float(high - low), noise), heights
 
 
 def _without_trend(shear: Floats) -> Floats:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.inference.record.doubts import checked
+from stickslip.extensions.inference.record.events_table import events_in
 from stickslip.extensions.inference.record.record import LOADING, MEASURED, SHEAR, Record
 from stickslip.extensions.inference.record.repeats import without_repeats
 from stickslip.foundation.arguments import as_path, shown
@@ -64,7 +65,20 @@ class _Columns(NamedTuple):
 
 
 def read_record(source: Any, beside: Any = None, later: float = 0.0, columns: Any = None) -> Record:
-    """Read a record as `Record.read` describes, the whole of it. Raises InputError."""
+    """Read a record, or a table of events, as `Record.read` describes, the whole of it. Raises InputError."""
+    if beside is not None:
+        return _samples_in(source, beside, later, columns)
+    try:
+        found = _samples_in(source, beside, later, columns)
+        return found if found.shear is not None else events_in(source, columns) or found
+    except InputError:
+        if (events := events_in(source, columns)) is not None:
+            return events
+        raise
+
+
+def _samples_in(source: Any, beside: Any, later: float, columns: Any) -> Record:
+    """Return the samples of a record. Raises InputError."""
     source, beside, later = _two_in(source) if beside is None else (source, beside, later)
     named = NamedColumns(columns or {}, optional=beside is not None)
     read = _ordered(source, named)

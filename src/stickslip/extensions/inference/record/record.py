@@ -111,6 +111,12 @@ class Record(CheckedArguments):
 
         return read_record(source, beside, later, columns).part(begin, end)
 
+    @property
+    def shear_of_events(self) -> str | None:
+        """The name of the resistance whose levels a table of events has; None for samples."""
+        levels = {f"{name}_{level}": name for name in SHEAR for level in LEVELS_OF_SHEAR}
+        return next((levels[name] for name in self.measured if name in levels), None)
+
     def part(self, begin: float | None = None, end: float | None = None) -> Record:
         """Return the samples between two times (s, as in the record). Raises InputError if there are fewer than two."""
         inside = (self.time >= (-np.inf if begin is None else begin)) & (self.time <= (np.inf if end is None else end))
