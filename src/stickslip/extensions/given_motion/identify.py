@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.extensions.given_motion.along import FrictionAlongMotion
+from stickslip.extensions.given_motion.along import FrictionAlongMotion, in_intervals
+from stickslip.extensions.given_motion.intervals import MotionInIntervals
 from stickslip.extensions.given_motion.law_numbers import LawNumber, free_numbers, with_numbers
 from stickslip.extensions.given_motion.measured import MeasuredMotion
 from stickslip.extensions.given_motion.measured_rate import MeasuredRate, rate_of_record
@@ -62,13 +64,24 @@ class FrictionModel:
         """Return the contact with some values of the free numbers, along another slip rate if one is given."""
         of_law = {name: value for name, value in values.items() if name.startswith("friction.")}
         law = with_numbers(self.law, of_law) if of_law else self.law
-        history = PiecewiseLinear(self.record.time, self.rate if rate is None else rate)
+        history = self._history if rate is None else PiecewiseLinear(self.record.time, rate)
         return MovedContact(law, history, self.normal, **self.start)
+
+    @cached_property
+    def _history(self) -> PiecewiseLinear:
+        return PiecewiseLinear(self.record.time, self.rate)
+
+    @cached_property
+    def _motion(self) -> MotionInIntervals:
+        """The measured motion in intervals, which is the same for all values of the free numbers."""
+        return in_intervals(self.moved({}), float(self.record.time[-1]))
 
     def friction(self, x: Floats, rate: Floats | None = None) -> Floats:
         """Return friction at the samples in the unit of the record; NaN at rest under a law that sticks. Raises InputError."""
         values, time = self.values(x), self.record.time
-        run = FrictionAlongMotion.solved(self.moved(values, rate), float(time[-1]), RTOL_OF_FITS)
+        moved, end = self.moved(values, rate), float(time[-1])
+        motion = self._motion if rate is None else in_intervals(moved, end)
+        run = FrictionAlongMotion.along(moved, motion, end, RTOL_OF_FITS)
         found = run.coefficient(time) if self.record.unit == "" else run.traction(time)
         speed = self.rate if rate is None else rate
         return np.asarray(found + values.get("record.offset", 0.0) + values.get("record.viscous", 0.0) * speed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,7 +14,7 @@ from stickslip.foundation.arrays import Floats
 OF_THIRD_DIFFERENCE = 20.0
 """Variance of a third difference of white noise over that of the noise: 1 + 9 + 9 + 1."""
 MOST_FOLLOWED = 0.9
-"""A curve that follows more than this share (1) of the samples counts as one of this share: too little is left to tell noise by."""
+"""A curve does not follow more than this share (1) of the samples: too little would be left to tell noise by."""
 DRAWS_OF_TRACE = 12
 """Draws from which it is estimated how many of the samples a smooth curve follows."""
 
@@ -91,11 +92,7 @@ def _penalty(time: Floats, values: Floats) -> float:
         lam = 10.0**power
         left = np.sum((values - make_smoothing_spline(time, values, lam=lam)(time)) ** 2)
         followed = np.mean([one @ make_smoothing_spline(time, one, lam=lam)(time) for one in signs])
-        return (
-            float(left / (1.0 - followed / count) ** 2)
-            if followed < MOST_FOLLOWED * count
-            else float(left) / (1.0 - MOST_FOLLOWED) ** 2
-        )
+        return float(left / (1.0 - followed / count) ** 2) if followed < MOST_FOLLOWED * count else math.inf
 
     powers = np.arange(-18.0, 0.5, 1.5)
     best = powers[int(np.argmin([score(float(one)) for one in powers]))]
