@@ -128,7 +128,7 @@ def test_the_command_line_checks_and_runs_it(tmp_path: Path, capsys: pytest.Capt
     assert "in the state of steady sliding at 1 um/s" in said
     assert "settle within about 1 s" in said
     figure, csv = tmp_path / "steps.png", tmp_path / "steps.csv"
-    stickslip("run", file, "--figure", figure, "--csv", csv, "--set", "motion.initial_state=1")
+    stickslip("run", file, "--figure", figure, "--csv", csv, "--set", "motion.initial_slip=1 mm")
     assert "along a given motion of 60 s" in capsys.readouterr().out
     assert figure.stat().st_size > 10_000
     assert csv.stat().st_size > 10_000

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
@@ -79,11 +79,21 @@ class FrictionAlongMotion:
         cls, moved: MovedContact, duration: float, rtol: float, title: str = "", report: Callable[[float], object] | None = None
     ) -> FrictionAlongMotion:
         """Return friction along a motion up to a duration (s). Raises InputError if it cannot be followed."""
-        law, motion = moved.friction, in_intervals(moved, duration)
-        if not law.states:
-            return cls(moved, duration, rtol, title, motion, None)
-        steps = solve_states(law, motion, law.inner_states(moved.given_states), rtol, report)
-        return cls(moved, duration, rtol, title, motion, steps)
+        return replace(cls.along(moved, in_intervals(moved, duration), duration, rtol, report), title=title)
+
+    @classmethod
+    def along(
+        cls,
+        moved: MovedContact,
+        motion: MotionInIntervals,
+        duration: float,
+        rtol: float,
+        report: Callable[[float], object] | None = None,
+    ) -> FrictionAlongMotion:
+        """Return friction along a motion that is divided into intervals already. Raises InputError if it cannot be followed."""
+        law = moved.friction
+        steps = solve_states(law, motion, law.inner_states(moved.given_states), rtol, report) if law.states else None
+        return cls(moved, duration, rtol, "", motion, steps)
 
     # ---- values at times ----------------------------------------------------------------------------------------------------
 
@@ -184,7 +194,9 @@ class FrictionAlongMotion:
 
     def coefficient(self, t: ArrayLike) -> Floats:
         """Return friction over the normal load (1) at times (s), with the sign of `traction`."""
-        return np.asarray(self.traction(t) / self.normal_load(t))
+        found = self._at(t)
+        value = self.motion.facing[found.interval] * self._coefficients(found)
+        return np.where(self._is_open(found), np.nan, value)
 
     def bounds(self, t: ArrayLike) -> Bounds:
         """Return the lowest and the highest traction (N, Pa or N m) that is possible at times (s).
