@@ -47,7 +47,8 @@ class Problem(ShownAsTable, ProblemFields):
     initial_slip
         Slip u0 at the start (m).
     initial_load
-        Shear load on the contact at the start (Pa, N or N m). Give either `initial_load` or `initial_excess`.
+        Shear load on the contact at the start (Pa, N or N m). Give either `initial_load` or `initial_excess`; the default of a body
+        without a spring is 0.
     initial_excess
         Initial load minus static strength, stored without rounding. The strength is the strength against forward slip,
         even if the load is negative. A law that never sticks has no strength to exceed: give its initial load.
@@ -80,6 +81,9 @@ class Problem(ShownAsTable, ProblemFields):
         The rule that selects one slip rate if several solve the contact equation, or its name (`stickslip.selection`).
     driver_reflection
         Reflection coefficient of the driver of a slab or string that changes: steps from the body's own on (see Notes).
+    force
+        Force (N) on a rigid body, or torque (N m) on one that turns, that is added to its load: a number, or a loading history. It
+        acts from the start of the run on, and may jump; on a belt it points so that it makes the belt run ahead.
 
     Raises
     ------

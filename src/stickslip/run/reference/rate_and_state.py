@@ -50,6 +50,10 @@ class SteadySliding:
         fall = self.normal * (self.b - self.a) / self.rate
         return (fall - damping) * (1.0 / self.time + mass / (viscous * self.time * self.time))
 
+    def inertia_of(self, mass: float, damping: float = 0.0) -> float:
+        """Return by which share (1) a mass (kg) raises the critical stiffness of a block: m V^2 / (S a Dc) if undamped."""
+        return mass / ((damping + self.normal * self.a / self.rate) * self.time)
+
     def block_growth(self, stiffness: float, mass: float, damping: float = 0.0) -> complex:
         """Return the complex growth rate (1/s) of the fastest growing disturbance of a block.
 

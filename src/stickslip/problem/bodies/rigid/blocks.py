@@ -19,7 +19,8 @@ from stickslip.problem.bodies.rigid.stops import AHEAD, BEHIND, RESTITUTION, che
 class SpringBlock(Declared, OnSpring):
     """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N.
 
-    A dashpot beside the spring adds driver_damping (V - v) on the right.
+    A dashpot beside the spring adds driver_damping (V - v) on the right, and `force` of a `Problem` adds a force. With a stiffness
+    of 0 there is no spring.
     """
 
     kind: ClassVar[str] = "spring-block"
@@ -40,7 +41,7 @@ class SpringBlock(Declared, OnSpring):
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_with_stops(self)
+        check_rigid(self)
 
     @property
     def inertia(self) -> float:
@@ -74,7 +75,18 @@ class RotatingBlock(Declared, OnSpring):
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_with_stops(self)
+        check_rigid(self)
+
+
+def check_rigid(body: BodyOnCharacteristics) -> None:
+    """Check the fields of a rigid body; say what stands for one without mass."""
+    try:
+        check_with_stops(body)
+    except InputError as error:
+        if f": {body.mass_field} must be greater than 0" not in str(error):
+            raise
+        hint = "a spring without mass moves as one with a small mass does: `stickslip check` says how small is enough"
+        raise InputError(f"{error}: {hint}") from None
 
 
 def as_block(body: BodyOnCharacteristics) -> SpringBlock:

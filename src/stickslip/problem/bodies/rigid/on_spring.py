@@ -159,10 +159,9 @@ class OnSpring(WithOneDriver):
 
         It is a scale, of slip rates above all, and not 0 of a free body: that has 2 pi over its round trip in it.
         """
-        if self.is_free:
-            return 2.0 * math.pi * self.inertia / self.round_trip_time
         found: float = np.sqrt(self.stiffness * self.inertia)
-        return found
+        free = 2.0 * math.pi * self.inertia / FREE_TURN
+        return np.where(self.stiffness > 0.0, found, free) if isinstance(self.stiffness, np.ndarray) else found or free
 
 
 def as_on_spring(body: BodyOnCharacteristics) -> BodyOnSpring:

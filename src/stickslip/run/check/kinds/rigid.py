@@ -7,6 +7,9 @@ import math
 
 from stickslip.contact import Uniqueness
 from stickslip.foundation.names import si_unit
+from stickslip.foundation.quantities import quantities_of
+from stickslip.foundation.show import brief
+from stickslip.friction import RateAndState
 from stickslip.problem import Problem, loading_rate
 from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
 from stickslip.problem.scenarios import Scenario
@@ -31,6 +34,7 @@ class CheckOfRigid(CheckOfKind):
             Fact("sqrt(K m)", size, problem.unit_of("impedance"), f"impedance of the {body.noun}, in place of Z"),
             Fact(loads, rate, unit, f"rate of loading while stuck{first}"),
             *of_driver,
+            *_inertia(problem),
         ]
 
     def mass_on_ground(self, body: BodyOnCharacteristics) -> float:
@@ -70,6 +74,21 @@ class CheckOfRigid(CheckOfKind):
     def critical_stiffness(self, body: BodyOnCharacteristics, sliding: SteadySliding) -> tuple[str, float] | None:
         """Return the stiffness of the spring beside the one that mass and damping ask for."""
         return "stiffness K", sliding.critical_stiffness(body.inertia, body.total_damping)
+
+
+LITTLE = 1e-9
+"""A share (1) of inertia that nobody measures: a block with so little moves as a spring without mass does."""
+
+
+def _inertia(problem: Problem) -> list[Fact]:
+    """Return what the mass does to slow sliding under rate-and-state friction, and a mass that is as good as none."""
+    body, law, rate = problem.body, problem.friction, abs(problem.first_pull_rate)
+    if not isinstance(law, RateAndState) or rate == 0.0:
+        return []
+    share = SteadySliding(problem.normal, law.a, law.b, law.distance, rate).inertia_of(body.inertia, body.total_damping)
+    small = brief(body.inertia * LITTLE / share, quantities_of(type(body))[body.mass_field].unit, 3)
+    none = f"{small} would by {LITTLE:g}, as a spring without mass does"
+    return [Fact("inertia", share, "1", f"share by which the mass raises the critical stiffness of slow sliding; {none}")]
 
 
 def _force(problem: Problem) -> list[Fact]:
