@@ -8,8 +8,9 @@ from typing import Any, get_args
 from stickslip.contact.regime import Regime
 from stickslip.problem import Problem, normal_name
 
+
 def of_both_ways(problem: Problem, ahead: Any, behind: Any) -> Any:
-    """Return the `Uniqueness` for forward slip with that for backward slip beside it, and the regime of the less certain of the two."""
+    """Return the `Uniqueness` for forward slip with that for backward slip beside it, and the less certain of both regimes."""
     said = problem.friction.said_of_uniqueness
     if ahead.resistance is None:  # a mass makes the slip rate unique, whatever the law
         return replace(ahead, summary=ahead.summary + said, problem=problem)

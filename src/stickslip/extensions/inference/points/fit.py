@@ -62,9 +62,15 @@ class Fit(NamesAttributes, ShownAsTable):
         return self.law.coefficient(slip, rate), np.sqrt(np.maximum(spread, 0.0)).reshape(slip.shape)
 
     @property
+    def fitted(self) -> str:
+        """What was fitted: the kind of the law."""
+        return self.law.kind
+
+    @property
     def title(self) -> str:
         """One line: which law was fitted to which points."""
-        return f"{self.law.kind} fitted to {len(self.points)} points along {' and '.join(self.points.has)}"
+        count = sum(map(len, self.points.ways))
+        return f"{self.fitted} fitted to {count} points along {' and '.join(self.points.has)}"
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
@@ -111,11 +117,23 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
 
     Notes
     -----
-    All points have the same weight. Uncertainties follow from the curvature of the sum of squares at its minimum: they hold if the
-    differences from the law are independent from point to point. Whole exponents are tried from 1 to 4.
+    Points of both directions of slip give one law for both, or `BothWays` if BIC tells two laws by more than 10; a note says how
+    far the directions differ. All points have the same weight. Uncertainties follow from the curvature of the sum of squares at
+    its minimum: they hold if the differences from the law are independent from point to point. Whole exponents are tried from 1 to
+    4.
     """
+    read = Points.read(points)
+    if read.backward is None:
+        return fit_one_way(read, law, start, fixed)
+    from stickslip.extensions.inference.points.fit_both_ways import fit_both_ways  # which fits each way by `fit_one_way`
+
+    return fit_both_ways(read, law, start, fixed)
+
+
+def fit_one_way(points: Points, law: Any, start: Mapping[str, Any] | None, fixed: Mapping[str, Any] | None) -> Fit:
+    """Fit the parameters of a law to points of one direction of slip, as `fit` does."""
     wanted = template(law)
-    chosen = _points_for(wanted, Points.read(points))
+    chosen = _points_for(wanted, points)
     units = own_units(chosen.load_unit)
     known = {name: leaf._replace(declared=in_units(leaf.declared, units)) for name, leaf in leaves(wanted).items()}
     held, begun = numbers_of(fixed, known, "fixed"), numbers_of(start, known, "start")
