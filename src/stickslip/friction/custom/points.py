@@ -50,7 +50,7 @@ class Points(CheckedArguments):
 
     Where slip was measured in both directions they are the points of forward slip, and `backward` has those of backward slip, with
     friction and slip rates as magnitudes. Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip
-    rate. `name` is for messages and figures. `slips_in` is "rad" for a contact that turns, with slip rates in rad/s, and else empty.
+    rate. `name` is for messages and figures. `slips_in` is "rad" for a contact that turns, with rates in rad/s, and else empty.
     """
 
     friction: Floats
@@ -184,7 +184,7 @@ def _backward(table: Table) -> NDArray[np.bool_]:
             raise InputError(f"{table.at(i)}: friction must not be negative, got {friction[i]:g}")
         why = "friction must have the sign of slip_rate, or none in all rows"
         raise InputError(f"{table.at(i)}: {why}, got {friction[i]:g} at {rate[i]:g} m/s; leave out rows next to a reversal")
-    return back
+    return np.asarray(back)
 
 
 def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floats]:
@@ -249,8 +249,8 @@ def _complete(table: Table, given: Any = None, both: bool = False) -> tuple[Tabl
 def _take_ratio(table: Table, given: Any) -> str:
     """Replace stresses, forces or torques by friction, with the normal load that is given or measured; return which lacks one."""
     found = table.columns
-    measured = {name: (found.pop(name, None), found.pop(of, None)) for name, of in RATIOS.items()}
-    measured = {name: pair for name, pair in measured.items() if pair[0] is not None}
+    pairs = {name: (found.pop(name, None), found.pop(of, None)) for name, of in RATIOS.items()}
+    measured = {name: (shear, normal) for name, (shear, normal) in pairs.items() if shear is not None}
     if "friction" in found and given is not None:
         raise InputError(f"{table.place}: normal_force: there is a column of friction, which needs none")
     if given is not None and not measured:
@@ -258,12 +258,12 @@ def _take_ratio(table: Table, given: Any) -> str:
     for name, (shear, normal) in measured.items():
         if "friction" in found:
             continue
-        if normal is None and given is None:
-            return name
         of = RATIOS[name]
         if given is not None:
             number = Quantity(KNOWN_COLUMNS[of].unit, of.replace("_", " "), above=0).check(table.place, "normal_force", given)
             normal = np.full(len(shear), number)
+        if normal is None:
+            return name
         both = (found.get("slip_rate", np.zeros(1)) < 0.0).any()
         for i in np.flatnonzero((normal == 0.0) | ((shear < 0.0) & ~both))[:1].tolist():
             what = f"{of} must be above 0" if normal[i] == 0.0 else f"{name} must not be negative"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.extensions.inference.points.fit import EXACT_POINTS, Fit, fit_one_way
+from stickslip.extensions.inference.points.fit_one_way import EXACT_POINTS, Fit, fit_one_way
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import with_uncertainty
 from stickslip.friction import BothWays
@@ -77,11 +77,11 @@ def _parameters(fit: Fit) -> int:
 
 def _joined(ahead: Points, behind: Points) -> Points:
     """Return the points of both directions as points of one."""
-    both = {
-        name: None if getattr(ahead, name) is None else np.concatenate((getattr(ahead, name), getattr(behind, name)))
-        for name in ("friction", "slip", "slip_rate")
-    }
-    return replace(ahead, **both)
+    slip, rate = (
+        None if one is None or other is None else np.concatenate((one, other))
+        for one, other in ((ahead.slip, behind.slip), (ahead.slip_rate, behind.slip_rate))
+    )
+    return replace(ahead, friction=np.concatenate((ahead.friction, behind.friction)), slip=slip, slip_rate=rate)
 
 
 def _blocks(one: Floats, other: Floats) -> Floats:
