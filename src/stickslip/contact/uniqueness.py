@@ -180,8 +180,7 @@ class Uniqueness(NamesAttributes, ShownAsTable):
 
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
-        behind = self.backward or self
-        other = behind._equation()
+        other = (self.backward or self)._equation()
         if self.known_to is not None and abs(load) > self.known_to:
             unit = "Pa" if self.problem is None else self.problem.load_unit
             known = f"they are known for loads up to {self.known_to:.6g} {unit}"
@@ -189,7 +188,7 @@ class Uniqueness(NamesAttributes, ShownAsTable):
         # the plateau's own excess is exact, while load - strength carries the rounding of the load
         level = {} if plateau is None else {load >= 0.0: plateau.excess}
         forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
-        backward, mirrored = rates_at(other, behind.branches, level.get(False, -load - other.strength))
+        backward, mirrored = rates_at(other, (self.backward or self).branches, level.get(False, -load - other.strength))
         moving, kept = backward > 0.0, forward > (-1.0 if -other.strength <= load <= g.strength else 0.0)
         rates = np.concatenate((-backward[moving][::-1], forward[kept]))
         kinds = np.concatenate((mirrored[moving][::-1], stable[kept]))

@@ -36,15 +36,21 @@ KNOWN_COLUMNS: Mapping[str, HeadingColumn] = {
         signed=True,
     ),
     "slip_rate": HeadingColumn(
-        "m/s", ("v", "rate", "velocity", "slip velocity", "sliding velocity", "speed", "sliding speed", "h slip rate")
+        "m/s",
+        ("v", "rate", "velocity", "slip velocity", "sliding velocity", "speed", "sliding speed", "axis velocity", "h slip rate"),
+        signed=True,
     ),
     "friction": HeadingColumn(
         "1",
         (
-            *("mu", "μ", "friction coefficient", "coefficient of friction", "cof", "friction coeff", "coeff of friction"),
+            *("mu", "μ", "friction coefficient", "coefficient of friction", "cof", "co f", "friction coeff", "coeff of friction"),
+            *("traction coefficient", "traction coeff", "coefficient of traction", "friction factor"),
             *("mu app", "μ app", "app friction", "apparent friction", "apparent friction coefficient"),
         ),
+        signed=True,
     ),
+    "slide_roll_ratio": HeadingColumn("1", ("srr", "slide to roll ratio", "slip ratio"), signed=True),
+    "rolling_speed": HeadingColumn("m/s", ("mean speed", "entrainment speed", "entraining speed", "mean rolling speed")),
     "shear_stress": HeadingColumn("Pa", ("tau", "τ", "shear", "traction", "shr stress", "h shear stress"), signed=True),
     "normal_stress": HeadingColumn(
         "Pa",
@@ -293,8 +299,11 @@ def factor_of(unit: str | None, column: str, place: str) -> Fraction:
     known = KNOWN_COLUMNS.get(column, HeadingColumn("1"))
     if unit is None or (known.unit == "1" and unit.strip().casefold() in PURE):
         return Fraction(1)
+    if column == "slide_roll_ratio" and unit.strip() == "%":
+        return Fraction(1, 100)
     if known.unit == "1":
-        raise InputError(f"{place}: {column} is a pure number: no unit in its heading (a percentage is not converted)")
+        force = "; a force is shear_force and needs --normal-force" if column == "friction" else ""
+        raise InputError(f"{place}: {column} is a pure number: no unit in its heading (a percentage is not converted){force}")
     text = _unit_text(unit)
     try:
         if split_quantity(f"1 {text}") is None:

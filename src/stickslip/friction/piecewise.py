@@ -37,7 +37,7 @@ _FORMULAS: dict[tuple[tuple[str, ...], str], Formula] = {
 
 
 LARGEST_COEFFICIENT, LARGEST_PERCENTAGE = 2.0, 200.0
-"""Coefficients that are all above the first number, and none above the second, look like percentages."""
+"""Coefficients that are all above the first number look like percentages, if none is above the second, or like forces."""
 
 
 @dataclass(frozen=True)
@@ -140,12 +140,13 @@ class PiecewiseLinearLaw(PiecewiseLaw):
 
 
 def note_percent(friction: Sequence[float] | NDArray[np.float64], where: str) -> None:
-    """Issue an `InputWarning`, beginning with `where`, for friction coefficients that look like percentages, all of them."""
-    if not len(friction):
+    """Issue an `InputWarning`, beginning with `where`, for friction coefficients that look like percentages or forces."""
+    if not len(friction) or not np.min(np.abs(friction)) > LARGEST_COEFFICIENT:
         return
-    least, most = float(np.min(friction)), float(np.max(friction))
-    if least > LARGEST_COEFFICIENT and most <= LARGEST_PERCENTAGE:
-        warn(f"{where}: friction reaches {most:g}: it is shear over normal stress, hardly ever above 2; divide a percentage by 100")
+    most = float(np.max(np.abs(friction)))
+    cure = "divide a percentage by 100, and " if most <= LARGEST_PERCENTAGE else ""
+    cure += "name a force shear_force (a torque torque) and give its normal force: `--normal-force '100 N'`"
+    warn(f"{where}: friction reaches {most:g}: it is shear over normal stress, hardly ever above 2; {cure}")
 
 
 MOST_CHANGES = 0.55

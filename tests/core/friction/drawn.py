@@ -31,6 +31,8 @@ PAIRS = [
     ("table", "exponential-stribeck"),
 ]
 
+SAME_BOTH_WAYS = ["hyperbolic-rate", "coulomb", "exponential-stribeck", "piecewise-linear-rate"]
+
 
 @st.composite
 def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
@@ -38,6 +40,10 @@ def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
     given = {name: draw(_field(entry)) for name, (entry, default) in fields_of(LAWS[kind]).items() if _wanted(name, kind, default)}
     if kind == "lagged":
         given["rate"] = draw(laws(draw(st.sampled_from(["hyperbolic-rate", "exponential-stribeck"]))))
+    elif kind == "both-ways":
+        given = {way: draw(laws(draw(st.sampled_from(SAME_BOTH_WAYS)))) for way in ("forward", "backward")}
+    elif kind == "self-energising":
+        given = {"law": draw(laws(draw(st.sampled_from(SAME_BOTH_WAYS)))), "gain": draw(st.floats(-0.5, 0.5))}
     elif any(isinstance(entry, LawField) for entry, _ in fields_of(LAWS[kind]).values()):
         slip, rate = draw(st.sampled_from(PAIRS))
         given = {"slip": draw(laws(slip)), "rate": draw(laws(rate))}

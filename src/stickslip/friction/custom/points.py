@@ -32,13 +32,15 @@ LARGEST_FILE = 100_000_000
 MOST_POINTS = 1_000_000
 """Take at most this many measured points; a fit to that many takes minutes."""
 ALONG: tuple[Along, ...] = ("slip", "slip_rate")
-STRESSES = ("shear_stress", "normal_stress")
-"""Columns whose ratio is friction, where no column holds friction itself."""
-TORQUES = ("torque", "normal_torque")
-"""The same of a contact that turns."""
+RATIOS = {"shear_stress": "normal_stress", "shear_force": "normal_force", "torque": "normal_torque"}
+"""Columns whose ratio is friction, where no column holds friction itself; the last are those of a contact that turns."""
+ROLLING = ("slide_roll_ratio", "rolling_speed")
+"""Columns of a machine that rolls and slides, whose product is the slip rate."""
+LARGEST_RATIO = 2.0
+"""A surface at rest under one that turns slides at twice the mean speed: larger ratios of sliding to rolling are percentages."""
 BY_ANGLE: Mapping[str, Along] = {"slip_angle": "slip", "slip_rotation": "slip_rate"}
 """Columns of a contact that turns, and what they are of it."""
-WANTED = (*ALONG, *BY_ANGLE, "friction", *STRESSES, *TORQUES)
+WANTED = (*ALONG, *BY_ANGLE, "friction", *RATIOS, *RATIOS.values(), *ROLLING)
 """The columns that are looked for."""
 
 
@@ -46,8 +48,9 @@ WANTED = (*ALONG, *BY_ANGLE, "friction", *STRESSES, *TORQUES)
 class Points(CheckedArguments):
     """Measured friction coefficients (no unit), with the slip (m) or the slip rate (m/s, not negative) of each point, or both.
 
-    Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate. `name` is for messages and
-    figures. `slips_in` is "rad" where slips are in rad and slip rates in rad/s, those of a contact that turns, and else empty.
+    Where slip was measured in both directions they are the points of forward slip, and `backward` has those of backward slip, with
+    friction and slip rates as magnitudes. Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip
+    rate. `name` is for messages and figures. `slips_in` is "rad" for a contact that turns, with rates in rad/s, and else empty.
     """
 
     friction: Floats
@@ -55,9 +58,10 @@ class Points(CheckedArguments):
     slip_rate: Floats | None = None
     name: str = "points"
     slips_in: str = ""
+    backward: Points | None = None
 
     @classmethod
-    def read(cls, source: Any, *, columns: Mapping[str, str | int] | None = None) -> Points:
+    def read(cls, source: Any, *, columns: Mapping[str, str | int] | None = None, normal_force: Any = None) -> Points:
         """Read points from a CSV file, or from columns of numbers by their headings, in the order of the source.
 
         The columns are `friction` with `slip`, `slip_rate` or both. `shear_stress` and `normal_stress` may take the place of
@@ -65,18 +69,31 @@ class Points(CheckedArguments):
         "v (rpm)", the points are those of a contact that turns, and `torque` over `normal_torque` may be friction. `u`, `v`, `mu`,
         `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before the headings are skipped.
         Points, and a law given by points, are taken as they are. `columns` say what headings mean, as in {"slip_rate": "Kanal 3
-        (mm/s)"}: a heading with or without its unit, or the number of a column. Rows with a mark of a missing number, as -999.25,
+        (mm/s)"}: a heading with or without its unit, or the number of a column. `normal_force` is that of a column `shear_force`,
+        as "100 N"; for one of stresses or torques it is the normal stress or torque. Negative slip rates are backward slip, where
+        friction is negative, too, or a magnitude in all rows. Rows with a mark of a missing number, as -999.25,
         are left out, with a warning. Raises InputError if the file or the columns cannot be used; the message is one line with the
         place and the cure.
         """
         if isinstance(source, Points):
-            if columns:
+            if columns or normal_force is not None:
                 raise InputError(f"{source.name}: columns name the headings of a source, and these points have been read already")
             return source
-        table, slips_in = _table_in(source, NamedColumns(columns or {}))
-        found = table.columns
+        table, slips_in = _table_in(source, NamedColumns(columns or {}), normal_force, both=True)
+        found, back = table.columns, _backward(table)
         note_percent(found["friction"], table.place)
-        return cls(found["friction"], found.get("slip"), found.get("slip_rate"), table.place, slips_in)
+        ways = []
+        for rows in (~back, back):
+            slip, rate = (None if name not in found else found[name][rows] for name in ALONG)
+            size = None if rate is None else np.abs(rate)
+            ways.append(cls(np.abs(found["friction"][rows]), slip, size, table.place, slips_in))
+        ahead, behind = ways
+        return replace(ahead, backward=behind) if len(ahead) and len(behind) else ahead if len(ahead) else behind
+
+    @property
+    def ways(self) -> tuple[Points, ...]:
+        """The points of forward slip and those of backward slip, each as points of one direction; or the points themselves."""
+        return (self,) if self.backward is None else (replace(self, backward=None), self.backward)
 
     @property
     def has(self) -> tuple[Along, ...]:
@@ -95,7 +112,9 @@ class Points(CheckedArguments):
         if variable not in self.has:
             hint = nearest(str(variable), self.has)
             raise InputError(f"{self.name}: the points have no {ascii(variable)[:40]}; {hint}")
-        return replace(self, slip=None) if variable == "slip_rate" else replace(self, slip_rate=None)
+        back = None if self.backward is None else self.backward.along(variable)
+        without = {"slip": None} if variable == "slip_rate" else {"slip_rate": None}
+        return replace(self, backward=back, **without)  # type: ignore[arg-type] # fields by name
 
     @property
     def places(self) -> Floats:
@@ -127,7 +146,8 @@ class Points(CheckedArguments):
         units = own_units(self.load_unit)
         given = [(name, x, KNOWN_COLUMNS[name].unit) for name, x in columns if x is not None]
         ranges = [f"{name} {np.min(x):.3g} to {np.max(x):.3g} {units.get(unit, unit)}" for name, x, unit in given]
-        return f"Points({len(self)} points, {', '.join(ranges)})"
+        back = "" if self.backward is None else f", backward {self.backward!r}"
+        return f"Points({len(self)} points, {', '.join(ranges)}{back})"
 
 
 def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Floats, str]:
@@ -138,6 +158,9 @@ def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Fl
     """
     if isinstance(source, Points):
         points = source.along(along)
+        if points.backward is not None:
+            cure = "BothWays(*(FromTable(one) for one in points.ways)) joins those of each"
+            raise InputError(f"{points.name}: slip was measured in both directions: {cure}")
         columns = {points.has[0]: points.places, "friction": points.friction}
         table, slips_in = Table(columns, points.name, np.arange(len(points)), "point"), points.slips_in
     else:
@@ -148,6 +171,20 @@ def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Fl
 def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
     """Return the points in the text of a CSV file, called `name` in messages, as `read_table` does."""
     return _joined(_complete(read_text(text, WANTED, name, MOST_POINTS, skip=True))[0])
+
+
+def _backward(table: Table) -> NDArray[np.bool_]:
+    """Return which rows are of backward slip. Raises InputError for friction that does not resist slip."""
+    friction = table.columns["friction"]
+    rate = table.columns.get("slip_rate", np.zeros(len(friction)))
+    back = (rate < 0.0) | ((rate == 0.0) & (friction < 0.0) & (rate < 0.0).any())
+    wrong = np.where(back, friction > 0.0, friction < 0.0) & ((friction < 0.0).any() or not back.any())
+    for i in np.flatnonzero(wrong)[:1].tolist():
+        if not back.any():
+            raise InputError(f"{table.at(i)}: friction must not be negative, got {friction[i]:g}")
+        why = "friction must have the sign of slip_rate, or none in all rows"
+        raise InputError(f"{table.at(i)}: {why}, got {friction[i]:g} at {rate[i]:g} m/s; leave out rows next to a reversal")
+    return np.asarray(back)
 
 
 def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floats]:
@@ -161,37 +198,47 @@ def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floa
     return found[0], table.columns[found[0]], table.columns["friction"]
 
 
-def _table_in(source: Any, named: NamedColumns | None = None) -> tuple[Table, str]:
+def _table_in(source: Any, named: NamedColumns | None = None, normal: Any = None, *, both: bool = False) -> tuple[Table, str]:
     """Return the columns of a source, which has friction and at least one variable, and `Points.slips_in`. Raises InputError."""
     if isinstance(source, PiecewiseLaw):
         places, friction = source.points
         source = {"slip_rate" if source.knot_variable == "rate" else "slip": places, "friction": friction}
     if isinstance(source, Mapping) or hasattr(source, "columns"):
-        return _complete(read_mapping(source, WANTED, "points", named=named))
+        return _complete(read_mapping(source, WANTED, "points", named=named), normal, both)
     if not isinstance(source, str | os.PathLike):
         wanted = "a CSV file, a DataFrame, or a mapping of headings to numbers"
         raise InputError(f"points must be {wanted}, got {shown(source)}")
-    return _complete(read_file(as_path("points", source), WANTED, (LARGEST_FILE, MOST_POINTS), skip=True, named=named))
+    read = read_file(as_path("points", source), WANTED, (LARGEST_FILE, MOST_POINTS), skip=True, named=named)
+    return _complete(read, normal, both)
 
 
-def _complete(table: Table) -> tuple[Table, str]:
-    """Return a table if it has all that points need, and "rad" if slip in it is an angle, else "". Raises InputError if not."""
+def _complete(table: Table, given: Any = None, both: bool = False) -> tuple[Table, str]:
+    """Return a table if it has all that points need, and "rad" if slip in it is an angle, else "". Raises InputError if not.
+
+    `given` is a normal force for forces. Only if `both` may slip rates be negative.
+    """
     found, header, place = table.columns, table.header, table.at_header
-    for pair in (STRESSES, TORQUES):
-        shear, normal = (found.pop(name, None) for name in pair)
-        if "friction" not in found and shear is not None and normal is not None:
-            found["friction"] = _ratio(shear, normal, table)
+    ratio, speed = (found.pop(name, None) for name in ROLLING)
+    if ratio is not None and speed is not None and "slip_rate" not in found:
+        found["slip_rate"] = ratio * speed / (100.0 if np.abs(ratio).max(initial=0.0) > LARGEST_RATIO else 1.0)
     angles, lengths = ([name for name in names if name in found] for names in (BY_ANGLE, ALONG))
     if angles and lengths:
         raise InputError(f"{place}: {lengths[0]} is a length, and {BY_ANGLE[angles[0]]} an angle: a contact slides, or it turns")
     for name in angles:
         found[BY_ANGLE[name]] = found.pop(name)
+    alone = _take_ratio(table, given)
     if "friction" not in found:
-        raise InputError(f"{place}: no column 'friction'; {missing(header, 'friction')}")
+        cure = f"with {alone} give its normal force, `--normal-force '100 N'`" if alone == "shear_force" else ""
+        cure = cure or missing(header, "friction")
+        raise InputError(f"{place}: no column 'friction'; {cure}")
     if not set(ALONG) & set(found):
         over_time = not headings("time").isdisjoint(names_of(header))
         cure = "a record over time is for `stickslip infer`" if over_time else missing(header, "slip_rate")
         raise InputError(f"{place}: no column slip or slip_rate; {cure}")
+    for i in np.flatnonzero(found["slip_rate"] < 0.0)[:1].tolist() if "slip_rate" in found and not both else ():
+        cure = "a law for each direction is BothWays, and Points.read takes both"
+        raise InputError(f"{table.at(i)}: slip_rate must not be negative, got {found['slip_rate'][i]:g}; {cure}")
+    _backward(table)
     if len(found["friction"]) < 2:
         raise InputError(f"{table.place}: at least two points are needed, got {len(found['friction'])}")
     for numbers in found.values():
@@ -199,12 +246,30 @@ def _complete(table: Table) -> tuple[Table, str]:
     return table.warned(), "rad" if angles else ""
 
 
-def _ratio(shear: Floats, normal: Floats, table: Table) -> Floats:
-    """Return friction from shear and normal stress. Raises InputError for a shear stress below 0 and a normal stress that is 0."""
-    for i in np.flatnonzero((normal == 0.0) | (shear < 0.0))[:1].tolist():
-        what = "normal_stress must be above 0" if normal[i] == 0.0 else "shear_stress must not be negative"
-        raise InputError(f"{table.at(i)}: {what}, got {(normal if normal[i] == 0.0 else shear)[i]:g}")
-    return np.asarray(shear / normal)
+def _take_ratio(table: Table, given: Any) -> str:
+    """Replace stresses, forces or torques by friction, with the normal load that is given or measured; return which lacks one."""
+    found = table.columns
+    pairs = {name: (found.pop(name, None), found.pop(of, None)) for name, of in RATIOS.items()}
+    measured = {name: (shear, normal) for name, (shear, normal) in pairs.items() if shear is not None}
+    if "friction" in found and given is not None:
+        raise InputError(f"{table.place}: normal_force: there is a column of friction, which needs none")
+    if given is not None and not measured:
+        raise InputError(f"{table.at_header}: normal_force: no column shear_force, torque or shear_stress that it presses")
+    for name, (shear, normal) in measured.items():
+        if "friction" in found:
+            continue
+        of = RATIOS[name]
+        if given is not None:
+            number = Quantity(KNOWN_COLUMNS[of].unit, of.replace("_", " "), above=0).check(table.place, "normal_force", given)
+            normal = np.full(len(shear), number)
+        if normal is None:
+            return name
+        both = (found.get("slip_rate", np.zeros(1)) < 0.0).any()
+        for i in np.flatnonzero((normal == 0.0) | ((shear < 0.0) & ~both))[:1].tolist():
+            what = f"{of} must be above 0" if normal[i] == 0.0 else f"{name} must not be negative"
+            raise InputError(f"{table.at(i)}: {what}, got {(normal if normal[i] == 0.0 else shear)[i]:g}")
+        found["friction"] = np.asarray(shear / normal)
+    return ""
 
 
 @dataclass(frozen=True, init=False)

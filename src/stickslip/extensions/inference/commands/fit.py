@@ -59,6 +59,9 @@ def fit(
     ] = None,
     changes: Changes = None,
     column: Columns = None,
+    normal_force: Annotated[
+        str | None, option('Normal force of forces, as "100 N" (torque, stress: of these).', "--normal-force")
+    ] = None,
     out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
     figure: FigureFile = None,
     look: FigureLook,
@@ -68,7 +71,9 @@ def fit(
     The file is a CSV with a heading over each column: friction (or mu), and
     slip (or u), slip_rate (or v), or both. Units belong in the headings:
     "v (mm/s)", "slip [mm]"; "v (rpm)" or "slip (deg)" make a law for a contact
-    that turns. Other columns are ignored.
+    that turns. Other columns are ignored. Forces and torques need
+    --normal-force. Negative slip rates are backward slip: if friction differs
+    there, the law is one of both ways.
 
     Without --law and --smooth, every law that suits the points is fitted and
     compared: the smallest BIC fits best for its number of parameters. With
@@ -100,7 +105,7 @@ def fit(
     values = typed_values(changes or (), "fit: --set", '"body.normal_force=50 kN"')
     if values and out is None:
         raise InputError("fit: --set belongs to --out, which takes its body and loading from --body")
-    points = Points.read(data, columns=typed_columns(column, "fit: --column"))
+    points = Points.read(data, columns=typed_columns(column, "fit: --column"), normal_force=normal_force)
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
         from stickslip.problem.scenarios import with_law
@@ -194,12 +199,12 @@ def _best(points: Points) -> Fit:
     if not fits:
         raise InputError(f"fit: no law can be fitted to these {len(points)} points: use --smooth")
     screen = console()
-    say(screen, clean(f"{points.name}: {len(points)} points along {' and '.join(points.has)}"), style="bold")
+    say(screen, clean(f"{points.name}: {sum(map(len, points.ways))} points along {' and '.join(points.has)}"), style="bold")
     rows = []
     for one in fits:
         known = f"{len(one.uncertainty)}"
         noticed = "; ".join(one.notes[:1]) + (f" (and {len(one.notes) - 1} more)" if len(one.notes) > 1 else "")
-        rows.append((one.law.kind, known, f"{one.residual:.3g}", f"{one.bic - fits[0].bic:.1f}", noticed))
+        rows.append((one.fitted, known, f"{one.residual:.3g}", f"{one.bic - fits[0].bic:.1f}", noticed))
     print_words(screen, ("law", "parameters", "residual", "BIC above best", "noticed"), rows)
     print_sentences(
         screen,

@@ -51,6 +51,8 @@ def measured_data(result: Fit | Smooth) -> xr.Dataset:
     For a law of slip and slip rate the variable is the friction coefficient of the law.
     """
     points, law = result.points, result.law
+    if isinstance(result, Fit) and points.backward is not None:
+        return _both_ways(result)
     both = len(points.has) == 2
     calculated = law.coefficient(*points.variables)
     place = calculated if both else points.places
@@ -76,6 +78,22 @@ def measured_data(result: Fit | Smooth) -> xr.Dataset:
     title = "Smoothed friction" if smoothed else f"{law.kind.capitalize()} law"
     attributes = {"title": f"{title}, {len(points)} points", "law": what}
     return xr.Dataset(contents, coords={"along": quantity("along", along, *named)}, attrs=attributes)
+
+
+def _both_ways(result: Fit) -> xr.Dataset:
+    """Return the same for points of both directions of slip: friction and slip rates have their signs."""
+    ahead, behind = (measured_data(one) for one in result.ways)  # type: ignore[attr-defined] # of a `FitBothWays`
+    turned = behind.assign({name: -behind[name] for name in ("place", "friction", "difference", "law")})
+    turned = turned.assign_coords(along=-behind["along"]).isel(along=slice(None, None, -1))
+    parts = {
+        of: [one[[name for name in ahead if ahead[name].dims == (of,)]] for one in (turned, ahead)] for of in ("point", "along")
+    }
+    found = xr.merge([xr.concat(parts["point"], "point"), xr.concat(parts["along"], "along")], compat="no_conflicts")
+    units = {name: found[name].assign_attrs(ahead[name].attrs) for name in found}
+    contents = units | {"residual": ahead["residual"].copy(data=result.residual)}
+    along = found["along"].assign_attrs(ahead["along"].attrs)
+    title = f"{result.fitted.capitalize()}, {found.sizes['point']} points"
+    return xr.Dataset(contents, coords={"along": along}, attrs={"title": title, "law": "one law for each direction"})
 
 
 def _along(place: Floats) -> Floats:

@@ -71,6 +71,9 @@ def template(law: Any) -> FrictionLaw:
             "fit velocity-strengthening, or another law without a state"
         )
     law = _example(law) if is_class else law
+    if law.backward_from:
+        each = "points with slip rates of both signs give BothWays by themselves"
+        raise InputError(f"fit: {law.kind} differs with the direction of slip: name the law of one direction, {each}")
     if not leaves(law):
         raise InputError(f"fit: {law.kind} has no parameters to be fitted: use smooth, or FromTable for exact interpolation")
     return law  # type: ignore[no-any-return] # checked above

@@ -157,6 +157,9 @@ def smooth(
         If the points or an argument cannot be used.
     """
     read = Points.read(points).along(along)
+    if read.backward is not None:
+        cure = "smooth each of points.ways, and join their laws by BothWays, or fit a law"
+        raise InputError(f"{read.name}: slip was measured in both directions: {cure}")
     given = _checked(strength)
     tried = []
     for axis in _axes(read, scale):
