@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.leaps.asked import LeapsOfBody, Over
 from stickslip.problem.problem import Problem
 
-NO_STOPS = "a body without hard stops"
+
+def what_stops_or_winds(problem: Problem) -> str:
+    """Return what a body would have to be without for leaps, in words; empty if it is."""
+    return "no hard stops" if problem.body.has_stops else "no integral gain" if as_on_spring(problem.body).integral_gain else ""
 
 
 class LeapsOfRigid(LeapsOfBody):
@@ -26,13 +30,13 @@ class LeapsOfRigid(LeapsOfBody):
             return "a friction law under which slip begins at the friction of rest"
         if problem.ground is not None or problem.one_way:
             return "ground at rest, and slip in both directions"
-        if problem.body.has_stops:
-            return NO_STOPS
+        if missing := what_stops_or_winds(problem):
+            return missing
         return "a constant pull rate and normal load" if problem.varies else ""
 
     def missing_for_steady(self, problem: Problem) -> str:
-        """Return that stops would end it, or what changes."""
-        return NO_STOPS if problem.body.has_stops else super().missing_for_steady(problem)
+        """Return what ends it or winds up, or what changes."""
+        return what_stops_or_winds(problem) or super().missing_for_steady(problem)
 
     def why_not_lumped(self, problem: Problem) -> str:
         """Return that there are no echoes."""
