@@ -184,7 +184,7 @@ class ProblemFields(CheckedArguments):
         if not self.body.has_ground:
             why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
             raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
-        if self.body.has_waves:
+        if self.body.time_to_driver:
             self._refuse_machine("Problem: ground that moves is not followed under", "leave the ground at rest")
         if self.body.has_inertia and ground.velocity_jumps:
             unit = self.unit_of("ground_velocity")

@@ -136,7 +136,7 @@ def test_energies_balance_with_what_stops_take(restitution: float) -> None:
     assert len(shocks) > (5 if restitution else 0)
     assert float(energy.damped[-1]) > lost > 0.0
     assert abs(energy.balance).max() < 1e-9 * float(energy.heat[-1])
-    assert abs(solution.events.balance).max() < 1e-9 * float(energy.heat[-1])
+    assert abs(solution.catalogue(energy=True).balance).max() < 1e-9 * float(energy.heat[-1])
     proven = solution.proven
     assert proven.residual < 1e-7
     assert proven.load < 1e-9

@@ -12,7 +12,7 @@ from stickslip.contact.asked import Withstood
 from stickslip.contact.disturbance import Response
 from stickslip.contact.kinds.rigid import ContactOfRigid, ModesOfBlock
 from stickslip.contact.steady_proof import Judge
-from stickslip.problem.bodies import BodyOnCharacteristics, as_in_loop
+from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
 
 
 class ContactOfLoop(ContactOfRigid):
@@ -20,20 +20,20 @@ class ContactOfLoop(ContactOfRigid):
 
     def modes(self, body: BodyOnCharacteristics, normal: float, response: Response, *, patient: bool = False) -> ModesOfBlock:
         """Return the roots of m s + D + kp/s + ki/s^2 + S Phi(s)."""
-        if not body.has_machine:
+        if not as_on_spring(body).integral_gain:
             return super().modes(body, normal, response)
         above, below = response
-        controller = np.array([as_in_loop(body).integral_gain, body.stiffness, body.total_damping, body.inertia])
+        controller = np.array([as_on_spring(body).integral_gain, body.stiffness, body.total_damping, body.inertia])
         return ModesOfBlock(poly.polyadd(poly.polymul(controller, below), poly.polymulx(poly.polymulx(normal * above))))
 
     def withstood(self, body: BodyOnCharacteristics, normal: float) -> Withstood:
         """Return the damping less what the integral takes of it."""
-        taken = body.inertia * as_in_loop(body).integral_gain / body.stiffness
+        taken = body.inertia * as_on_spring(body).integral_gain / body.stiffness
         return Withstood(body.total_damping - taken, is_known=True)
 
     def judge(self, body: BodyOnCharacteristics, normal: float, many: int) -> Judge | None:
         """Return the proof for an axis without an integral."""
-        return None if body.has_machine else super().judge(body, normal, many)
+        return None if as_on_spring(body).integral_gain else super().judge(body, normal, many)
 
 
 ANSWERS = ContactOfLoop()

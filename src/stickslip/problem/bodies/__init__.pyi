@@ -5,7 +5,7 @@ from stickslip.problem.bodies.layered.slabs import LayeredSlab, TwoSlabs
 from stickslip.problem.bodies.layered.string import SectionedString
 from stickslip.problem.bodies.register import BODIES
 from stickslip.problem.bodies.rigid.blocks import RotatingBlock, SpringBlock, as_block
-from stickslip.problem.bodies.rigid.in_loop import PositionLoop, RotaryLoop, as_in_loop
+from stickslip.problem.bodies.rigid.in_loop import PositionLoop, RotaryLoop
 from stickslip.problem.bodies.rigid.on_belt import BlockOnBelt, BlockOnDisc
 from stickslip.problem.bodies.rigid.on_spring import as_on_spring
 from stickslip.problem.bodies.uniform.column import SoilColumn
@@ -32,7 +32,6 @@ __all__ = [
     "TorsionalString",
     "TwoSlabs",
     "as_block",
-    "as_in_loop",
     "as_on_spring",
     "as_slab",
     "as_waves",

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.bodies import as_in_loop
+from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.drivers.segments import scaled
 from stickslip.problem.drivers.spring_and_dashpot import SpringAndDashpot
 from stickslip.problem.fields import ProblemFields
@@ -23,7 +23,7 @@ class OfPositionLoop(SpringAndDashpot):
 
     def numbers(self, problem: Problem) -> dict[str, Any]:
         """Return the integral gain, the first lag, and the sinusoid of the reference's rate."""
-        body, (_, tone) = as_in_loop(problem.body), scaled(problem.pull_rate, 1.0)
+        body, (_, tone) = as_on_spring(problem.body), scaled(problem.pull_rate, 1.0)
         tones = {"pull_tone": tone.amplitude, "pull_phase": tone.phase}
         return {"winding": body.integral_gain, "first_lag": body.reference_step, **tones}
 
@@ -40,7 +40,7 @@ class OfPositionLoop(SpringAndDashpot):
 
     def loading_rate(self, problem: ProblemFields) -> float:
         """Return K V + c dV/dt + ki e at the start (N/s)."""
-        body = as_in_loop(problem.body)
+        body = as_on_spring(problem.body)
         return super().loading_rate(problem) + body.integral_gain * body.reference_step
 
 

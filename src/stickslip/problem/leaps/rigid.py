@@ -6,10 +6,14 @@ from typing import ClassVar
 
 from typing_extensions import override
 
+from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.leaps.asked import LeapsOfBody, Over
 from stickslip.problem.problem import Problem
 
-NO_STOPS = "a body without hard stops"
+
+def what_stops_or_winds(problem: Problem) -> str:
+    """Return what a body would have to be without for leaps, in words; empty if it is."""
+    return "no hard stops" if problem.body.has_stops else "no integral gain" if as_on_spring(problem.body).integral_gain else ""
 
 
 class LeapsOfRigid(LeapsOfBody):
@@ -28,15 +32,13 @@ class LeapsOfRigid(LeapsOfBody):
             return "a friction law under which slip begins at the friction of rest"
         if problem.ground is not None or problem.one_way:
             return "ground at rest, and slip in both directions"
-        if problem.body.has_stops:
-            return NO_STOPS
         return self.missing_for_steady(problem)
 
     @override
     def missing_for_steady(self, problem: Problem) -> str:
-        """Return that stops would end it, that nothing pulls it, or what changes."""
-        if problem.body.has_stops:
-            return NO_STOPS
+        """Return what ends it or winds up, that nothing pulls it, or what changes."""
+        if missing := what_stops_or_winds(problem):
+            return missing
         if problem.body.is_free:
             return "a spring (a stiffness above 0)"
         return "no force in time" if problem.force is not None else super().missing_for_steady(problem)

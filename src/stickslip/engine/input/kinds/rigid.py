@@ -37,17 +37,22 @@ class InputOfRigid(InputOfBody):
     def first_load(self, problem: Problem) -> at.Floats:
         """Return one straight piece."""
         growth = problem.body.stiffness * problem.first_pull_rate
-        return pieces_of([0.0, problem.round_trip_time], [problem.excess], [growth])
+        return pieces_of([0.0, problem.round_trip_time], [_first(problem)], [growth])
 
     def first_load_varying(self, problem: Problem) -> at.Floats:
         """Return one piece that does not grow: all growth is inflow."""
-        return pieces_of([0.0, problem.round_trip_time], [problem.excess], [0.0])
+        return pieces_of([0.0, problem.round_trip_time], [_first(problem)], [0.0])
 
     def on_ground(self, problem: Problem) -> Shaken:
         """Return the jumps of the force of inertia; its growth is in the inflow."""
         from stickslip.engine.input.shaking import StepsOfForce  # here, because few runs move the ground
 
         return StepsOfForce.of(problem)
+
+
+def _first(problem: Problem) -> float:
+    """Return the load minus the reference strength (N) of the start, after a step of a reference."""
+    return problem.excess + problem.body.stiffness * as_on_spring(problem.body).reference_step
 
 
 ANSWERS = InputOfRigid()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, cast
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,24 +13,11 @@ from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import declare, quantity
 from stickslip.foundation.show import Declared
-from stickslip.problem.bodies.contract import BodyOnCharacteristics
-from stickslip.problem.bodies.rigid.on_spring import BodyOnSpring, OnSpring
+from stickslip.problem.bodies.rigid.on_spring import OnSpring
 from stickslip.problem.bodies.rigid.stops import AHEAD, BEHIND, RESTITUTION, check_with_stops
 
 PERIODS = 1000.0
 """A rest winds up the integral, so that no two periods are alike and none is leapt over: a round trip has this many of them (1)."""
-
-
-class BodyInLoop(BodyOnSpring, Protocol):
-    """A rigid body in a position loop: its integral gain (N/m/s), the first step of its reference (m), and its period (s)."""
-
-    integral_gain: float
-    reference_step: float
-
-    @property
-    def period(self) -> float:
-        """The period of free oscillation without an integral (s)."""
-        ...
 
 
 class InLoop(OnSpring):
@@ -71,7 +58,7 @@ class InLoop(OnSpring):
     def round_trip_time(self) -> float:
         """The length of a round trip of its history (s)."""
         found: float = super().round_trip_time  # type: ignore[misc] # a property of every body on a spring
-        return found * (PERIODS if self.has_machine else 1.0)
+        return found * (PERIODS if anywhere(self.integral_gain) else 1.0)
 
     @property
     def longest_way(self) -> float:
@@ -148,8 +135,3 @@ class RotaryLoop(Declared, InLoop):
 
     def __post_init__(self) -> None:
         check_with_stops(self)
-
-
-def as_in_loop(body: BodyOnCharacteristics) -> BodyInLoop:
-    """Return a body that must be in a loop, as one, with the numbers that only such a body has."""
-    return cast(BodyInLoop, body)

@@ -34,6 +34,13 @@ class BodyOnSpring(BodyOnCharacteristics, Protocol):
     stop_ahead: float
     stop_behind: float
     restitution: float
+    integral_gain: float
+    reference_step: float
+
+    @property
+    def period(self) -> float:
+        """The period of free oscillation (s)."""
+        ...
 
 
 class OnSpring(WithOneDriver):
@@ -50,6 +57,9 @@ class OnSpring(WithOneDriver):
     """The kind of this body on a belt."""
     driver_damping: float = 0.0
     """Of a body that has no dashpot beside its spring."""
+    integral_gain: float = 0.0
+    """Of a body that is in no position loop; and the step of its reference."""
+    reference_step: float = 0.0
     echo_impedance: float = 0.0
     dashpot: float = 0.0
     has_waves: ClassVar[bool] = False

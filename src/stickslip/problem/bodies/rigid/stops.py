@@ -19,7 +19,7 @@ AHEAD, BEHIND = (f"way from the start to a hard stop {side}; none: there is no s
 def check_with_stops(body: Any) -> None:
     """Check the fields of a body that may have stops."""
     check_body(body)
-    if body.has_belt and body.has_stops:
+    if getattr(body, "off_belt", "") and body.has_stops:
         name, way = type(body).__name__, "stop_ahead" if body.stop_ahead < math.inf else "stop_behind"
         raise InputError(f"{name}: {way}: stops are not followed over a belt: leave them out, or pull the spring instead")
     if anywhere(body.restitution) and not body.has_stops:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem, loading_rate
-from stickslip.problem.bodies import as_in_loop
+from stickslip.problem.bodies import as_on_spring
 from stickslip.run.check.asked import Fact
 from stickslip.run.check.kinds.rigid import CheckOfRigid
 
@@ -17,7 +17,7 @@ class CheckOfLoop(CheckOfRigid):
 
     def numbers(self, problem: Problem) -> list[Fact]:
         """Return period, damping ratio, the largest integral gain, and the lag that friction holds."""
-        body, first, size = as_in_loop(problem.body), ", at first" if problem.loading_varies else "", problem.body.impedance
+        body, first, size = as_on_spring(problem.body), ", at first" if problem.loading_varies else "", problem.body.impedance
         per_way, unit = si_unit("stiffness", body.load_unit), problem.unit_of
         largest = body.total_damping * body.stiffness / body.inertia
         found = [
@@ -25,7 +25,7 @@ class CheckOfLoop(CheckOfRigid):
             Fact("damping ratio", 0.5 * body.total_damping / size, "1", "(damping + kd) / (2 sqrt(kp m))"),
             Fact("loading", loading_rate(problem), unit("load_rate"), f"growth of the controller's force while stuck{first}"),
         ]
-        if body.has_machine:
+        if body.integral_gain:
             edge = "above it steady motion is unstable even where friction does not fall with the slip rate"
             found.insert(2, Fact("largest ki", largest, f"{per_way}/s", f"(damping + kd) kp / m: {edge}"))
         if problem.friction.sticks:
@@ -35,7 +35,7 @@ class CheckOfLoop(CheckOfRigid):
 
     def chosen(self, problem: Problem) -> Iterator[str]:
         """Yield what the reference does before the start, and whether the axis hunts."""
-        body = as_in_loop(problem.body)
+        body = as_on_spring(problem.body)
         if body.reference_step:
             yield f"the reference jumps by {brief(body.reference_step, problem.unit_of('slip'))} at the start, and the load with it"
         if hunts := why_it_hunts(problem):
@@ -43,8 +43,8 @@ class CheckOfLoop(CheckOfRigid):
 
     def stability(self, problem: Problem, by_slip: float, by_rate: float) -> str:
         """Return whether the loop holds a small disturbance of slip at the start: Routh's conditions of three orders."""
-        body = as_in_loop(problem.body)
-        if not body.has_machine:
+        body = as_on_spring(problem.body)
+        if not body.integral_gain:
             return super().stability(problem, by_slip, by_rate)
         spring, dash = body.stiffness + body.normal_load * by_slip, body.total_damping + body.normal_load * by_rate
         damps, asked = dash * spring, body.inertia * body.integral_gain
@@ -58,8 +58,8 @@ class CheckOfLoop(CheckOfRigid):
 
 def why_it_hunts(problem: Problem) -> str:
     """Return a sentence on hunting about a reference at rest under a law that sticks; empty where nothing is known of it."""
-    body, law = as_in_loop(problem.body), problem.friction
-    if not (law.sticks and body.has_machine) or law.depends_on_slip or law.states:
+    body, law = as_on_spring(problem.body), problem.friction
+    if not (law.sticks and body.integral_gain) or law.depends_on_slip or law.states:
         return ""
     share = law.static_excess * problem.normal
     fall = float(law.slopes(0.0)[1])

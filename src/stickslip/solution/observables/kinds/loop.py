@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.bodies import as_in_loop
+from stickslip.problem.bodies import as_on_spring
 from stickslip.solution.observables.asked import LoadCompared
 from stickslip.solution.observables.given_load import pulled, value_at
 from stickslip.solution.observables.kinds.rigid import (
@@ -32,7 +32,7 @@ class ObservablesOfLoop(ObservablesOfRigid):
     def energies(self, history: History, at: Positions, nodes: int) -> dict[str, Floats]:
         """Return them from the lag; the work of the integral is that of the driver, too."""
         found = super().energies(history, at, nodes)
-        if history.problem.body.has_machine:
+        if as_on_spring(history.problem.body).integral_gain:
             found["work"] = up_to(history, at, lambda some: _power(history, some), nodes=nodes)
             found["elastic"] = 0.5 * history.problem.body.stiffness * lag(history, at) ** 2
             found["stored"] = found["elastic"] + found["kinetic"]
@@ -40,8 +40,8 @@ class ObservablesOfLoop(ObservablesOfRigid):
 
     def event_energies(self, history: History, first: Positions, last: Positions) -> dict[str, Floats]:
         """Return them from the lag at the start and at the end of each event."""
-        body = history.problem.body
-        if not body.has_machine:
+        body = as_on_spring(history.problem.body)
+        if not body.integral_gain:
             return super().event_energies(history, first, last)
         stored = (body.stiffness * lag(history, one) ** 2 + body.inertia * history.rate(one) ** 2 for one in (first, last))
         begun, ended = stored
@@ -60,12 +60,12 @@ class ObservablesOfLoop(ObservablesOfRigid):
 def lag(history: History, at: Positions) -> Floats:
     """Return how far slip is behind the reference (m)."""
     time, _ = history.times_inside(at)
-    return as_in_loop(history.problem.body).reference_step + pulled(history.problem, time) - history.slipped(at)
+    return as_on_spring(history.problem.body).reference_step + pulled(history.problem, time) - history.slipped(at)
 
 
 def _power(history: History, at: Positions) -> Floats:
     """Return the power (W) of the controller, as if it pulled the end of a spring, and what its integral gives to the lag."""
-    problem, body = history.problem, as_in_loop(history.problem.body)
+    problem, body = history.problem, as_on_spring(history.problem.body)
     time, inside = history.times_inside(at)
     pull, rate = value_at(problem.pull_rate, time, inside), history.rate(at)
     force = problem.strength + driver_force(history, at)
@@ -76,7 +76,7 @@ def _power(history: History, at: Positions) -> Floats:
 
 def _of_controller(history: History, piece: Places, xi: Floats) -> Floats:
     """Return the load minus the reference strength (N), from what it is where the history begins."""
-    problem, body = history.problem, as_in_loop(history.problem.body)
+    problem, body = history.problem, as_on_spring(history.problem.body)
     places, first = Positions.inside(piece, xi), Positions.inside(np.zeros(1, int), 0.0)
 
     def at_once(at: Positions, time: Floats, inside: Floats) -> Floats:
@@ -86,8 +86,6 @@ def _of_controller(history: History, piece: Places, xi: Floats) -> Floats:
 
     _, _, time, inside = times_in(history, piece, xi)
     found = history.excess(first) + at_once(places, time, inside) - at_once(first, *history.times_inside(first))
-    if not body.has_machine:
-        return np.asarray(found)
     return np.asarray(found + body.integral_gain * up_to(history, places, lambda at: lag(history, at)))
 
 
