@@ -1,4 +1,6 @@
 from stickslip.contact import critical_value
+from stickslip.extensions.given_motion.identification import Identification
+from stickslip.extensions.given_motion.identify import identify
 from stickslip.extensions.inference.infer import infer
 from stickslip.extensions.inference.inference import Inference, ranking
 from stickslip.extensions.inference.record.record import Record
@@ -20,6 +22,7 @@ __all__ = [
     "Comparison",
     "Edge",
     "Ensemble",
+    "Identification",
     "Inference",
     "Record",
     "Schemes",
@@ -30,6 +33,7 @@ __all__ = [
     "critical_value",
     "ensemble",
     "find",
+    "identify",
     "infer",
     "judge_series",
     "predictability",

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.cli.main import main
 from stickslip.problem.scenarios import read_scenario
+from tests.extensions.given_motion.running import stickslip
 
 COULOMB = ss.friction.Coulomb(static=0.6, dynamic=0.5)
 THERE_AND_BACK = ss.loading.Steps([0.0, 1.0, 2.0, 3.0], [1e-3, 0.0, -1e-3, 1e-3])
@@ -31,13 +31,6 @@ values = ["1 um/s", "10 um/s"]
 [run]
 duration = "60 s"
 """
-
-
-def stickslip(*words: object) -> None:
-    """Run a command, which must succeed."""
-    with pytest.raises(SystemExit) as ended:
-        main([str(one) for one in words])
-    assert ended.value.code in (0, None)
 
 
 def test_at_rest_a_law_that_sticks_leaves_the_traction_open_between_its_bounds() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from stickslip.extension import Extension
+from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import ScenarioTable
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class GivenMotionExtension(Extension):
-    """`ss.MovedContact`, the table [motion] of scenario files, and the solver of both."""
+    """`ss.MovedContact`, the table [motion] of scenario files, the solver of both, and `identify`."""
 
     name = "given_motion"
 
@@ -29,9 +29,20 @@ class GivenMotionExtension(Extension):
 
         return {MotionTable.name: MotionTable()}
 
+    def commands(self) -> Mapping[str, Sequence[Command]]:
+        """Return the command `identify`."""
+        from stickslip.extensions.given_motion.commands.identify import identify
+
+        return {"Measured friction": (identify,)}
+
     def public(self) -> Mapping[str, str]:
-        """Return `ss.MovedContact`."""
-        return {"MovedContact": "stickslip.extensions.given_motion.moved:MovedContact"}
+        """Return `ss.MovedContact`, and what finds a law along measured motion."""
+        home = "stickslip.extensions.given_motion"
+        return {
+            "MovedContact": f"{home}.moved:MovedContact",
+            "studies.Identification": f"{home}.identification:Identification",
+            "studies.identify": f"{home}.identify:identify",
+        }
 
 
 EXTENSION = GivenMotionExtension()

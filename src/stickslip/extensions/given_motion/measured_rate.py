@@ -13,6 +13,8 @@ from stickslip.foundation.arrays import Floats
 
 OF_THIRD_DIFFERENCE = 20.0
 """Variance of a third difference of white noise over that of the noise: 1 + 9 + 9 + 1."""
+MEDIAN_OF_NORMAL = 0.6744897501960817
+"""Median magnitude of a normal variable, in standard deviations."""
 MOST_FOLLOWED = 0.9
 """A curve does not follow more than this share (1) of the samples: too little would be left to tell noise by."""
 DRAWS_OF_TRACE = 12
@@ -47,8 +49,8 @@ def rate_of_record(record: MeasuredMotion, deviation: float | None, *, smooth: b
 
 
 def white_noise(values: Floats) -> float:
-    """Return the standard deviation of white noise on a smooth curve, from its third differences."""
-    return float(np.sqrt(np.mean(np.diff(values, 3) ** 2) / OF_THIRD_DIFFERENCE))
+    """Return the standard deviation of white noise on a smooth curve with a few jumps, from the median of third differences."""
+    return float(np.median(np.abs(np.diff(values, 3))) / (MEDIAN_OF_NORMAL * np.sqrt(OF_THIRD_DIFFERENCE)))
 
 
 def _smooth(record: MeasuredMotion, values: Floats | None, given: Floats | None, *, of_slip: bool) -> MeasuredRate:

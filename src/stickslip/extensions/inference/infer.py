@@ -206,10 +206,18 @@ def infer(wishes: Wishes) -> Inference:
             found = _inferred(model, tuple(whole), wishes, tell, offer)
         except OutOfTime as stop:
             raise InputError(f"infer: no run has succeeded: {stop}; give other values or bounds") from None
-        except InputError as error:
-            raise InputError("; ".join([str(error), *doubts])) from None  # a unit or a sign may be why no run succeeds
+        except InputError as error:  # a unit or a sign may be why no run succeeds, or motion that is given and not to be found
+            raise InputError("; ".join([str(error), *doubts, *_along_motion(records)])) from None
     asked = {name: value for name, value in vars(wishes).items() if name not in TOLD_APART and value not in (None, False)}
     return replace(found, about=(*found.about, *notes), asked=asked)
+
+
+def _along_motion(records: Sequence[Record]) -> list[str]:
+    """Return the cure if records have measured motion and no load point."""
+    moved = all(not {"slip_rate", "slip"}.isdisjoint(one.measured) for one in records)
+    undriven = all(one.load_point is None and one.load_rate is None for one in records)
+    cure = "a law along the measured motion, without body and spring, is found by `stickslip identify`"
+    return [cure] if moved and undriven else []
 
 
 def _check_normal(problem: Problem, wishes: Wishes) -> None:
