@@ -209,3 +209,46 @@ def test_a_brake_shoe_leads_and_trails() -> None:
     two = BothWays(Coulomb(static=0.45 / 0.64, dynamic=0.4 / 0.68), Coulomb(static=0.45 / 1.36, dynamic=0.4 / 1.32))
     times = np.linspace(0.0, END, 241)
     assert np.abs(ss.simulate(block(law), END).slip(times) - ss.simulate(block(two), END).slip(times)).max() < 1e-12
+
+
+def test_a_screw_is_raised_by_the_known_force() -> None:
+    """The force W tan(a + phi) of statics, to 1e-14, from friction along the thread with gain tan(a) and normal load W / cos(a)."""
+    slope, friction, weight = 0.3, 0.15, 100.0
+    thread = SelfEnergising(law=Coulomb(static=friction, dynamic=friction), gain=math.tan(slope))
+    for law, way in ((thread, 1.0), (thread.ways[1], -1.0)):
+        along = way * weight / math.cos(slope) * float(law.coefficient(0.0, 0.1))
+        force = (along + weight * math.sin(slope)) / math.cos(slope)
+        assert force == pytest.approx(weight * math.tan(slope + way * math.atan(friction)), rel=1e-14, abs=0.0)
+
+
+def test_a_block_on_a_shaken_table_creeps_the_easier_way() -> None:
+    """Each period it slips as the closed form of one phase says, to 1e-4, the share of the soft spring; backwards never."""
+    size, turn, resists = 4.0, 2.0 * math.pi / 0.2, 0.2 * 9.81
+    start = math.asin(resists / size) / turn
+
+    def rate(t: float) -> float:
+        return size / turn * (math.cos(turn * start) - math.cos(turn * t)) - resists * (t - start)
+
+    stop = brentq(rate, start + 0.02, start + 0.19)
+    steps = np.polynomial.legendre.leggauss(20)
+    slip = (
+        0.5 * (stop - start) * sum(w * rate(0.5 * (stop + start) + 0.5 * (stop - start) * x) for x, w in zip(*steps, strict=True))
+    )
+    table = ss.SpringBlock(mass=1.0, stiffness=1e-3, normal_force=9.81)
+    law = BothWays(forward=Coulomb(static=0.2, dynamic=0.2), backward=Coulomb(static=0.5, dynamic=0.5))
+    shakes = ss.loading.Sinusoidal(mean=0.0, amplitude=-size, period=0.2)
+    run = ss.simulate(ss.Problem(table, law, ground_acceleration=shakes, initial_load=0.0), 2.0)
+    assert float(run.slip(2.0)) == pytest.approx(10.0 * slip, rel=1e-4, abs=0.0)
+    assert run.slip_rate(np.linspace(0.0, 2.0, 2001)).min() == 0.0
+
+
+def test_a_contact_that_opens_ends_the_run_in_words() -> None:
+    """Under S0 (1 + 2 u) a block that is pushed back opens at u = -0.5 m, and the run ends there, to 1e-6 m."""
+    law = ss.friction.SlipTimesRate(
+        slip=ss.friction.FromExpression("1 + growth*u", {"growth": "2 / m"}, counts="net"),
+        rate=ss.friction.HyperbolicRate(static=0.5, dynamic=0.3, alpha=1.0),
+    )
+    run = ss.simulate(ss.Problem(BLOCK, law, pull_rate=-1.0, initial_load=0.0), 5.0)
+    assert not run.status.ok
+    assert "friction" in run.status.message
+    assert float(run.slip(run.duration)) == pytest.approx(-0.5, abs=1e-6, rel=0.0)

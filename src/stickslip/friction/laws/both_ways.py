@@ -55,13 +55,6 @@ class LawOfTwoWays(LawOfParts):
             if part.memory != "all":
                 raise InputError(f"{name}: {place} must remember all slip: leave memory = {part.memory!r} out of {part.kind}")
 
-    @override
-    def check_start(self, slip: float) -> None:
-        for way in self.ways:
-            way.check_start(slip)
-
-    # ---- its pieces ------------------------------------------------------------
-
     @property
     @override
     def pieces(self) -> tuple[Formula, ...]:
@@ -97,8 +90,6 @@ class LawOfTwoWays(LawOfParts):
         first = self.backward_from
         return (self.ways[1], i - first) if i >= first else (self.ways[0], i)
 
-    # ---- what it answers for forward slip ------------------------------------------------------------
-
     @override
     def piece_at(self, u: ArrayLike, v: ArrayLike = 0.0) -> NDArray[np.intp]:
         return self.ways[0].piece_at(u, v)
@@ -112,13 +103,6 @@ class LawOfTwoWays(LawOfParts):
     @override
     def static_excess(self) -> float:
         return self.ways[0].static_excess
-
-    # ---- what it answers for both ------------------------------------------------------------
-
-    @property
-    @override
-    def can_be_negative(self) -> bool:
-        return any(way.can_be_negative for way in self.ways)
 
     @override
     def range(self) -> tuple[float, float]:

@@ -6,13 +6,12 @@ large. The strength is taken from the law and from the normal load of the proble
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stickslip.engine import History, Positions, values_at
 from stickslip.foundation.arrays import Floats
-from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
 from stickslip.problem import PERFECT_DELAY
 from stickslip.problem.bodies import as_on_spring
@@ -58,7 +57,7 @@ def _strengths(history: History, at: Positions, grown: Floats) -> Strengths:
     return Strengths(forward, _strength(history, law.ways[1], at, grown) if law.backward_from else forward)
 
 
-def _strength(history: History, law: FrictionLaw, at: Positions, grown: Floats) -> Floats:
+def _strength(history: History, law: Any, at: Positions, grown: Floats) -> Floats:
     own = len(law.states)
     coefficient = law.coefficient(history.law_slip(at), 0.0, one_argument(history.states(at)[:own]))
     return np.asarray(history.problem.normal * (1.0 + grown) * (coefficient + law.static_excess))
