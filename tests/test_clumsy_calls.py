@@ -91,7 +91,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: ss.simulate(SLAB, 10), "problem must be a Problem, a scenario, or the name of one, got ElasticSlab"),
     (lambda: ss.simulate("fig6_slab"), "did you mean 'fig6-slab'?"),
     (lambda: ss.simulate("missing.toml"), "missing.toml: no such file"),
-    (lambda: ss.load_scenario("slab"), "`stickslip new slab > slab.toml` writes one to start from"),
+    (lambda: ss.load_scenario("slab.toml"), "`stickslip new slab > slab.toml` writes one to start from"),
     (lambda: ss.open_solution("missing.nc"), "missing.nc: no such file"),
     # results
     (lambda: run().slip(100), "times must lie between 0 and the end of the run, 5 s"),

@@ -86,9 +86,7 @@ def complete_result(incomplete: str) -> list[str]:
 
 
 def _complete_files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
-    from stickslip.problem.scenarios import library
-
-    return [name for name in library.names() if name.startswith(incomplete)] + _files(incomplete, suffixes)
+    return complete_template(incomplete) + _files(incomplete, suffixes)
 
 
 def _files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:

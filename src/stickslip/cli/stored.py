@@ -67,7 +67,7 @@ def _beside(path: Path) -> Mapping[str, Any]:
 def _not_results(path: Path) -> str:
     from stickslip.problem.scenarios import library
 
-    if not path.exists() and str(path) not in library.names():
+    if not path.exists() and str(path) not in (*library.STARTERS, *library.names()):
         return f"{path}: no such file"
     cure = f"`stickslip run {path}` runs a scenario, `stickslip check {path}` explains it"
     return f"{path}: not a file of results, whose names end in .nc, .csv, .parquet or .zarr; {cure}"

@@ -45,7 +45,7 @@ RATES = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0]
 TABLES = {
     "record": "time (s),friction,load_point (mm)\n" + "".join(f"{i},{0.6 + 0.001 * (i % 3)},{0.01 * i:.3f}\n" for i in range(60)),
     "points": "v (mm/s),mu\n" + "".join(f"{v},{0.3 + 0.3 / (1 + v):.4f}\n" for v in RATES),
-    "comma": "v (mm/s);mu\n" + "".join(f"{v};{0.3 + 0.3 / (1 + v):.4f}\n".replace(".", ",") for v in RATES),
+    "comma": "v (mm/s);mu\n" + "".join(f"{v},000;1,{600 - v}\n" for v in range(1, 7)),
     "shop": "Sliding velocity [ft/min]\tCOF\n" + "".join(f"{v}\t{0.3 + 0.3 / (1 + v):.4f}\n" for v in RATES),
     "empty": "",
     "headings": "time (s),friction,load_point (mm)\n",

@@ -216,7 +216,8 @@ def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.Monke
     (tmp_path / "sub" / "deep.toml").touch()
     monkeypatch.chdir(tmp_path)
     assert complete_scenario("fig6-") == [name for name in library.names() if name.startswith("fig6-")] + ["fig6-mine.toml"]
-    assert complete_scenario("s") == [name for name in library.names() if name.startswith("s")] + ["sub/"]
+    named = [name for name in (*library.STARTERS, *library.names()) if name.startswith("s")]
+    assert complete_scenario("s") == [*named, "sub/"]
     assert complete_scenario("sub/") == ["sub/deep.toml"]
     assert complete_scenario("nowhere/") == []
 

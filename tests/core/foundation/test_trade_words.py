@@ -105,7 +105,7 @@ WORDS = [
     (["new", "slab", "--law", "coulomb"], "did you mean '--friction'?"),
     (["new", "slab", "--loading", "steps"], "did you mean '--pull'?"),
     (["run", "newmark"], "did you mean 'sliding-block-shaken'?"),
-    (["run", "block"], "`stickslip new block > block.toml` writes one to start from"),
+    (["run", "block.toml"], "`stickslip new block > block.toml` writes one to start from"),
     (["new", "axis"], "did you mean 'reversing-axis'"),
     (["new", "slab", "--friction", "rsf"], "did you mean 'rate-and-state'?"),
     (["new", "slab", "--friction", "stribeck"], "did you mean 'exponential-stribeck' or 'power-stribeck'?"),

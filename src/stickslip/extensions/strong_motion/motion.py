@@ -19,7 +19,7 @@ from stickslip.extensions.strong_motion.record import record
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import GRAVITY
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest, warn
 from stickslip.foundation.show import number
 from stickslip.problem import Accelerogram, LoadingHistory, PiecewiseLinear
 
@@ -28,6 +28,10 @@ UNEVEN = 1e-6
 BASELINES = (None, "mean")
 """What may be taken off a record: nothing, or its mean."""
 KINDS = "a file, a record of ss.loading or another history of acceleration with even times"
+NO_ACCELERATION = ("give the file of the acceleration", "no column 'ground_acceleration'")
+"""What is said of a file that may be sound, and holds a velocity, a displacement or something else."""
+OURS = b"# stickslip "
+"""The first bytes of tables of results."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,11 +70,23 @@ class GroundMotion:
 def motions_of(given: Any, who: str, component: str | None = None, baseline: str | None = None) -> list[GroundMotion]:
     """Return the ground motions of one record, of several, or of a mapping of records by name.
 
-    Raises InputError, which begins with `who` and names the record, for the first that cannot be used.
+    A file of a folder that holds no acceleration is left out with a warning, unless all are such, and so are results of ours, in
+    silence. Raises InputError, which begins with `who` and names the record, for the first other one that cannot be used.
     """
     if baseline not in BASELINES:
         raise InputError(f"{who}: baseline must be None or 'mean', got {shown(baseline)}; {nearest(str(baseline), ('mean',))}")
-    found = [_read(name, one, who, component) for name, one in _named(given, who)]
+    found, left = list[GroundMotion](), list[InputError]()
+    for name, one, is_inside in _named(given, who):
+        try:
+            found.append(_read(name, one, who, component))
+        except InputError as error:
+            if not is_inside or not any(words in str(error) for words in NO_ACCELERATION):
+                raise  # a record with a fault is not left out in a statistic
+            left.append(error)
+    if left and not found:
+        raise left[0]
+    for error in left:
+        warn(f"{error}: left out")
     if not found:
         raise InputError(f"{who}: needs at least one record: {KINDS}")
     twice = [name for name, count in Counter(one.name for one in found).items() if count > 1]
@@ -80,30 +96,39 @@ def motions_of(given: Any, who: str, component: str | None = None, baseline: str
     return [replace(one, acceleration=one.acceleration - one.acceleration.mean()) for one in found]
 
 
-def _named(given: Any, who: str) -> Iterator[tuple[str, Any]]:
-    """Yield records, each with its name, "" if it has none."""
+def _named(given: Any, who: str) -> Iterator[tuple[str, Any, bool]]:
+    """Yield records, each with its name, "" if it has none, and whether it lies in a folder that was given."""
     if isinstance(given, Mapping):
-        yield from ((str(name), one) for name, one in given.items())
+        yield from ((str(name), one, False) for name, one in given.items())
     elif isinstance(given, str | os.PathLike):
         yield from _files(Path(given), who)
     elif isinstance(given, LoadingHistory | GroundMotion) or is_trace(given):
-        yield "", given
+        yield "", given, False
     elif isinstance(given, Iterable) and not isinstance(given, np.ndarray | bytes):
         for one in given:
-            yield from _files(Path(one), who) if isinstance(one, str | os.PathLike) else [("", one)]
+            yield from _files(Path(one), who) if isinstance(one, str | os.PathLike) else [("", one, False)]
     else:
         raise InputError(f"{who}: records must be {KINDS}, or several, got {shown(given)}")
 
 
-def _files(path: Path, who: str) -> Iterator[tuple[str, Any]]:
-    """Yield a file, or all files of a folder in the order of their names."""
+def _files(path: Path, who: str) -> Iterator[tuple[str, Any, bool]]:
+    """Yield a file, or all files of a folder in the order of their names, but for tables that were written here."""
     if not path.is_dir():
-        yield path.name, path
+        yield path.name, path, False
         return
-    inside = sorted(one for one in path.iterdir() if one.is_file() and not one.name.startswith("."))
+    inside = sorted(one for one in path.iterdir() if one.is_file() and not one.name.startswith(".") and not _is_ours(one))
     if not inside:
         raise InputError(f"{who}: the folder {path} has no file")
-    yield from ((one.name, one) for one in inside)
+    yield from ((one.name, one, True) for one in inside)
+
+
+def _is_ours(path: Path) -> bool:
+    """Return True for a table that `slide` has written."""
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(OURS)) == OURS
+    except OSError:  # which is told when it is read
+        return False
 
 
 def _read(name: str, given: Any, who: str, component: str | None) -> GroundMotion:

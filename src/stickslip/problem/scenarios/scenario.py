@@ -163,13 +163,17 @@ def doubts(problem: Problem) -> list[str]:
 
 @for_users
 def load_scenario(path_or_name: str | Path) -> Scenario:
-    """Read a scenario file (TOML), or a bundled scenario by its name.
+    """Read a scenario file (TOML), or a bundled scenario or a starter by its name; a file of the name of a starter comes first.
 
     Raises InputError if the scenario cannot be read or is not valid. The message is one line with the file, the place in it, what
     was found and what is allowed.
     """
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)
+    if isinstance(path_or_name, str) and path_or_name in library.STARTERS and not Path(path_or_name).exists():
+        from stickslip.problem.scenarios.templates import template  # which makes use of scenarios
+
+        return read_scenario(template(path_or_name), path_or_name)
     path = as_path("load_scenario: path_or_name", path_or_name, "the name of a file or of a bundled scenario")
     file = str(path) if str(path).isprintable() else shown(str(path))
     return read_scenario(read_text(path, file), file, name=path.stem, folder=path.parent)
