@@ -22,7 +22,7 @@ from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity
 from stickslip.problem.loading_history import VARYING, InParts, LoadingHistory, Segment, Tone, fixed
 
 WAY = "m or rad"
-"""Unit of a position: m of what slides, rad of what turns."""
+"""Unit of a position: m where something slides, rad where something turns."""
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def _strength(history: History, at: Positions, grown: Floats) -> Floats:
 
 
 def _over(history: History, at: Positions, strength: Floats) -> float:
-    """Return how far loads exceed strengths at most, in the directions in which slip may go."""
+    """Return how far loads exceed strengths at most, in the directions that slip may take."""
     problem, excess = history.problem, history.excess(at)
     forward = excess - (strength - problem.strength)
     backward = -excess - (strength + problem.strength)
