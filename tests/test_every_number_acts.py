@@ -56,6 +56,7 @@ def geared(problem: ss.Problem) -> ss.Problem:
 
 PROBLEMS: dict[str, ss.Problem] = {
     "block": loaded(ss.SpringBlock(3e5, 4e8, STRESS, 1e6)),
+    "loop": loaded(ss.PositionLoop(3e5, 4e8, STRESS, 2e9, 1e7, 1e6, 0.01)),
     "disc": loaded(ss.RotatingBlock(300.0, 800.0, 15e3, 5.0), RATE),
     "block, pulled to and fro": loaded(ss.SpringBlock(3e5, 4e8, STRESS), pull_rate=SWING),
     "slab": loaded(SLAB),
@@ -121,6 +122,7 @@ BESIDE: dict[str, Callable[[ss.Problem], ss.Problem]] = {
     "friction.memory": to_and_fro,
     "friction.slip.memory": to_and_fro,
     "friction.counts": to_and_fro,
+    "body.stop_behind": lambda problem: replace(problem, pull_rate=-80.0),
 }
 """Entries that act only beside something else, which is added to the problem here."""
 STRAIN_ONLY = "body.p_wave_speed"

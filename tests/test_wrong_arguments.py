@@ -155,7 +155,7 @@ def test_files_are_named_by_texts_or_paths(tmp_path: Path) -> None:
 
 NO_BODY = (
     "Problem: body must be SpringBlock or ElasticSlab or SoilColumn or LayeredSlab or TwoSlabs or RotatingBlock or BlockOnBelt or"
-    " BlockOnDisc or TorsionalString or SectionedString, got "
+    " BlockOnDisc or PositionLoop or RotaryLoop or TorsionalString or SectionedString, got "
 )
 NO_LAW = 'Problem: friction must be a friction law, a function of u and v, or a text such as "0.3 + 0.5/(1 + v)", got '
 EXCESS = "Problem: initial_excess must be "
@@ -216,7 +216,7 @@ def test_studies_of_one_run_are_checked() -> None:
             "ElasticSlab: unknown argument 'wavespeed'; did you mean 'wave_speed'?",
         ),
         (lambda: ss.ElasticSlab(2800, 3500), "ElasticSlab: thickness, normal_stress must be given"),  # type: ignore[call-arg]
-        (lambda: ss.SpringBlock(*range(1, 9)), "SpringBlock: takes at most"),  # type: ignore[arg-type]
+        (lambda: ss.SpringBlock(*range(1, 12)), "SpringBlock: takes at most"),  # type: ignore[arg-type]
         (
             lambda: ss.friction.Coulomb(statik=0.8, dynamic=0.3),  # type: ignore[call-arg]
             "Coulomb: unknown argument 'statik'; did you mean 'static'?",

@@ -133,7 +133,7 @@ class ProblemFields(CheckedArguments):
         for name in MAY_VARY:
             value, declared = getattr(self, name), in_units(quantities_of(type(self))[name], own_units(self.body.load_unit))
             if isinstance(value, LoadingHistory):
-                if value.unit not in (VARYING, declared.unit):
+                if value.unit != VARYING and declared.unit not in value.unit.split(" or "):
                     unit = "numbers without unit" if declared.unit == "1" else declared.unit
                     raise InputError(f"Problem: {name} must be in {unit}, got a history of values in {value.unit}")
             elif name in HISTORIES_ONLY and value is not None:

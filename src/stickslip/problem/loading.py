@@ -22,7 +22,7 @@ from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity
 from stickslip.problem.loading_history import VARYING, InParts, LoadingHistory, Segment, Tone, fixed
 
 WAY = "m or rad"
-"""Unit of a position: m of what slides, rad of what turns."""
+"""Unit of a position: m where something slides, rad where something turns."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,7 @@ class Waypoints(InParts):
     kind = "waypoints"
     example: ClassVar = {"times": [0.0, "1 s", "3 s"], "positions": [0.0, 0.01, 0.01]}
     columns: ClassVar = {"time": "times", "position": "positions"}
+    unit = " or ".join(f"{one}/s" for one in WAY.split(" or "))
 
     times: Numbers = declare(
         NumberSeries(Quantity("s", "times of the positions", at_least=0), ascending=True, least=2, most=MOST_SAMPLES)

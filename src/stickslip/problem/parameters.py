@@ -29,7 +29,7 @@ from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import BodyOnCharacteristics
 from stickslip.problem.fields import HISTORIES_ONLY, ProblemFields
-from stickslip.problem.loading import VARYING, LoadingHistory
+from stickslip.problem.loading import VARYING, WAY, LoadingHistory
 
 PRESSING = "pressing"
 """Name of the normal load with the initial load, the far stress and a force in proportion: pressed harder, a contact is as near to
@@ -138,7 +138,7 @@ def entries_of(problem: ProblemFields) -> Iterator[ProblemEntry]:
         if name not in HISTORIES_ONLY:
             yield ProblemEntry(f"loading.{name}", declared, None if varies else value)
         if varies:
-            yield from _entries_in(value, f"loading.{name}", {VARYING: declared.unit})
+            yield from _entries_in(value, f"loading.{name}", {VARYING: declared.unit, WAY: declared.unit.removesuffix("/s")})
     yield from _of_start(problem)
 
 

@@ -15,6 +15,8 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.scenarios import Scenario, read_scenario
+from stickslip.run.check.examine import examine
 
 GAINS: dict[str, float] = {
     "mass": 1.0,
@@ -256,3 +258,40 @@ def test_a_loop_on_ground_that_moves_feels_its_inertia() -> None:
 def test_a_loop_is_refused_on_a_belt() -> None:
     with pytest.raises(ss.InputError, match="PositionLoop: a loop is not followed on a belt"):
         ss.PositionLoop(**GAINS).on_belt()
+
+
+def said(given: ss.Problem) -> Any:
+    return examine(Scenario(given, 10.0))
+
+
+def test_check_says_whether_it_hunts_and_why() -> None:
+    assert any("static friction exceeds that of sliding by 1 N" in text for text in said(problem()).chosen)
+    assert any(text.startswith("does not hunt") for text in said(problem(0.3, 0.3)).chosen)
+    falling = replace(problem(), friction=ss.friction.ExponentialStribeck(0.4, 0.3, 0.05, 1.0))
+    assert any(text.startswith("may hunt") for text in said(falling).chosen)
+    assert any("the reference jumps by 0.1 m at the start" in text for text in said(problem()).chosen)
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_steady_motion_and_rest_are_stable_by_rouths_condition(share: float) -> None:
+    law = ss.friction.ExponentialStribeck(0.4, 0.3, 0.05, 1.0)
+    rate = 0.03
+    slope = -10.0 * 0.1 / 0.05 * np.exp(-rate / 0.05)
+    body = GAINS | {"derivative_gain": 40.0}
+    edge = (40.0 + 0.5 + slope) * 100.0 / 1.0
+    given = ss.Problem(ss.PositionLoop(**body | {"integral_gain": share * edge}), law, pull_rate=rate, initial_rate="steady")
+    found = said(given)
+    (steady,) = found.steady.slidings
+    roots = np.roots([1.0, 40.5 + slope, 100.0, share * edge])
+    assert steady.stable == (share < 1.0) == bool((roots.real < 0.0).all())
+    assert steady.growth == pytest.approx(roots.real.max(), rel=1e-6)
+    first = (40.0 + 0.5 - 20.0) * 100.0
+    held = replace(given, body=replace(given.body, integral_gain=share * first), initial_rate=None, initial_load=0.0)  # type: ignore[type-var]
+    assert said(held).stability.startswith("stable in slip" if share < 1.0 else "oscillates with growing amplitude in slip")
+
+
+def test_a_scenario_of_positions_is_read_and_written() -> None:
+    given = Scenario(problem(pull_rate=TURNING, stop_ahead=0.2, restitution=0.5), 3.0)
+    again = read_scenario(given.to_toml(), "again")
+    assert again == given
+    assert again.problem.pull_rate.kind == "waypoints"  # type: ignore[union-attr]

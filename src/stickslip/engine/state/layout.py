@@ -78,8 +78,8 @@ class Params(MemoryRecord):
     first_lag: float  # m: how far slip is behind the reference of a position loop at the start
     pull_tone: float  # m/s: amplitude of a tone in the rate of that reference
     pull_phase: float  # rad: phase of that tone at t = 0
-    stop_ahead: float  # m: slip at which a hard stop bars slip forwards (`contact_step.hard_stop`); inf without one
-    stop_behind: float  # m: slip at which another bars slip backwards; -inf without one
+    stop_ahead: float  # m: slip where a hard stop bars the way forwards (`contact_step.hard_stop`); inf without one
+    stop_behind: float  # m: slip where another bars the way backwards; -inf without one
     restitution: float  # 1: share of the slip rate with which a body bounces off a stop
     least_bounce: float  # m/s: a body that would bounce off at no more than this rate stays at the stop
     slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab

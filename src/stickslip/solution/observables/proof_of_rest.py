@@ -64,7 +64,7 @@ def _strength(history: History, law: Any, at: Positions, grown: Floats) -> Float
 
 
 def _over(history: History, at: Positions, strength: Strengths) -> float:
-    """Return how far loads exceed strengths at most, in the directions in which slip may go."""
+    """Return how far loads exceed strengths at most, in the directions that slip may take."""
     problem, excess = history.problem, history.excess(at)
     forward = excess - (strength.forward - problem.strength)
     backward = -excess - (strength.backward + problem.strength)

@@ -13,7 +13,7 @@ DENSITY = 'must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3"'
 STRESS = 'must be a number in Pa or a text with a unit such as "10 Pa"'
 CREEP = "must be 0 (no leaps over creep, every round trip is run) or at most 0.01"
 BODIES = (
-    "block-on-belt, block-on-disc, elastic-slab, layered-slab, rotating-block, sectioned-string and 4 more:"
+    "block-on-belt, block-on-disc, elastic-slab, layered-slab, position-loop, rotary-loop and 6 more:"
     " `stickslip new --list` lists all"
 )
 FAR = "far_stress and far_stress_rate need a slab with a finite driver_impedance"
@@ -27,7 +27,7 @@ CASES = [
     ('"10 km"', "1979-05-27", f"[body] thickness {LENGTH}, got 1979-05-27"),
     ("thickness =", "thicknes =", "[body] thicknes is unknown; did you mean 'thickness'?"),
     ("thickness =", "duration =", "[body] duration is unknown; it belongs in [run]"),
-    ("thickness =", "mass =", "[body] mass is unknown; it is a key of block-on-belt, spring-block, and not of this kind"),
+    ("thickness =", "mass =", "[body] mass is unknown; it is a key of block-on-belt, position-loop, spring-block, and not of this kind"),
     ("thickness =", '"th ick\\n" =', "[body] 'th ick\\n' is unknown; did you mean 'thickness'?"),
     ('thickness = "10 km"\n', "", "[body] thickness is missing: thickness h, in m, above 0"),
     ('kind = "elastic-slab"', 'kind = "elastic-slap"', "[body] kind 'elastic-slap' is unknown; did you mean 'elastic-slab'?"),

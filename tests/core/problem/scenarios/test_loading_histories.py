@@ -14,8 +14,10 @@ from stickslip.run.check.examine import examine
 from tests.core.problem.scenarios.texts import GOOD
 
 RATE = 'a number in m/s or a text with a unit such as "10 m/s"'
-TABLE = "what varies in time is a table [loading.pull_rate] of a kind: piecewise-linear, sinusoidal, steps, hold-and-slide"
-SORTED = "hold-and-slide, piecewise-linear, sinusoidal, steps"
+TABLE = (
+    "what varies in time is a table [loading.pull_rate] of a kind: piecewise-linear, sinusoidal, steps, waypoints, hold-and-slide"
+)
+SORTED = "hold-and-slide, piecewise-linear, sinusoidal, steps, waypoints"
 FAR = "[loading] far_stress and far_stress_rate need a slab with a finite driver_impedance"
 STEPS = '[loading.{}]\nkind = "steps"\ntimes = [0, 1]\nvalues = [1, 2]\n'
 PULL = STEPS.format("pull_rate")
@@ -40,7 +42,13 @@ def test_every_kind_is_read_and_written(kind: str, body: str) -> None:
     assert again.to_toml() == scenario.to_toml()
 
 
-@pytest.mark.parametrize("kind", HISTORIES)
+def test_positions_are_no_far_stress() -> None:
+    ways = '[loading.far_stress]\nkind = "waypoints"\ntimes = [0, 1]\npositions = [0, 1]\n'
+    with pytest.raises(InputError, match="far_stress must be in Pa, got a history of values in m/s or rad/s"):
+        read_scenario(document(ways, driver="driver_impedance = 1e6"), "far")
+
+
+@pytest.mark.parametrize("kind", [kind for kind in HISTORIES if kind != "waypoints"])
 def test_every_kind_can_be_a_far_stress(kind: str) -> None:
     plain = read_scenario(template("slab", pull=kind), "starter").to_toml()
     text = plain.replace("loading.pull_rate", "loading.far_stress").replace("driver_impedance = inf", "driver_impedance = 1e6")

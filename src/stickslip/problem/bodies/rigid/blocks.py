@@ -12,7 +12,7 @@ from stickslip.foundation.quantities import declare, quantity
 from stickslip.foundation.show import Declared
 from stickslip.problem.bodies.contract import BodyOnCharacteristics
 from stickslip.problem.bodies.rigid.on_spring import OnSpring
-from stickslip.problem.bodies.rigid.stops import AHEAD, BEHIND, RESTITUTION, check_with_stops
+from stickslip.problem.bodies.rigid.stops import RESTITUTION, STOP_AHEAD, STOP_BEHIND, check_with_stops
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class SpringBlock(Declared, OnSpring):
     driver_damping: Number = quantity(
         "N s/m", "damping of a dashpot beside the spring, between block and driver", at_least=0, default=0.0
     )
-    stop_ahead: Number = quantity("m", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
-    stop_behind: Number = quantity("m", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_ahead: Number = quantity("m", STOP_AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("m", STOP_BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
@@ -70,8 +70,8 @@ class RotatingBlock(Declared, OnSpring):
     driver_damping: Number = quantity(
         "N m s", "damping of a dashpot beside the spring, between body and driver", at_least=0, default=0.0
     )
-    stop_ahead: Number = quantity("rad", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
-    stop_behind: Number = quantity("rad", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_ahead: Number = quantity("rad", STOP_AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("rad", STOP_BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:

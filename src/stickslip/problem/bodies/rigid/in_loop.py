@@ -14,9 +14,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import declare, quantity
 from stickslip.foundation.show import Declared
 from stickslip.problem.bodies.rigid.on_spring import OnSpring
-from stickslip.problem.bodies.rigid.stops import AHEAD, BEHIND, RESTITUTION, check_with_stops
+from stickslip.problem.bodies.rigid.stops import RESTITUTION, STOP_AHEAD, STOP_BEHIND, check_with_stops
 
-PERIODS = 1000.0
+PERIODS_IN_TRIP = 1000.0
 """A rest winds up the integral, so that no two periods are alike and none is leapt over: a round trip has this many of them (1)."""
 
 
@@ -58,7 +58,7 @@ class InLoop(OnSpring):
     def round_trip_time(self) -> float:
         """The length of a round trip of its history (s)."""
         found: float = super().round_trip_time  # type: ignore[misc] # a property of every body on a spring
-        return found * (PERIODS if anywhere(self.integral_gain) else 1.0)
+        return found * (PERIODS_IN_TRIP if anywhere(self.integral_gain) else 1.0)
 
     @property
     def longest_way(self) -> float:
@@ -81,7 +81,7 @@ class PositionLoop(Declared, InLoop):
     """A rigid axis that a controller holds at a reference: m dv/dt + damping v + tau = kp (r - u) + kd (r' - v) + q.
 
     q' = ki (r - u) is the integral, r' is the pull rate, and slip u is the position. Loads and tractions are forces, in N. Without
-    an integral gain it is a `SpringBlock`. At the start the lag r - u is `reference_step`, and q is the initial load.
+    an integral gain it is a `SpringBlock`. At the start the lag r - u is `reference_step`, and q the initial load less kd r'.
     """
 
     kind: ClassVar[str] = "position-loop"
@@ -96,8 +96,8 @@ class PositionLoop(Declared, InLoop):
     derivative_gain: Number = quantity("N s/m", "derivative gain kd, force per rate of the lag", at_least=0, default=0.0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
     reference_step: Number = quantity("m", "step of the reference at the start, which the load follows", default=0.0)
-    stop_ahead: Number = quantity("m", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
-    stop_behind: Number = quantity("m", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_ahead: Number = quantity("m", STOP_AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("m", STOP_BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
@@ -114,7 +114,7 @@ class RotaryLoop(Declared, InLoop):
     """A rigid axis that turns, which a controller holds at a reference: I dv/dt + damping v + tau = kp (r - u) + kd (r' - v) + q.
 
     q' = ki (r - u) is the integral, r' is the pull rate, and slip u is the angle (rad). Loads and tractions are torques, in N m.
-    Without an integral gain it is a `RotatingBlock`. At the start the lag r - u is `reference_step`, and q is the initial load.
+    Without an integral gain it is a `RotatingBlock`. At the start the lag is `reference_step`, and q the initial load less kd r'.
     """
 
     kind: ClassVar[str] = "rotary-loop"
@@ -129,8 +129,8 @@ class RotaryLoop(Declared, InLoop):
     derivative_gain: Number = quantity("N m s", "derivative gain kd, torque per rate of the lag", at_least=0, default=0.0)
     damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
     reference_step: Number = quantity("rad", "step of the reference at the start, which the load follows", default=0.0)
-    stop_ahead: Number = quantity("rad", AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
-    stop_behind: Number = quantity("rad", BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_ahead: Number = quantity("rad", STOP_AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
+    stop_behind: Number = quantity("rad", STOP_BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:

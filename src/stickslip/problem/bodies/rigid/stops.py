@@ -12,7 +12,7 @@ from stickslip.problem.bodies.contract import check_body
 
 RESTITUTION = Quantity("1", "share of the slip rate with which it bounces off a stop", at_least=0, at_most=1)
 """The number of a body that bounces off stops; at 0 it rests at them."""
-AHEAD, BEHIND = (f"way from the start to a hard stop {side}; none: there is no stop" for side in ("ahead", "behind"))
+STOP_AHEAD, STOP_BEHIND = (f"way from the start to a hard stop {side}; none: there is no stop" for side in ("ahead", "behind"))
 """What the fields for ways to stops mean."""
 
 

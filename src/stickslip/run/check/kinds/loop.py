@@ -30,7 +30,7 @@ class CheckOfLoop(CheckOfRigid):
             found.insert(2, Fact("largest ki", largest, f"{per_way}/s", f"(damping + kd) kp / m: {edge}"))
         if problem.friction.sticks:
             held = problem.strength / body.stiffness
-            found.append(Fact("strength / kp", held, unit("slip"), "lag at which the proportional gain alone leaves rest"))
+            found.append(Fact("strength / kp", held, unit("slip"), "lag that ends rest by the proportional gain alone"))
         return found
 
     def chosen(self, problem: Problem) -> Iterator[str]:
