@@ -240,11 +240,6 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
-    def has_nothing_to_pull(self) -> bool:
-        """True if a pull rate moves nothing: there is no spring, no dashpot, and no belt."""
-        ...
-
-    @property
     def inflow_delay(self) -> float:
         """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
         ...
@@ -325,7 +320,6 @@ class WithNormalLoad:
 
     takes_force: ClassVar[bool] = False
     is_free: bool = False
-    has_nothing_to_pull: bool = False
 
     @property
     def normal_field(self: Body) -> str:
