@@ -18,7 +18,7 @@ from stickslip.foundation.names import KINDS_OF_BODY, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.bodies import BODIES, MACHINE, BodyOnCharacteristics
+from stickslip.problem.bodies import BODIES, BodyOnCharacteristics
 from stickslip.problem.loading import VARYING, LoadingHistory, Sinusoidal
 from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
@@ -115,9 +115,9 @@ class ProblemFields(CheckedArguments):
             object.__setattr__(self, "normal_load", begun_with_body(self.normal_load, self.body))
         self._check_varying()
         if self.force is not None or self.body.is_free:
-            from stickslip.problem.force import check_force
+            from stickslip.problem.rare_checks import check_force
 
-            check_force(self.body, self.force, self.pull_rate, self.ground)
+            check_force(self)
         steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
         check_fields(self, but=(*self._varying, *steady), units=own_units(self.body.load_unit))
         self._check_kind()
@@ -166,9 +166,13 @@ class ProblemFields(CheckedArguments):
             other = next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
             check_belt(type(self.body).__name__, self.ground, other)
         elif self.ground is not None:
-            self._check_ground(self.ground)
+            from stickslip.problem.rare_checks import check_ground
+
+            check_ground(self.body, self.ground, [getattr(self, name) for name in self._varying if name in PULLS])
         if self.driver_reflection is not None:
-            self._check_driver(self.driver_reflection)
+            from stickslip.problem.rare_checks import check_reflection
+
+            check_reflection(self.body, self.driver_reflection, SAME_DRIVER)
 
     def _check_two_drivers(self) -> None:
         """Raise InputError if a loading varies that acts through two drivers, and does not come through both alike."""
@@ -180,44 +184,7 @@ class ProblemFields(CheckedArguments):
                 f"leave driver_impedance, other_driver_impedance and driver_reflection out, or give {varying[0]} a number"
             )
 
-    def _check_ground(self, ground: Ground) -> None:
-        if not self.body.has_ground:
-            why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
-            raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
-        if self.body.time_to_driver:
-            self._refuse_machine("Problem: ground that moves is not followed under", "leave the ground at rest")
-        if self.body.has_inertia and ground.velocity_jumps:
-            unit = self.unit_of("ground_velocity")
-            why = f"an infinite force on a mass: join the points (piecewise-linear), beginning with 0 {unit}"
-            raise InputError(f"Problem: ground_velocity jumps, which is {why}, or give ground_acceleration")
-        pulls = [getattr(self, name) for name in self._varying if name not in HISTORIES_ONLY]
-        if ground.tone.amplitude != 0.0 and any(one.tone.amplitude != 0.0 for one in pulls):
-            raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
-
-    def _refuse_machine(self, what: str, cure: str) -> None:
-        if self.body.has_machine:
-            raise InputError(f"{what} {MACHINE}: set driver_inertia and driver_integral_gain to 0, or {cure}")
-
-    def _check_driver(self, history: LoadingHistory) -> None:
-        body, name = self.body, "Problem: driver_reflection"
-        if not body.driver_may_change:
-            why = "whose top stays free" if body.time_to_driver else "which sends no waves to its driver"
-            why += ": give a slab or a string"
-            raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
-        self._refuse_machine(f"{name} is not followed for", "leave driver_reflection out")
-        if not history.is_stepped:
-            raise InputError(f"{name} must change by steps, got {history.kind}: give kind steps")
-        if history.lowest < RIGID or history.highest > 1.0:
-            beyond = history.lowest if history.lowest < RIGID else history.highest
-            raise InputError(f"{name} must lie between -1 (rigid) and 1 (set free), got {beyond:g}")
-        if abs(history.first - body.reflection) > SAME_DRIVER:
-            own = f"but that of the body's driver_impedance is {body.reflection:.9g}: make them equal"
-            raise InputError(f"{name} begins with {history.first:.9g}, {own}")
-
     def _check_load(self) -> None:
-        given = self.initial_load is not None or self.initial_excess is not None
-        if self.body.is_free and not given and str(self.initial_rate) != STEADY:
-            object.__setattr__(self, "initial_load", 0.0)  # no spring holds a load before the force acts
         steady = self.has_initial_rate and not self.given_states
         if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
             found = "neither" if self.initial_load is None else "both"
@@ -373,9 +340,7 @@ class ProblemFields(CheckedArguments):
     @cached_property
     def force_in_time(self) -> LoadingHistory | None:
         """The force on the body (N, or N m) as a history; None if there is none."""
-        if self.force is None or isinstance(self.force, LoadingHistory):
-            return self.force
-        return Sinusoidal(self.force, amplitude=0.0, period=1.0)
+        return Sinusoidal(self.force, amplitude=0.0, period=1.0) if isinstance(self.force, float) else self.force
 
     @cached_property
     def ground(self) -> Ground | None:

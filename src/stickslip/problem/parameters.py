@@ -32,9 +32,7 @@ from stickslip.problem.fields import HISTORIES_ONLY, ProblemFields
 from stickslip.problem.loading import VARYING, WAY, LoadingHistory
 
 PRESSING = "pressing"
-"""Name of the normal load with the initial load, the far stress and a force in proportion: pressed harder, a contact is as near to
-slip.
-"""
+"""Name of the normal load with initial load, far stress and force in proportion: pressed harder, a contact is as near to slip."""
 LOADING = ("pull_rate", "far_stress", "far_stress_rate", "force", *HISTORIES_ONLY)
 """Fields of a problem that are in the table [loading] of a scenario."""
 STRESSES = ("far_stress", "far_stress_rate", "force")

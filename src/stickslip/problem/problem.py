@@ -26,10 +26,6 @@ DAY = 86_400.0
 """A day, s: what is called a round trip of a block that never sticks."""
 
 
-PARTS_IN_A_TRIP = 16.0
-"""How many first parts (1) of a loading are in a round trip of a body without a spring: few, so that their times are resolved."""
-
-
 class Problem(ShownAsTable, ProblemFields):
     """Everything that a run needs except its duration and its tolerance.
 
@@ -220,20 +216,16 @@ class Problem(ShownAsTable, ProblemFields):
         A block that never sticks may creep for years without a rest to leap over, so its round trip lasts a day. It is no longer
         than the period of a tone in its loading, nor than LONGEST_ROUND_TRIP of its own periods, because times in a longer one
         would not resolve them; but it never is shorter than one period of the block.
-
-        A body without a spring has no period, and its round trip is a measure of time alone: the period of a tone, else a few of
-        the first parts of its loading, else twice the time in which friction of mu = 1 stops it, as far as there are such.
         """
         if self.friction.sticks and not self.body.is_free:
             return self.body.round_trip_time
         varying = [getattr(self, name) for name in self._varying]
         swing = min((2.0 * math.pi / one.tone.frequency for one in varying if one.tone.amplitude != 0.0), default=math.inf)
-        if not self.friction.sticks or swing < math.inf:
+        if not self.body.is_free:
             return self.body.turn_time(min(DAY, swing))
-        if breaks := [one.parts[0] for one in varying if len(one.parts[0]) > 1]:
-            return float(min(min(PARTS_IN_A_TRIP * one[1], one[-1]) for one in breaks))
-        stops = 2.0 * self.body.inertia * abs(self.rate) / self.normal
-        return stops or self.body.round_trip_time
+        from stickslip.problem.free_turn import turn_of_free  # few bodies have no spring
+
+        return turn_of_free(self, self.rate, swing if self.friction.sticks else min(DAY, swing))
 
     @property
     def parameters(self) -> Parameters[Self]:

@@ -240,11 +240,6 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
-    def has_nothing_to_pull(self) -> bool:
-        """True if a pull rate moves nothing: there is no spring, no dashpot, and no belt."""
-        ...
-
-    @property
     def has_stops(self) -> bool:
         """True if a hard stop bars its way, ahead or behind."""
         ...
@@ -331,7 +326,6 @@ class WithNormalLoad:
 
     takes_force: ClassVar[bool] = False
     is_free: bool = False
-    has_nothing_to_pull: bool = False
 
     @property
     def normal_field(self: Body) -> str:

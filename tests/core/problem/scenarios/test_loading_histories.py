@@ -71,7 +71,7 @@ def test_every_kind_can_be_a_far_stress(kind: str) -> None:
         (
             document('[loading]\nfar_stress_rate = {kind = "steps"}\n'),
             '[loading] far_stress_rate must be a number in Pa/s or a text with a unit such as "10 Pa/s", '
-            "got {'kind': 'steps'}; only pull_rate or far_stress or normal_load or ground_velocity or ground_acceleration"
+            "got {'kind': 'steps'}; only pull_rate or far_stress or force or normal_load or ground_velocity or ground_acceleration"
             " or driver_reflection may vary"
             " in time",
         ),

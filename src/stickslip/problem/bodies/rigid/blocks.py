@@ -29,7 +29,7 @@ class SpringBlock(Declared, OnSpring):
     load_unit: ClassVar[str] = "N"
     mass_field: ClassVar[str] = "mass"
 
-    mass: Number = quantity("kg", "mass m", above=0)
+    mass: Number = quantity("kg", "mass m; for a spring without mass a small one: check says how small", above=0)
     stiffness: Number = quantity("N/m", "stiffness K of the spring; 0: there is none", at_least=0)
     normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
@@ -41,7 +41,7 @@ class SpringBlock(Declared, OnSpring):
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_rigid(self)
+        check_with_stops(self)
 
     @property
     def inertia(self) -> float:
@@ -63,7 +63,7 @@ class RotatingBlock(Declared, OnSpring):
     load_unit: ClassVar[str] = "N m"
     mass_field: ClassVar[str] = "inertia"
 
-    inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
+    inertia: Number = quantity("kg m^2", "moment of inertia I; for a spring without one a small one: check says how small", above=0)
     stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring; 0: there is none", at_least=0)
     normal_torque: Number = quantity("N m", "torque of friction if mu is 1: clamping force times effective radius", above=0)
     damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
@@ -75,18 +75,7 @@ class RotatingBlock(Declared, OnSpring):
     restitution: Number = declare(RESTITUTION, 0.0)
 
     def __post_init__(self) -> None:
-        check_rigid(self)
-
-
-def check_rigid(body: BodyOnCharacteristics) -> None:
-    """Check the fields of a rigid body; say what stands for one without mass."""
-    try:
-        check_with_stops(body)
-    except InputError as error:
-        if f": {body.mass_field} must be greater than 0" not in str(error):
-            raise
-        hint = "a spring without mass moves as one with a small mass does: `stickslip check` says how small is enough"
-        raise InputError(f"{error}: {hint}") from None
+        check_with_stops(self)
 
 
 def as_block(body: BodyOnCharacteristics) -> SpringBlock:

@@ -1,8 +1,4 @@
-"""Rigid bodies on a spring, or on none: what follows from their numbers.
-
-A body of stiffness 0 is free. It has no period, and nothing comes back to it: its round trip is a measure of time alone, in which a
-history is written. It lasts FREE_TURN, unless its problem knows a time of its own (`Problem.round_trip_time`).
-"""
+"""Rigid bodies on a spring, or on none (stiffness 0: `problem.free_turn`): what follows from their numbers."""
 
 from __future__ import annotations
 
@@ -25,6 +21,8 @@ FREE_TURN = 1.0
 
 class BodyOnSpring(BodyOnCharacteristics, Protocol):
     """A rigid body on a spring."""
+
+    belted: ClassVar[str]
 
     @property
     def driver_damping(self) -> float:
@@ -87,11 +85,6 @@ class OnSpring(WithOneDriver):
         return not anywhere(self.stiffness)
 
     @property
-    def has_nothing_to_pull(self: BodyOnSpring) -> bool:  # type: ignore[override] # as for the one before
-        """True if there is no spring, no dashpot, and no belt."""
-        return self.driver_kind == "free" and not self.has_belt
-
-    @property
     def has_stops(self: BodyOnSpring) -> bool:  # type: ignore[override]
         """True if a hard stop bars its way."""
         return anywhere(self.stop_ahead < math.inf) or anywhere(self.stop_behind < math.inf)
@@ -108,14 +101,8 @@ class OnSpring(WithOneDriver):
 
     @property
     def round_trip_time(self: BodyOnCharacteristics) -> float:
-        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back.
-
-        That of a body without a spring is FREE_TURN.
-        """
-        if isinstance(self.stiffness, np.ndarray):
-            with np.errstate(divide="ignore"):
-                return np.where(self.stiffness > 0.0, 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness), FREE_TURN)
-        found: float = 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness) if self.stiffness else FREE_TURN
+        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back."""
+        found: float = 2.0 * math.pi * np.sqrt(self.inertia / _swung(self))
         return found
 
     @property
@@ -145,13 +132,8 @@ class OnSpring(WithOneDriver):
         raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
 
     def turn_time(self: BodyOnCharacteristics, longest: float) -> float:
-        """Return the period (s), or as long a time as is asked for if it never rests, up to LONGEST_ROUND_TRIP periods.
-
-        Of a body without a spring it is the time asked for.
-        """
+        """Return the period (s), or as long a time as is asked for if it never rests, up to LONGEST_ROUND_TRIP periods."""
         period = self.round_trip_time
-        if self.is_free:
-            return longest
         return max(period, min(LONGEST_ROUND_TRIP * period, longest))
 
     def meets_driver_at_first(self, excess: Any, rate: Any, shear: Any) -> Any:
@@ -165,13 +147,15 @@ class OnSpring(WithOneDriver):
 
     @property
     def impedance(self: BodyOnCharacteristics) -> float:
-        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance: the mass times 2 pi over the period.
+        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance; a scale, and not 0, of a body without a spring."""
+        found: float = np.sqrt(_swung(self) * self.inertia)
+        return found
 
-        It is a scale, of slip rates above all, and not 0 of a free body: that has 2 pi over its round trip in it.
-        """
-        found: float = np.sqrt(self.stiffness * self.inertia)
-        free = 2.0 * math.pi * self.inertia / FREE_TURN
-        return np.where(self.stiffness > 0.0, found, free) if isinstance(self.stiffness, np.ndarray) else found or free
+
+def _swung(body: BodyOnCharacteristics) -> Any:
+    """Return the stiffness (N/m), or that of a spring on which a body without one would swing in FREE_TURN."""
+    stiffness, free = body.stiffness, body.inertia * (2.0 * math.pi / FREE_TURN) ** 2
+    return np.where(stiffness > 0.0, stiffness, free) if isinstance(stiffness, np.ndarray) else stiffness or free
 
 
 def as_on_spring(body: BodyOnCharacteristics) -> BodyOnSpring:

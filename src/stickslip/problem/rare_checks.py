@@ -1,0 +1,78 @@
+"""The checks of what few problems have: ground that moves, a driver that changes, a force, a body without a spring."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from stickslip.foundation.constants import RIGID
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
+from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics
+from stickslip.problem.bodies.rigid.on_spring import as_on_spring
+from stickslip.problem.ground import Ground
+from stickslip.problem.loading_history import LoadingHistory
+
+
+def check_ground(body: BodyOnCharacteristics, ground: Ground, pulls: list[LoadingHistory]) -> None:
+    """Raise InputError for ground that moves as it may not under a body, with pulls or far stresses that vary."""
+    if not body.has_ground:
+        why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
+        raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
+    if body.time_to_driver:
+        _refuse_machine(body, "Problem: ground that moves is not followed under", "leave the ground at rest")
+    if body.has_inertia and ground.velocity_jumps:
+        unit = si_unit("slip_rate", body.load_unit)
+        why = f"an infinite force on a mass: join the points (piecewise-linear), beginning with 0 {unit}"
+        raise InputError(f"Problem: ground_velocity jumps, which is {why}, or give ground_acceleration")
+    if ground.tone.amplitude != 0.0 and any(map(_swings, pulls)):
+        raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
+
+
+def check_reflection(body: BodyOnCharacteristics, history: LoadingHistory, rounding: float) -> None:
+    """Raise InputError for a driver that changes as it may not behind a body; `rounding` is that of coefficients (1)."""
+    name = "Problem: driver_reflection"
+    if not body.driver_may_change:
+        why = "whose top stays free" if body.time_to_driver else "which sends no waves to its driver"
+        why += ": give a slab or a string"
+        raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
+    _refuse_machine(body, f"{name} is not followed for", "leave driver_reflection out")
+    if not history.is_stepped:
+        raise InputError(f"{name} must change by steps, got {history.kind}: give kind steps")
+    if history.lowest < RIGID or history.highest > 1.0:
+        beyond = history.lowest if history.lowest < RIGID else history.highest
+        raise InputError(f"{name} must lie between -1 (rigid) and 1 (set free), got {beyond:g}")
+    if abs(history.first - body.reflection) > rounding:
+        own = f"but that of the body's driver_impedance is {body.reflection:.9g}: make them equal"
+        raise InputError(f"{name} begins with {history.first:.9g}, {own}")
+
+
+def _refuse_machine(body: BodyOnCharacteristics, what: str, cure: str) -> None:
+    if body.has_machine:
+        raise InputError(f"{what} {MACHINE}: set driver_inertia and driver_integral_gain to 0, or {cure}")
+
+
+def check_force(problem: Any) -> None:
+    """Check the fields of a problem with a force, or with a body without a spring, whose load at the start is 0 by default.
+
+    Raises InputError for a body that is not rigid, for a second sinusoid, and for a pull of what has no spring.
+    """
+    body, force, pull, ground = problem.body, problem.force, problem.pull_rate, problem.ground
+    name = type(body).__name__
+    if force is not None and not body.takes_force:
+        end = "far_stress acts on it through a driver of finite driver_impedance"
+        raise InputError(f"Problem: force acts on a rigid body, and a {name} is none: {end}")
+    if _swings(force) and (_swings(pull) or (ground is not None and ground.tone.amplitude != 0.0)):
+        other = "pull_rate" if _swings(pull) else "the ground"
+        raise InputError(f"Problem: only one of force and {other} may have a sinusoid: give the other as straight lines")
+    if not body.is_free:
+        return
+    rigid = as_on_spring(body)
+    if not rigid.driver_damping and body.kind != rigid.belted and pull != 0.0:
+        cure = "leave it out, give body.stiffness, push with force, or set the body on a belt (.on_belt())"
+        raise InputError(f"Problem: pull_rate has nothing to pull: a {name} of stiffness 0 has no spring: {cure}")
+    if problem.initial_load is None and problem.initial_excess is None and not isinstance(problem.initial_rate, str):
+        object.__setattr__(problem, "initial_load", 0.0)  # no spring holds a load before the force acts
+
+
+def _swings(given: Any) -> bool:
+    return isinstance(given, LoadingHistory) and given.tone.amplitude != 0.0
