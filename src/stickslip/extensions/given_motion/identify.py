@@ -42,7 +42,7 @@ class FrictionModel:
     free: Sequence[LawNumber]
     start: Mapping[str, Any]
     scales: Floats
-    """A change of a number by which friction changes noticeably; of numbers that are searched by their logarithm 1."""
+    """A change of each number that changes friction noticeably; 1 for numbers that are searched by their logarithm."""
 
     def values(self, x: Floats) -> dict[str, float]:
         """Return the free numbers by name from what is searched."""
@@ -104,7 +104,7 @@ def identify(
     seed: int = 0,
     columns: Mapping[str, str | int] | None = None,
 ) -> Identification:
-    """Find the numbers of a friction law with which it follows friction that was measured along measured motion.
+    """Find the numbers of a friction law, so that it follows friction that was measured along measured motion.
 
     Only friction's states are solved along the measured slip rate: nothing has to be known of mass, springs or a controller, if
     friction itself was measured (inertia taken off a motor's torque beforehand).
@@ -114,8 +114,8 @@ def identify(
     law : FrictionLaw, Scenario, str or Path
         The law with starting values, or a scenario or its file, whose [friction] it is; a [motion] then gives the normal load.
     record : str, Path, DataFrame or mapping
-        Columns with headings and units: time; slip_rate (or velocity), or slip (a position), from which its rate is found by a
-        smooth curve; shear_force, shear_stress, torque, or friction (a coefficient); normal_force, normal_stress or normal_torque
+        Columns with headings and units: time; slip_rate (or velocity), or slip (a position; its rate is that of a
+        smooth curve); shear_force, shear_stress, torque, or friction (a coefficient); normal_force, normal_stress or normal_torque
         if it was measured. Slip may go in both directions, with friction of its sign.
     free : str or list of str
         The numbers to find: those of the law by name, "record.offset" (a constant of the sensor), and "record.viscous" (friction
@@ -230,7 +230,7 @@ _NORMALS = {"N": ("normal_force",), "Pa": ("normal_stress",), "N m": ("normal_to
 
 
 def _scale(one: LawNumber, fastest: float, scatter: float) -> float:
-    """Return a change of a number by which friction changes noticeably."""
+    """Return a change of a number that changes friction noticeably."""
     if one.name == "record.offset":
         return scatter
     if one.name == "record.viscous":

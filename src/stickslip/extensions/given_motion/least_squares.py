@@ -179,7 +179,7 @@ def _effects(model: FrictionModel, x: Floats, rate: MeasuredRate, seed: int) -> 
 
 
 def _memory(left: Floats, effects: Floats) -> float:
-    """Return by which factor the variance of means of the sensor's noise exceeds that of white noise.
+    """Return how many times the variance of means of the sensor's noise is that of white noise.
 
     It is 1 plus twice the correlations of residuals, less what the noise of the motion explains of them.
     """
