@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from stickslip.extensions.given_motion.identify import FrictionModel
+from stickslip.extensions.given_motion.friction_model import FrictionModel
 from stickslip.extensions.given_motion.law_numbers import with_numbers
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.arrays import Floats

@@ -11,7 +11,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.extensions.given_motion.identify import FrictionModel
+    from stickslip.extensions.given_motion.friction_model import FrictionModel
     from stickslip.extensions.given_motion.measured_rate import MeasuredRate
 
 NUDGE = 1e-4
