@@ -52,7 +52,7 @@ class At(NamedTuple):
     """Bounds of the errors of the states."""
 
 
-class Bounds(NamedTuple):
+class TractionBounds(NamedTuple):
     """The lowest and the highest traction that can be at each time: the same where friction says what it is."""
 
     lowest: Floats
@@ -198,7 +198,7 @@ class FrictionAlongMotion:
         value = self.motion.facing[found.interval] * self._coefficients(found)
         return np.where(self._is_open(found), np.nan, value)
 
-    def bounds(self, t: ArrayLike) -> Bounds:
+    def bounds(self, t: ArrayLike) -> TractionBounds:
         """Return the lowest and the highest traction (N, Pa or N m) that is possible at times (s).
 
         They differ at rest under a law that sticks: minus and plus static friction. Elsewhere both are the traction.
@@ -208,7 +208,7 @@ class FrictionAlongMotion:
         at_rest = self.moved.friction.coefficient(found.counted, 0.0 * found.rate, one_argument(found.states))
         static = found.load * (at_rest + self.moved.friction.static_excess)
         is_open = self._is_open(found)
-        return Bounds(np.where(is_open, -static, traction), np.where(is_open, static, traction))
+        return TractionBounds(np.where(is_open, -static, traction), np.where(is_open, static, traction))
 
     def error(self, t: ArrayLike) -> Floats:
         """Return a bound of the error of the traction (N, Pa or N m) at times (s).

@@ -20,7 +20,7 @@ SAME_STATE = 1e-9
 STIFF = 1e3
 """A state that settles within less than this share of the run, as a number of times in it, makes its equation stiff."""
 MOST_NAMED = 5
-"""Name at most so many times at which the slip rate passes through 0."""
+"""Name at most so many times when slip turns back."""
 
 
 class MotionExamination:
@@ -56,7 +56,7 @@ class MotionExamination:
         moved, motion = self.moved, self.motion
         yield "start", self._start()
         rests = motion.direction == 0.0
-        yield "motion", f"{len(motion.start)} intervals in which it is smooth and goes one way, {int(rests.sum())} of them at rest"
+        yield "motion", f"{len(motion.start)} intervals where it is smooth and goes one way, {int(rests.sum())} of them at rest"
         turns = motion.start[1:][motion.facing[1:] != motion.facing[:-1]]
         if len(turns):
             times = ", ".join(brief(float(one), "s") for one in turns[:MOST_NAMED])

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from stickslip.extensions.given_motion.identify import FrictionModel
+from stickslip.extensions.given_motion.friction_model import FrictionModel
 from stickslip.extensions.given_motion.law_numbers import with_numbers
+from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.show import brief, with_uncertainty
@@ -35,7 +36,7 @@ REMEMBERED = 2.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Identification:
+class Identification(CheckedArguments):
     """The numbers of a friction law that follow from friction along measured motion."""
 
     model: FrictionModel

@@ -102,7 +102,7 @@ class MotionInIntervals:
         found[:, at.LASTING] = self.lasting
         found[:, at.RATE], found[:, at.RATE_SLOPE] = way * rate.value, way * rate.slope
         found[:, at.RATE_TONE], found[:, at.RATE_FREQUENCY], found[:, at.RATE_PHASE] = way * rate.tone, rate.frequency, rate.phase
-        found[:, at.COUNTED], found[:, at.COUNTS] = self.counted, self.counts * way
+        found[:, at.COUNTED], found[:, at.COUNTED_PER_SLIP] = self.counted, self.counts * way
         found[:, at.LOAD], found[:, at.LOAD_SLOPE] = load.value, load.slope
         found[:, at.LOAD_TONE], found[:, at.LOAD_FREQUENCY], found[:, at.LOAD_PHASE] = load.tone, load.frequency, load.phase
         every = np.arange(len(self.start) - 1)

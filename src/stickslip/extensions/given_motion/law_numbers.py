@@ -23,7 +23,7 @@ class LawNumber:
 
 
 def numbers_of(law: FrictionLaw, prefix: str = "friction") -> Iterator[LawNumber]:
-    """Yield the numbers of a law, those of laws of which it is made, and the values of a typed one."""
+    """Yield the numbers of a law, those of its parts, and the values of a typed one."""
     for name, (declared, _) in fields_of(type(law)).items():
         value = getattr(law, name)
         if isinstance(declared, LawField):

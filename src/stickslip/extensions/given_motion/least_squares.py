@@ -11,7 +11,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.extensions.given_motion.identify import FrictionModel
+    from stickslip.extensions.given_motion.friction_model import FrictionModel
     from stickslip.extensions.given_motion.measured_rate import MeasuredRate
 
 NUDGE = 1e-4
@@ -179,7 +179,7 @@ def _effects(model: FrictionModel, x: Floats, rate: MeasuredRate, seed: int) -> 
 
 
 def _memory(left: Floats, effects: Floats) -> float:
-    """Return by which factor the variance of means of the sensor's noise exceeds that of white noise.
+    """Return how many times the variance of means of the sensor's noise is that of white noise.
 
     It is 1 plus twice the correlations of residuals, less what the noise of the motion explains of them.
     """

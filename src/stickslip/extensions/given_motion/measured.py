@@ -27,7 +27,7 @@ OF_NORMAL = {"normal_force": "N", "normal_stress": "Pa", "normal_torque": "N m"}
 """Columns of the normal load, each with its unit."""
 MOTIONS = {"slip_rate": False, "slip": False, "slip_rotation": True, "slip_angle": True}
 """Columns of motion; True for those of a contact that turns."""
-COLUMNS = (
+RECORD_COLUMNS = (
     *("time", *OF_LOAD, *OF_NORMAL, *MOTIONS),
     *("shear_force_deviation", "shear_stress_deviation", "torque_deviation", "friction_deviation"),
     *("slip_rate_deviation", "slip_deviation"),
@@ -64,7 +64,7 @@ class MeasuredMotion:
             raise InputError(f"{where}: no column of friction: {', '.join(OF_LOAD)}")
         motion = next((name for name in MOTIONS if name in found), None)
         if motion is None:
-            raise InputError(f"{where}: no column of motion: slip_rate, or slip, from which its rate is found")
+            raise InputError(f"{where}: no column of motion: slip_rate, or slip")
         normal = next((name for name in OF_NORMAL if name in found), None)
         if normal and OF_LOAD[force] not in ("", OF_NORMAL[normal]):
             raise InputError(f"{where}: {force} is in {OF_LOAD[force]}, and {normal} in {OF_NORMAL[normal]}")
@@ -100,10 +100,10 @@ class MeasuredMotion:
 
 def _table(source: Any, named: NamedColumns) -> Table:
     if isinstance(source, Mapping) or hasattr(source, "columns"):
-        return read_mapping(source, COLUMNS, "record", raw=True, named=named)
+        return read_mapping(source, RECORD_COLUMNS, "record", raw=True, named=named)
     if not isinstance(source, str | os.PathLike):
         raise InputError(
             f"identify: record must be a CSV file, a DataFrame, or a mapping of headings to numbers, got {shown(source)}"
         )
     path: Path = as_path("identify: record", source)
-    return read_file(path, COLUMNS, (LARGEST_RECORD, MOST_ROWS), raw=True, named=named)
+    return read_file(path, RECORD_COLUMNS, (LARGEST_RECORD, MOST_ROWS), raw=True, named=named)

@@ -18,7 +18,7 @@ MEDIAN_OF_NORMAL = 0.6744897501960817
 MOST_FOLLOWED = 0.9
 """A curve does not follow more than this share (1) of the samples: too little would be left to tell noise by."""
 DRAWS_OF_TRACE = 12
-"""Draws from which it is estimated how many of the samples a smooth curve follows."""
+"""Draws for an estimate of how many of the samples a smooth curve follows."""
 
 
 @dataclass(frozen=True, eq=False)

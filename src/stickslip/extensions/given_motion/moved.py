@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.foundation.arguments import shown
+from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, WithUnit, to_number, unit_among
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import quantity
@@ -25,7 +25,7 @@ STEADY_START = "steady"
 
 
 @dataclass(frozen=True, eq=False)
-class MovedContact:
+class MovedContact(CheckedArguments):
     """A contact whose slip rate and normal load are given in time: friction's states and its traction are what is sought.
 
     `stickslip.simulate(moved, duration)` solves it. There is no body and no spring: whatever moves the contact is as strong as it

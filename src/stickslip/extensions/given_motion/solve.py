@@ -73,17 +73,17 @@ def solve_states(
     table = motion.table()
     now[at.TRIED] = float(table[0, at.LASTING])
     found: list[tuple[Floats, Floats, Floats]] = []
-    while now[at.PLACE] < len(table):
+    while now[at.AT_INTERVAL] < len(table):
         kept = at.KeptSteps(np.zeros((AT_ONCE, 3)), np.zeros((AT_ONCE, many * POINTS)), np.zeros((AT_ONCE, many)))
         count = at.follow_states(table, compiled, now, kept, AT_ONCE)
         if count < 0 or len(found) * AT_ONCE > MOST_STEPS:
-            place = int(now[at.PLACE])
+            place = int(now[at.AT_INTERVAL])
             time = float(motion.start[place] + now[at.SINCE])
             why = "no step is short enough" if count < 0 else f"{MOST_STEPS} steps are not enough"
             raise InputError(f"simulate: the state of {type(law).__name__} cannot be followed beyond {time:.9g} s: {why}")
         found.append((kept.steps[:count], kept.states[:count], kept.errors[:count]))
-        if report is not None and now[at.PLACE] < len(table):
-            report(float(motion.start[int(now[at.PLACE])] + now[at.SINCE]))
+        if report is not None and now[at.AT_INTERVAL] < len(table):
+            report(float(motion.start[int(now[at.AT_INTERVAL])] + now[at.SINCE]))
     steps, states, errors = (np.concatenate(parts) for parts in zip(*found, strict=True))
     del formula  # its machine code is needed up to here
     return StepsOfStates(steps[:, 0].astype(np.int64), steps[:, 1], steps[:, 2], states.reshape(-1, many, POINTS), _finite(errors))

@@ -31,7 +31,7 @@ UNUSED_BODIES: dict[str, dict[str, Any]] = {
 """The [body] of a scenario that has none, by the unit of its normal load: nothing but that unit is used of it."""
 STILL: dict[str, Any] = {"pull_rate": 0.0}
 """The [loading] of a scenario with a [motion]."""
-STARTS = ("initial_state", "initial_second_state")
+STATE_KEYS = ("initial_state", "initial_second_state")
 NO_LOADING = "[motion] gives slip rate and normal load: leave [loading] out"
 NO_START = "[motion] has initial_slip and initial_state: leave [initial] out"
 NEVER_STICKS_AT = 1.0
@@ -70,7 +70,7 @@ class MotionTable(ScenarioTable):
         return {
             "slip_rate": Key(_read_varying, meaning="slip rate, a number or a history [motion.slip_rate]"),
             "normal_load": Key(_read_varying, None, "normal load, a number or a history [motion.normal_load]"),
-            **{name: Key(lambda value, place: value, None, "state of the law at the start, or 'steady'") for name in STARTS},
+            **{name: Key(lambda value, place: value, None, "state of the law at the start, or 'steady'") for name in STATE_KEYS},
         }
 
     @override
@@ -89,7 +89,7 @@ class MotionTable(ScenarioTable):
         law = read_part("friction", dict(raw["friction"]), source._replace(load_unit=unit if "body" not in raw else ""))
         start: dict[str, Any] = {"load": 0.0}
         if not law.sticks and not law.reverses:
-            given = (motion.get(name) for name in STARTS)
+            given = (motion.get(name) for name in STATE_KEYS)
             names = ("state", "second_state")[: len(law.states)]
             start |= {name: NEVER_STICKS_AT if one in (None, "steady") else one for name, one in zip(names, given, strict=False)}
         return {"body": UNUSED_BODIES[unit]} | dict(raw) | {"loading": STILL, "initial": start}
@@ -113,7 +113,7 @@ class MotionTable(ScenarioTable):
         yield from super().paths(value, problem)
         unit = problem.load_unit
         numbers = {"slip_rate": ("rad/s" if unit == "N m" else "m/s", "slip rate"), "normal_load": (unit, "normal load")}
-        units = dict(zip(STARTS, ((one.unit, one.meaning) for one in problem.friction.states), strict=False))
+        units = dict(zip(STATE_KEYS, ((one.unit, one.meaning) for one in problem.friction.states), strict=False))
         for name, (of, meaning) in (numbers | units).items():
             given = getattr(value, name)
             if given is not None and not isinstance(given, LoadingHistory):
@@ -134,7 +134,7 @@ def moved_of(value: GivenMotion, problem: Problem) -> MovedContact:
 
     unit = problem.load_unit
     load = f"{problem.body.normal_load!r} {unit}" if value.normal_load is None else with_unit_of_load(value.normal_load, unit)
-    starts = {name: getattr(value, name) for name in STARTS}
+    starts = {name: getattr(value, name) for name in STATE_KEYS}
     return MovedContact(problem.friction, value.slip_rate, load, value.initial_slip, **starts)
 
 

@@ -24,15 +24,15 @@ from stickslip.foundation.arrays import Floats, Floats1, Floats2
 from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead, call_state_value, floats, room_for
 
-LASTING, RATE, RATE_SLOPE, RATE_TONE, RATE_FREQUENCY, RATE_PHASE, COUNTED, COUNTS = range(8)
+LASTING, RATE, RATE_SLOPE, RATE_TONE, RATE_FREQUENCY, RATE_PHASE, COUNTED, COUNTED_PER_SLIP = range(8)
 """Columns of an interval: how long it lasts (s), |slip rate| (m/s) as a straight line with a sinusoid, and the slip that the law
 counts at its start (m), with the change of that per slip."""
 LOAD, LOAD_SLOPE, LOAD_TONE, LOAD_FREQUENCY, LOAD_PHASE, LOAD_GROWTH, TURNS_BACK = range(8, 15)
-"""Further columns: the normal load as a straight line with a sinusoid, the logarithm (1) by which it jumps at the start, and 1 if
+"""Further columns: the normal load as a straight line with a sinusoid, the logarithm (1) of its jump at the start, and 1 if
 slip changes its direction there."""
 INTERVAL_COLUMNS = 15
 """Number of columns of an interval."""
-PLACE, SINCE, TRIED = range(3)
+AT_INTERVAL, SINCE, TRIED = range(3)
 """Numbers that say where a run is: the interval, the time (s) since its start, and the length (s) of the next step."""
 LEVELS = 3
 """Numbers before the states, in what says where a run is; behind them are the bounds of their errors and their largest sizes."""
@@ -48,7 +48,7 @@ BEHIND_STATES = 12
 """Place of the bounds of a step, behind the states at its points."""
 ITERATIONS = 12
 """Newton's iterations in a step (1), after which it is tried again with a shorter length."""
-SETTLED = 1e-2
+SETTLED_SHARE = 1e-2
 """Newton's iteration ends when the next change is below this share (1) of the allowed error, or is rounding."""
 ROUNDING_OF_STATE = 1e-15
 """A change of a state by this share (1) of its size is rounding."""
@@ -104,7 +104,7 @@ def rate_of_change(at: Floats1, law: LawWithStates, time: float, states: Floats,
     tone, frequency, phase = at[RATE_TONE], at[RATE_FREQUENCY], at[RATE_PHASE]
     rate = max(0.0, at[RATE] + at[RATE_SLOPE] * time + wave_of(tone, frequency, phase, time))
     moved = time * (at[RATE] + 0.5 * at[RATE_SLOPE] * time) + wave_integrated(tone, frequency, phase, time)
-    slip = at[COUNTED] + at[COUNTS] * moved
+    slip = at[COUNTED] + at[COUNTED_PER_SLIP] * moved
     call_state_value(law.state_at, floats(law.constants_at), slip, rate, states, answer)
     if law.coupling != 0.0:
         tone, frequency, phase = at[LOAD_TONE], at[LOAD_FREQUENCY], at[LOAD_PHASE]
@@ -190,7 +190,7 @@ def settled(at: Floats1, law: LawWithStates, now: Floats1, length: float, w: Flo
         share = corrected(at, law, now, length, w)
         if not share < math.inf:
             return False
-        if share <= SETTLED or (share < 1.0 and share >= 0.5 * before):  # the second: it moves by rounding
+        if share <= SETTLED_SHARE or (share < 1.0 and share >= 0.5 * before):  # the second: it moves by rounding
             return True
         before = share
     return False
@@ -290,7 +290,7 @@ def follow_states(intervals: Floats2, law: LawWithStates, now: Floats1, kept: Ke
     """Take at most `most` steps from where `now` is; return their number, FAILED_STEP if no step is short enough."""
     w, many = room_for(ROOM_OF_STEP), law.states
     for count in range(most):
-        place = int(now[PLACE])
+        place = int(now[AT_INTERVAL])
         if place >= len(intervals):
             return count
         at = intervals[place]
@@ -299,7 +299,7 @@ def follow_states(intervals: Floats2, law: LawWithStates, now: Floats1, kept: Ke
         length = take_step(at, law, now, w)
         if length == 0.0:
             return FAILED_STEP
-        kept.steps[count, 0], kept.steps[count, 1], kept.steps[count, 2] = now[PLACE], now[SINCE], length
+        kept.steps[count, 0], kept.steps[count, 1], kept.steps[count, 2] = now[AT_INTERVAL], now[SINCE], length
         now[SINCE] += length
         for n in range(many):
             for i in range(POINTS):
@@ -309,5 +309,5 @@ def follow_states(intervals: Floats2, law: LawWithStates, now: Floats1, kept: Ke
             largest = now[LEVELS + 2 * MOST_STATES_HERE + n]
             now[LEVELS + 2 * MOST_STATES_HERE + n] = max(largest, abs(now[LEVELS + n]))
         if now[SINCE] >= at[LASTING] * (1.0 - SHORTEST_STEP):
-            now[PLACE], now[SINCE] = now[PLACE] + 1.0, 0.0
+            now[AT_INTERVAL], now[SINCE] = now[AT_INTERVAL] + 1.0, 0.0
     return most
