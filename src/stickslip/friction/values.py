@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
@@ -14,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
 from stickslip.foundation.arrays import anywhere, at_least, everywhere, shared
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import NumberSeries, Quantity, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract, one_argument
 from stickslip.friction.formula.bounds import bounds
@@ -231,3 +233,21 @@ class LawValues(LawContract):
                 sizes = [abs(number) for number in (value if isinstance(value, tuple) else (value,)) if number]
                 scales += [size if item.unit == "m/s" else 1.0 / size for size in sizes]
         return tuple(scales)
+
+
+def as_number(value: Any) -> float:
+    """Return a number as a float, and nan for anything else."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def stated_range(law: LawValues) -> tuple[float, float]:
+    """Return the bounds of a law's friction coefficient, as it states them. Raises InputError if they are not two numbers."""
+    given: Any = law.range()
+    if not (isinstance(given, tuple | list) and len(given) == 2 and as_number(given[0]) <= as_number(given[1])):
+        raise InputError(
+            f"{type(law).__name__}: range() must return two numbers, a lower and an upper bound of mu, got {str(given)[:60]}"
+        )
+    return as_number(given[0]), as_number(given[1])

@@ -16,7 +16,7 @@ from stickslip.foundation.quantities import quantity
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import StateVariable
 from stickslip.friction.formula.functions import exp, sin, tanh
-from stickslip.friction.law import check_statements
+from stickslip.friction.statements import check_statements
 from stickslip.problem.scenarios.scenario import read_scenario
 from stickslip.problem.scenarios.templates import template
 from tests.limits import examples

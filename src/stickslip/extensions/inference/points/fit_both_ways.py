@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from stickslip.extensions.inference.points.fit_one_way import EXACT_POINTS, Fit, fit_one_way
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import with_uncertainty
-from stickslip.friction import BothWays
+from stickslip.friction import LAWS
 from stickslip.friction.custom.points import Points
 
 DECISIVE = 10.0
@@ -56,7 +56,7 @@ def fit_both_ways(points: Points, law: Any, start: Mapping[str, Any] | None, fix
     notes = [f"{differs}: one law for both directions has a BIC that is {one.bic - bic:.1f} higher"]
     named = [(way, fit) for way, fit in zip(("forward", "backward"), fits, strict=True)]
     return FitBothWays(
-        law=BothWays(forward=ahead.law, backward=behind.law),
+        law=LAWS["both-ways"](forward=ahead.law, backward=behind.law),
         points=replace(ahead.points, backward=behind.points),
         residual=residual,
         values={f"{way}.{name}": value for way, fit in named for name, value in fit.values.items()},
