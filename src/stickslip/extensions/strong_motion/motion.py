@@ -85,8 +85,8 @@ def motions_of(given: Any, who: str, component: str | None = None, baseline: str
             left.append(error)
     if left and not found:
         raise left[0]
-    for error in left:
-        warn(f"{error}: left out")
+    for fault in left:
+        warn(f"{fault}: left out")
     if not found:
         raise InputError(f"{who}: needs at least one record: {KINDS}")
     twice = [name for name, count in Counter(one.name for one in found).items() if count > 1]
@@ -127,7 +127,7 @@ def _is_ours(path: Path) -> bool:
     try:
         with path.open("rb") as stream:
             return stream.read(len(OURS)) == OURS
-    except OSError:  # which is told when it is read
+    except OSError:
         return False
 
 

@@ -43,7 +43,7 @@ class NumberRows(NamedTuple):
 
 
 def number_rows(lines: Sequence[str]) -> list[NumberRows]:
-    """Return the groups of lines in which more than half of the cells are numbers, in the order of the text."""
+    """Return the groups of lines whose cells are mostly numbers, in the order of the text."""
     found, above = list[NumberRows](), list[int]()
     for i, line in enumerate(lines):
         if not line.strip():
