@@ -77,7 +77,7 @@ def _as_numbers(line: str) -> tuple[str, list[str]]:
 
 
 def _has_commas(cells: Sequence[str]) -> bool:
-    """Return True if cells have decimal commas, at least one of which does not group thousands, and no decimal points."""
+    """Return True if cells have commas, one or more that cannot group thousands, and no decimal points."""
     commas = [cell for cell in cells if COMMA_NUMBER.fullmatch(cell)]
     return not all(map(_THOUSANDS.fullmatch, commas)) and not any("." in cell and is_number(cell) for cell in cells)
 
