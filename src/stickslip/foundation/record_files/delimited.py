@@ -106,7 +106,7 @@ def _head_at(lines: Sequence[str], i: int, rows: NumberRows) -> _Head:
 
 
 def is_words(cells: Sequence[str]) -> bool:
-    """Return True for cells of which none is a number, and some are more than marks of missing ones."""
+    """Return True for cells without a number, some of them more than marks of missing ones."""
     words = [cell.strip().casefold() for cell in cells]
     return not any(map(is_number, words)) and not set(words) <= set(NO_NUMBER)
 

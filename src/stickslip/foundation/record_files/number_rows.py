@@ -43,7 +43,7 @@ class NumberRows(NamedTuple):
 
 
 def number_rows(lines: Sequence[str]) -> list[NumberRows]:
-    """Return the groups of lines in which more than half of the cells are numbers, in the order of the text."""
+    """Return the groups of lines whose cells are mostly numbers, in the order of the text."""
     found, above = list[NumberRows](), list[int]()
     for i, line in enumerate(lines):
         if not line.strip():
@@ -77,7 +77,7 @@ def _as_numbers(line: str) -> tuple[str, list[str]]:
 
 
 def _has_commas(cells: Sequence[str]) -> bool:
-    """Return True if cells have decimal commas, at least one of which does not group thousands, and no decimal points."""
+    """Return True if cells have commas, one or more that cannot group thousands, and no decimal points."""
     commas = [cell for cell in cells if COMMA_NUMBER.fullmatch(cell)]
     return not all(map(_THOUSANDS.fullmatch, commas)) and not any("." in cell and is_number(cell) for cell in cells)
 

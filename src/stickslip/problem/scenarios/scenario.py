@@ -171,7 +171,7 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)
     if isinstance(path_or_name, str) and path_or_name in library.STARTERS and not Path(path_or_name).exists():
-        from stickslip.problem.scenarios.templates import template  # which makes use of scenarios
+        from stickslip.problem.scenarios.templates import template
 
         return read_scenario(template(path_or_name), path_or_name)
     path = as_path("load_scenario: path_or_name", path_or_name, "the name of a file or of a bundled scenario")
