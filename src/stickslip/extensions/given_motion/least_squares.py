@@ -73,7 +73,7 @@ def derivatives(model: FrictionModel, x: Floats, limits: tuple[Floats, Floats]) 
     """Return the derivatives of friction by what is searched, shape (samples, numbers), by differences within the limits."""
     found = []
     for i in range(len(x)):
-        ends: list[tuple[float, Floats]] = []
+        ends: list[tuple[float, int, Floats]] = []
         for sign in (-1.0, 1.0):
             y = x.copy()
             y[i] = np.clip(x[i] + sign * NUDGE, limits[0][i], limits[1][i])
@@ -119,7 +119,7 @@ def _best_start(model: FrictionModel, limits: tuple[Floats, Floats], starts: int
     for _ in range(1, starts):
         spread = draw.uniform(-np.log(SPREAD), np.log(SPREAD), len(begin))
         tried.append(np.clip(begin + spread, limits[0] + 1e-9, limits[1] - 1e-9))
-    ends: list[tuple[float, Floats]] = []
+    ends: list[tuple[float, int, Floats]] = []
     for one in tried:
         try:
             end = _solved(model, one, weight, limits)

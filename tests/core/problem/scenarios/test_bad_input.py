@@ -27,7 +27,10 @@ CASES = [
     ('"10 km"', "1979-05-27", f"[body] thickness {LENGTH}, got 1979-05-27"),
     ("thickness =", "thicknes =", "[body] thicknes is unknown; did you mean 'thickness'?"),
     ("thickness =", "duration =", "[body] duration is unknown; it belongs in [run]"),
-    ("thickness =", "mass =", "[body] mass is unknown; it is a key of block-on-belt, position-loop, spring-block, and not of this"),
+    (
+        "thickness =", "mass =",
+        "[body] mass is unknown; it is a key of block-on-belt, position-loop, spring-block, and not of this kind",
+    ),
     ("thickness =", '"th ick\\n" =', "[body] 'th ick\\n' is unknown; did you mean 'thickness'?"),
     ('thickness = "10 km"\n', "", "[body] thickness is missing: thickness h, in m, above 0"),
     ('kind = "elastic-slab"', 'kind = "elastic-slap"', "[body] kind 'elastic-slap' is unknown; did you mean 'elastic-slab'?"),
