@@ -40,6 +40,7 @@ ROCK = ss.friction.RateAndState(0.6, 0.010, 0.014, "1 mm", normal_stress_couplin
 NEVER = Steps([0.0, 0.5 * R], [-1.0, -1.0])
 FREED = Steps([0.0, 0.8 * R], [-1.0, 0.5])
 SWING = Sinusoidal(0.1, 0.05, 3.0 * R, 0.3)
+RISES = PiecewiseLinear([0.0, 1.0], [0.0, 0.9 * STRESS])
 PRESSED = Steps([0.0, 0.7 * R], [STRESS, 0.8 * STRESS])
 
 
@@ -59,6 +60,7 @@ PROBLEMS: dict[str, ss.Problem] = {
     "loop": loaded(ss.PositionLoop(3e5, 4e8, STRESS, 2e9, 1e7, 1e6, 0.01)),
     "disc": loaded(ss.RotatingBlock(300.0, 800.0, 15e3, 5.0), RATE),
     "block, pulled to and fro": loaded(ss.SpringBlock(3e5, 4e8, STRESS), pull_rate=SWING),
+    "block without a spring": ss.Problem(ss.SpringBlock(3e5, 0.0, STRESS, 1e6), COULOMB, force=RISES, initial_load=1e4),
     "slab": loaded(SLAB),
     "slab, two branches": loaded(SLAB, FALLS, initial_load=0.58 * STRESS, selection="maximal"),
     "soft driver": loaded(SOFT, RATE),
@@ -149,6 +151,7 @@ def examples(entry: ProblemEntry, problem: ss.Problem) -> list[Any]:
         "contact_mass": 0.1 * body.impedance * body.round_trip_time,
         "pull_rate": 0.03,
         "far_stress": 0.5 * problem.normal,
+        "force": 0.3 * problem.normal,
         "far_stress_rate": 0.1 * problem.normal,
         "load": 0.7 * problem.normal,
         "excess": 0.02 * problem.normal,
@@ -164,6 +167,7 @@ def histories(problem: ss.Problem) -> dict[str, Any]:
     return {
         "pull_rate": Steps([0.0, soon], [pull, pull + 0.3]),
         "far_stress": Steps([0.0, soon], [0.7 * problem.normal, 0.9 * problem.normal]),
+        "force": Steps([0.0, soon], [0.0, 0.3 * problem.normal]),
         "normal_load": Steps([0.0, soon], [problem.normal, 0.8 * problem.normal]),
         "ground_velocity": PiecewiseLinear([0.0, soon, 2.0 * soon], [0.0, 0.2, 0.0]),
         "ground_acceleration": PiecewiseLinear([0.0, soon, 2.0 * soon], [0.0, -3.0, 0.0]),

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driver_reflection")
 """Fields of a problem that are a loading history or nothing."""
 PULLS = ("pull_rate", "far_stress")
-"""Fields of a problem that are a number or a loading history, and of which only one may vary."""
+"""Fields of a problem that are a number or a loading history; only one of them may vary."""
 MAY_VARY = (*PULLS, "force", *HISTORIES_ONLY)
 """Fields of a problem that may be a loading history."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"

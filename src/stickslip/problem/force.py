@@ -32,7 +32,7 @@ def pushed(inflow: Inflow, force: LoadingHistory) -> Inflow:
 
 
 def jumps_of_force(force: LoadingHistory) -> list[tuple[float, float]]:
-    """Return the times (s) at which a force jumps, the start among them, and by how much (N)."""
+    """Return the times (s) when a force jumps, the start among them, and by how much (N)."""
     start, value, slope = force.parts
     jump = np.append(force.first, value[1:] - (value[:-1] + slope[:-1] * np.diff(start)))
     jump[1:][np.abs(jump[1:]) <= NO_JUMP_OF_FORCE * np.abs(value).max()] = 0.0

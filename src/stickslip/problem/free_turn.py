@@ -1,6 +1,6 @@
 """The round trip of a body without a spring, which has no period, and to which nothing comes back.
 
-It is a measure of time alone, in which a history is written. Times in it are resolved to its own rounding, so that it may not be
+It is a measure of time alone, for the history that is written. Times in it are resolved to its own rounding, so that it may not be
 much longer than what happens; if it is shorter, there are more pieces.
 """
 
@@ -18,7 +18,7 @@ PARTS_IN_A_TRIP = 16.0
 def turn_of_free(problem: ProblemFields, rate: float, longest: float) -> float:
     """Return the round trip (s): `longest` if that is finite, as the period of a tone, else what loading or throw say.
 
-    That is a few of the first parts of the loading, else twice the time in which friction of mu = 1 stops a body that is thrown at
+    That is a few of the first parts of the loading, else twice the time that friction of mu = 1 takes to stop a body thrown at
     a rate (m/s), else what the body has.
     """
     if longest < math.inf:

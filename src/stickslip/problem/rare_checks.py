@@ -1,4 +1,4 @@
-"""The checks of what few problems have: ground that moves, a driver that changes, a force, a body without a spring."""
+"""The checks for rare problems: ground that moves, a driver that changes, a force, a body without a spring."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _refuse_machine(body: BodyOnCharacteristics, what: str, cure: str) -> None:
 def check_force(problem: Any) -> None:
     """Check the fields of a problem with a force, or with a body without a spring, whose load at the start is 0 by default.
 
-    Raises InputError for a body that is not rigid, for a second sinusoid, and for a pull of what has no spring.
+    Raises InputError for a body that is not rigid, for a second sinusoid, and for a pull without a spring.
     """
     body, force, pull, ground = problem.body, problem.force, problem.pull_rate, problem.ground
     name = type(body).__name__

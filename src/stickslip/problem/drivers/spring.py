@@ -61,7 +61,7 @@ class Spring(Driver):
         return found if force is None else pushed(found, force)
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
-        """Return the times (s) at which a force on the body jumps, and by how much (N)."""
+        """Return the times (s) when a force on the body jumps, and by how much (N)."""
         return [] if problem.force_in_time is None else jumps_of_force(problem.force_in_time)
 
 

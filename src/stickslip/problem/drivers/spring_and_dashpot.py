@@ -47,7 +47,7 @@ class SpringAndDashpot(Spring):
         return found + as_on_spring(problem.body).driver_damping * grows
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
-        """Return the times (s) at which V or a force jumps, and c times the jumps of V, or those of the force (N)."""
+        """Return the times (s) when V or a force jumps, and c times the jumps of V, or those of the force (N)."""
         found = super().steps(problem)
         if not isinstance(problem.pull_rate, LoadingHistory):
             return found

@@ -15,7 +15,7 @@ from stickslip.problem import LoadingHistory, Problem
 from stickslip.run.check.asked import CHECK_KINDS
 from stickslip.run.check.ground import chosen_of_ground
 
-BEFORE = ("pull_rate", "far_stress", "normal_load")
+GIVEN_BEFORE = ("pull_rate", "far_stress", "normal_load")
 """Fields of a problem that have, before the start, the value that they have then."""
 
 
@@ -44,7 +44,7 @@ def _states(problem: Problem) -> Iterator[str]:
 
 def _before(problem: Problem) -> Iterator[str]:
     """Yield what was before the start where something varies in time."""
-    varying = [name.replace("_", " ") for name in BEFORE if isinstance(getattr(problem, name), LoadingHistory)]
+    varying = [name.replace("_", " ") for name in GIVEN_BEFORE if isinstance(getattr(problem, name), LoadingHistory)]
     if varying:
         has = "have their values" if len(varying) > 1 else "has its value"
         yield f"before the start the {' and the '.join(varying)} {has} of 0 s"

@@ -51,7 +51,7 @@ class SteadySliding:
         return (fall - damping) * (1.0 / self.time + mass / (viscous * self.time * self.time))
 
     def inertia_of(self, mass: float, damping: float = 0.0) -> float:
-        """Return by which share (1) a mass (kg) raises the critical stiffness of a block: m V^2 / (S a Dc) if undamped."""
+        """Return the share (1) that a mass (kg) adds to the critical stiffness of a block: m V^2 / (S a Dc) if undamped."""
         return mass / ((damping + self.normal * self.a / self.rate) * self.time)
 
     def block_growth(self, stiffness: float, mass: float, damping: float = 0.0) -> complex:

@@ -202,7 +202,7 @@ class _Tables:
             others = replace(others, controls=(*others.controls, only))
         if others.controls:
             yield others
-        for name in ("far_stress", *HISTORIES_ONLY):
+        for name in ("far_stress", "force", *HISTORIES_ONLY):
             history = self.setting.value(f"loading.{name}")
             if isinstance(history, Mapping):
                 yield self.of(

@@ -63,7 +63,7 @@ def range_of(path: str, declared: Quantity, anchor: float | None, problem: Probl
     if declared.unit == "1":
         high = max(COEFFICIENTS, 1.5 * anchor) if anchor >= LARGE_COEFFICIENT else SLIDER_REACH * anchor or LARGE_COEFFICIENT
         return SliderRange(0.0 if declared.above is None else NEARLY * high, high)
-    if anchor > 0.0 and (declared.at_least != 0.0 or declared.unit in INVERSE_RATES):
+    if anchor > 0.0 and (declared.at_least != 0.0 or declared.unit in INVERSE_RATES or path == "body.stiffness"):
         factor = SPECIAL_WIDE.get(path, SLIDER_FACTOR)
         return SliderRange(anchor / factor, anchor * factor, log=True)
     if anchor == 0.0:

@@ -88,7 +88,7 @@ def _inertia(problem: Problem) -> list[Fact]:
     share = SteadySliding(problem.normal, law.a, law.b, law.distance, rate).inertia_of(body.inertia, body.total_damping)
     small = brief(body.inertia * LITTLE / share, quantities_of(type(body))[body.mass_field].unit, 3)
     none = f"{small} would by {LITTLE:g}, as a spring without mass does"
-    return [Fact("inertia", share, "1", f"share by which the mass raises the critical stiffness of slow sliding; {none}")]
+    return [Fact("inertia", share, "1", f"share that the mass adds to the critical stiffness of slow sliding; {none}")]
 
 
 def _force(problem: Problem) -> list[Fact]:
