@@ -73,7 +73,7 @@ def derivatives(model: FrictionModel, x: Floats, limits: tuple[Floats, Floats]) 
     """Return the derivatives of friction by what is searched, shape (samples, numbers), by differences within the limits."""
     found = []
     for i in range(len(x)):
-        ends: list[tuple[float, int, Floats]] = []
+        ends = []
         for sign in (-1.0, 1.0):
             y = x.copy()
             y[i] = np.clip(x[i] + sign * NUDGE, limits[0][i], limits[1][i])
