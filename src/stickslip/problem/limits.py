@@ -46,6 +46,8 @@ def leaps_over(problem: Problem) -> Over:
 def leaps_but_for_pull(problem: Problem) -> Over:
     """Return what `leaps_over` does, whatever the pull rate is, which may differ between the members of a batch."""
     body, law = LEAPS[problem.body.structure], problem.friction
+    if law.backward_from:
+        return ""
     if not body.missing_for_creep(problem):
         return body.creep
     if not _slides_alike(law) or body.missing_for_steady(problem):
@@ -73,6 +75,8 @@ def _missing_for_leaps(problem: Problem) -> str:
     Steady sliding may be leapt over on any uniform body, unless something changes. On moving ground a driver that gives way is
     named first.
     """
+    if problem.friction.backward_from:
+        return "a friction law that is the same in both directions of slip"
     body, gives_way = LEAPS[problem.body.structure], not problem.body.is_driven_rigidly
     if (problem.ground is not None and gives_way) or not _slides_alike(problem.friction):
         return body.missing_for_creep(problem)
