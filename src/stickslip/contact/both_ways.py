@@ -20,6 +20,5 @@ def of_both_ways(problem: Problem, ahead: Any, behind: Any) -> Any:
         regime=max(ahead.regime, behind.regime, key=get_args(Regime).index),
         summary=f"Forward slip: {ahead.summary} Backward slip: {behind.summary}{said}",
         critical_parameter=name if name in (None, normal_name(problem)) else f"forward.{name}",
-        backward=behind,
         problem=problem,
     )

@@ -95,8 +95,6 @@ class Uniqueness(NamesAttributes, ShownAsTable):
     problem: Problem | None = None
     law_slip: float | None = None
     """The problem, and the slip (m) of its law for these results; None stands for the slip at the start."""
-    backward: Uniqueness | None = None
-    """What holds for backward slip where friction differs with the direction of slip."""
 
     def __str__(self) -> str:
         return self.summary
@@ -123,6 +121,12 @@ class Uniqueness(NamesAttributes, ShownAsTable):
         return known_to_pyplot(
             admissible.draw_admissible(admissible.admissible_data(self.problem, law_slip=self.law_slip), **place), place
         )
+
+    @property
+    def backward(self) -> Uniqueness | None:
+        """What holds for backward slip where friction differs with the direction of slip."""
+        turned = None if self.problem is None else self.problem.facing(-1)
+        return None if turned is None or turned is self.problem else uniqueness_of(turned, self.law_slip)
 
     @property
     def loop_area(self) -> float:

@@ -7,7 +7,7 @@ At any other load one slip rate solves it, and every rule takes that one.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -97,9 +97,11 @@ def _load(history: History, time: Floats, side: Side = "right") -> Floats:
 
 def _side_of_folds(contact: Uniqueness, load: Floats) -> Floats:
     """Return -1 below the folds, 0 strictly between them and +1 above, for loads of either sign."""
-    if contact.backward is not None:
-        ahead = replace(contact, backward=None)
-        return np.where(load < 0.0, _side_of_folds(contact.backward, load), _side_of_folds(ahead, load))
+    behind = contact.backward
+    return _side(contact, load) if behind is None else np.where(load < 0.0, _side(behind, load), _side(contact, load))
+
+
+def _side(contact: Uniqueness, load: Floats) -> Floats:
     if contact.window is None:
         return np.full(load.shape, -1.0)
     assert contact.resistance is not None
