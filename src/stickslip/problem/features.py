@@ -31,7 +31,6 @@ DRIVER_THAT_CHANGES = Feature("a driver that changes", "leave driver_reflection 
 NORMAL_LOAD_THAT_VARIES = Feature("a normal_load that varies", "leave it out, or simulate the Problem", "normal_varies")
 MOVING_GROUND = Feature("ground that moves", "leave it out", "ground")
 DASHPOT = Feature("a dashpot at the contact", "set contact_damping to 0", "body.dashpot")
-HARD_STOPS = Feature("a hard stop", "leave stop_ahead and stop_behind out", "body.has_stops")
 ONE_WAY = Feature("one_way", "leave it out", "one_way")
 
 
