@@ -151,7 +151,7 @@ class Identification(CheckedArguments):
         for one in self.model.free:
             unit = "" if one.unit in ("", "1") else f" {one.unit}"
             row = self.table.loc[one.name]
-            value = with_uncertainty(row.value, row.deviation)
+            value = with_uncertainty(self.values[one.name], self.deviations[one.name])
             lines.append(f"{one.name:<{width}}  {value}{unit}  ({row.low:.6g} to {row.high:.6g})")
         return "\n".join([*lines, *self.notes])
 

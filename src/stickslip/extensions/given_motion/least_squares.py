@@ -48,7 +48,7 @@ def searched(model: FrictionModel, rate: MeasuredRate, limits: tuple[Floats, Flo
     left = model.record.friction - model.friction(x)
     known = np.isfinite(left) & np.isfinite(weight)
     slopes = (derivatives(model, x, limits) * weight[:, None])[known]
-    inverse = np.linalg.pinv(slopes.T @ slopes)
+    inverse = np.asarray(np.linalg.pinv(slopes.T @ slopes), float)
     memory = _memory((left * weight)[known], np.nan_to_num(effects * weight)[:, known])
     covariance = inverse @ (slopes.T * (np.square(sensor * weight)[known] * memory)) @ slopes @ inverse
     shift = np.zeros(len(x))
