@@ -159,7 +159,7 @@ def is_barred(run: Run, direction: int) -> bool:
 def towards(run: Run, load: float, direction: int) -> float:
     """Return the load (Pa or N, minus the reference) as seen in the direction of slip, again minus the reference.
 
-    It sees no load at all in a direction in which it cannot slip.
+    It sees no load at all in a direction that is barred to slip.
     """
     if is_barred(run, direction):
         return -math.inf

@@ -180,7 +180,7 @@ def _scale(one: LawNumber, fastest: float, scatter: float) -> float:
 
 
 def _limits(model: FrictionModel, bounds: Mapping[str, tuple[Any, Any]]) -> tuple[Floats, Floats]:
-    """Return the lower and the upper limits of what is searched. Raises InputError."""
+    """Return the lower and the upper limits of the search. Raises InputError."""
     low, high = [], []
     known = {
         free_numbers(model.law, [name], {"record.offset": 0.0, "record.viscous": 0.0})[0].name: pair

@@ -69,7 +69,7 @@ class MotionInIntervals:
     direction: Floats
     """1 or -1 where the contact slips, 0 where it rests."""
     facing: Floats
-    """The direction in which states that reverse count: that of slip, at rest that of the last slip, at first forward."""
+    """The direction that counts for states that reverse: that of slip, at rest that of the last slip, at first forward."""
     slip: Floats
     """Net slip (m) at the start of each interval."""
     counted: Floats

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine import compile_formula
 from stickslip.extensions.given_motion.compiled import along_motion as at
-from stickslip.extensions.given_motion.compiled.nodes import POINTS
+from stickslip.extensions.given_motion.compiled.nodes import PLACES_IN_STEP
 from stickslip.extensions.given_motion.intervals import MotionInIntervals
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -74,7 +74,7 @@ def solve_states(
     now[at.TRIED] = float(table[0, at.LASTING])
     found: list[tuple[Floats, Floats, Floats]] = []
     while now[at.AT_INTERVAL] < len(table):
-        kept = at.KeptSteps(np.zeros((AT_ONCE, 3)), np.zeros((AT_ONCE, many * POINTS)), np.zeros((AT_ONCE, many)))
+        kept = at.KeptSteps(np.zeros((AT_ONCE, 3)), np.zeros((AT_ONCE, many * PLACES_IN_STEP)), np.zeros((AT_ONCE, many)))
         count = at.follow_states(table, compiled, now, kept, AT_ONCE)
         if count < 0 or len(found) * AT_ONCE > MOST_STEPS:
             place = int(now[at.AT_INTERVAL])
@@ -86,7 +86,9 @@ def solve_states(
             report(float(motion.start[int(now[at.AT_INTERVAL])] + now[at.SINCE]))
     steps, states, errors = (np.concatenate(parts) for parts in zip(*found, strict=True))
     del formula  # its machine code is needed up to here
-    return StepsOfStates(steps[:, 0].astype(np.int64), steps[:, 1], steps[:, 2], states.reshape(-1, many, POINTS), _finite(errors))
+    return StepsOfStates(
+        steps[:, 0].astype(np.int64), steps[:, 1], steps[:, 2], states.reshape(-1, many, PLACES_IN_STEP), _finite(errors)
+    )
 
 
 def _finite(errors: Floats) -> Floats:

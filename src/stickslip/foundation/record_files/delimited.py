@@ -76,7 +76,7 @@ class _Head(NamedTuple):
 
 
 def _head(lines: Sequence[str], asked: Asked) -> _Head:
-    """Return the header among the first lines of a text: of the lines above numbers, that which names most of what is asked for."""
+    """Return the header among the first lines of a text: of the lines above numbers, the one that names most wanted columns."""
     rows = [i for i, line in enumerate(lines) if not _is_empty(line)]
     xlook = next((i for i in rows if _XLOOK.fullmatch(lines[i])), None)
     if xlook is not None and xlook + 2 < len(lines):

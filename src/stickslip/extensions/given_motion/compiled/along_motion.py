@@ -14,7 +14,7 @@ from typing import NamedTuple
 from stickslip.extensions.given_motion.compiled.nodes import (
     BETWEEN_POINTS,
     PLACES_OF_POINTS,
-    POINTS,
+    PLACES_IN_STEP,
     SLOPES,
     SLOPES_BETWEEN,
     STATE_STAGES,
@@ -148,20 +148,20 @@ def size_allowed(law: LawWithStates, now: Floats1, n: int, size: float) -> float
 
 @kernel
 def corrected(at: Floats1, law: LawWithStates, now: Floats1, length: float, w: Floats) -> float:
-    """Take one of Newton's steps for the states at the points; return its size as a share of what is allowed, inf if it fails."""
+    """Take one of Newton's steps for the states at the points; return its size over the largest allowed, inf if it fails."""
     answer, states, matrix = room_for(ROOM_OF_ANSWER), room_for(ROOM_OF_STATES), room_for(ROOM_OF_MATRIX)
     many, size = law.states, law.states * STATE_STAGES
     width = size + 1
     for i in range(size * width):
         matrix[i] = 0.0
-    for i in range(1, POINTS):
+    for i in range(1, PLACES_IN_STEP):
         for n in range(many):
-            states[n] = w[POINTS * n + i]
+            states[n] = w[PLACES_IN_STEP * n + i]
         rate_of_change(at, law, now[SINCE] + length * PLACES_OF_POINTS[i], states, answer)
         for n in range(many):
             row, slope = (STATE_STAGES * n + i - 1) * width, 0.0
-            for j in range(POINTS):
-                slope += SLOPES[i, j] * (w[POINTS * n + j] - w[POINTS * n])
+            for j in range(PLACES_IN_STEP):
+                slope += SLOPES[i, j] * (w[PLACES_IN_STEP * n + j] - w[PLACES_IN_STEP * n])
                 if j > 0:
                     matrix[row + STATE_STAGES * n + j - 1] = SLOPES[i, j]
             for other in range(many):
@@ -171,13 +171,13 @@ def corrected(at: Floats1, law: LawWithStates, now: Floats1, length: float, w: F
         return math.inf
     share = 0.0
     for n in range(many):
-        for i in range(1, POINTS):
+        for i in range(1, PLACES_IN_STEP):
             step = matrix[(STATE_STAGES * n + i - 1) * width + size]
-            w[POINTS * n + i] += step
-            value = abs(w[POINTS * n + i])
+            w[PLACES_IN_STEP * n + i] += step
+            value = abs(w[PLACES_IN_STEP * n + i])
             if not math.isfinite(value):
                 return math.inf
-            noise = ROUNDING_OF_STATE * max(value, abs(w[POINTS * n]))
+            noise = ROUNDING_OF_STATE * max(value, abs(w[PLACES_IN_STEP * n]))
             share = max(share, max(0.0, abs(step) - noise) / (law.tolerance * size_allowed(law, now, n, value)))
     return share
 
@@ -207,20 +207,20 @@ def measured(at: Floats1, law: LawWithStates, now: Floats1, length: float, w: Fl
     many, share = law.states, 0.0
     for i in range(STATE_STAGES):
         for n in range(many):
-            states[n] = w[POINTS * n]
-            for j in range(1, POINTS):
-                states[n] += VALUES_BETWEEN[i, j] * (w[POINTS * n + j] - w[POINTS * n])
+            states[n] = w[PLACES_IN_STEP * n]
+            for j in range(1, PLACES_IN_STEP):
+                states[n] += VALUES_BETWEEN[i, j] * (w[PLACES_IN_STEP * n + j] - w[PLACES_IN_STEP * n])
         rate_of_change(at, law, now[SINCE] + length * BETWEEN_POINTS[i], states, answer)
         for n in range(many):
             slope = 0.0
-            for j in range(1, POINTS):
-                slope += SLOPES_BETWEEN[i, j] * (w[POINTS * n + j] - w[POINTS * n])
+            for j in range(1, PLACES_IN_STEP):
+                slope += SLOPES_BETWEEN[i, j] * (w[PLACES_IN_STEP * n + j] - w[PLACES_IN_STEP * n])
             defect = abs(slope / length - answer[CHANGE + n])
             if not math.isfinite(defect):
                 return math.inf
             fades = abs(answer[CHANGE_BY_STATE + (MOST_OF_FORMULA + 1) * n])
             allowed = law.tolerance * size_allowed(law, now, n, abs(states[n]))
-            noise = ROUNDING_OF_STATE * max(abs(states[n]), abs(w[POINTS * n]))
+            noise = ROUNDING_OF_STATE * max(abs(states[n]), abs(w[PLACES_IN_STEP * n]))
             defect = max(defect, noise / length)
             share = max(share, (defect * length / max(1.0, fades * length) - 20.0 * noise) / allowed)
             bounds[3 * n] = defect if i == 0 else max(bounds[3 * n], defect)
@@ -274,14 +274,14 @@ def take_step(at: Floats1, law: LawWithStates, now: Floats1, w: Floats) -> float
         length = left if length >= left else 0.5 * left
     while length > SHORTEST_STEP * at[LASTING]:
         for n in range(law.states):
-            for i in range(POINTS):
-                w[POINTS * n + i] = now[LEVELS + n]
+            for i in range(PLACES_IN_STEP):
+                w[PLACES_IN_STEP * n + i] = now[LEVELS + n]
         share = measured(at, law, now, length, w) if settled(at, law, now, length, w) else math.inf
         if share <= 1.0:
             note_errors(law, now, length, ahead(w, BEHIND_STATES))
-            now[TRIED] = length * min(4.0, 0.9 * max(share, 1e-9) ** (-1.0 / POINTS))
+            now[TRIED] = length * min(4.0, 0.9 * max(share, 1e-9) ** (-1.0 / PLACES_IN_STEP))
             return length
-        length *= max(0.2, 0.9 * share ** (-1.0 / POINTS)) if share < math.inf else 0.25
+        length *= max(0.2, 0.9 * share ** (-1.0 / PLACES_IN_STEP)) if share < math.inf else 0.25
     return 0.0
 
 
@@ -302,9 +302,9 @@ def follow_states(intervals: Floats2, law: LawWithStates, now: Floats1, kept: Ke
         kept.steps[count, 0], kept.steps[count, 1], kept.steps[count, 2] = now[AT_INTERVAL], now[SINCE], length
         now[SINCE] += length
         for n in range(many):
-            for i in range(POINTS):
-                kept.states[count, POINTS * n + i] = w[POINTS * n + i]
-            now[LEVELS + n] = w[POINTS * n + POINTS - 1]
+            for i in range(PLACES_IN_STEP):
+                kept.states[count, PLACES_IN_STEP * n + i] = w[PLACES_IN_STEP * n + i]
+            now[LEVELS + n] = w[PLACES_IN_STEP * n + PLACES_IN_STEP - 1]
             kept.errors[count, n] = now[LEVELS + MOST_STATES_HERE + n]
             largest = now[LEVELS + 2 * MOST_STATES_HERE + n]
             now[LEVELS + 2 * MOST_STATES_HERE + n] = max(largest, abs(now[LEVELS + n]))

@@ -12,7 +12,7 @@ from stickslip.foundation.arrays import Floats
 
 STATE_STAGES = 5
 """Number of Radau points in a step (1), which gives order 9 at the ends of steps and 6 between them."""
-POINTS = STATE_STAGES + 1
+PLACES_IN_STEP = STATE_STAGES + 1
 """Number of points with the start of the step (1)."""
 
 
@@ -38,7 +38,7 @@ def values_at_places(places: Floats) -> Floats:
 
 PLACES_OF_POINTS = _radau_points()
 """The points of a step, from 0 to 1 (1)."""
-_GAPS = PLACES_OF_POINTS[:, None] - PLACES_OF_POINTS + np.eye(POINTS)
+_GAPS = PLACES_OF_POINTS[:, None] - PLACES_OF_POINTS + np.eye(PLACES_IN_STEP)
 WEIGHTS = 1.0 / _GAPS.prod(axis=1)
 """The barycentric weights of interpolation at the points."""
 SLOPES = WEIGHTS / WEIGHTS[:, None] / _GAPS
