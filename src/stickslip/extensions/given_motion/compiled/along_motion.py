@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from stickslip.extensions.given_motion.compiled.nodes import (
     BETWEEN_POINTS,
-    PLACES_OF_POINTS,
     PLACES_IN_STEP,
+    PLACES_OF_POINTS,
     SLOPES,
     SLOPES_BETWEEN,
     STATE_STAGES,
