@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, meant
 from stickslip.foundation.given import show_in
 from stickslip.problem import Accelerogram, Problem, read_option, units_given
 from stickslip.problem.scenarios import (
@@ -56,6 +56,9 @@ def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, a
             raise InputError(f"{where}: {shown(several)} takes one value; {cure}")
         if GROUND in values:
             loaded = _on_ground_of(loaded, values.pop(GROUND), where)
+        files = [name for name, value in values.items() if isinstance(value, str) and name.startswith("loading.")]
+        if wrong := next((name for name in files if meant(name, [GROUND])), None):
+            raise InputError(f"{where}: {shown(wrong)} is not a parameter of this scenario; did you mean {GROUND!r}?")
         loaded = with_values(loaded, values, where) if values else loaded
     show_in(units_given(loaded.problem))
     return loaded

@@ -122,5 +122,6 @@ def check_number(value: float, column: str, place: str) -> float:
     if not math.isfinite(value):
         raise InputError(f"{place}: {column} must be finite, got '{value}'; leave out such rows")
     if value < 0.0 and not is_signed(column):
-        raise InputError(f"{place}: {column} must not be negative, got {value:g}")
+        cure = "; subtract the first time from all of them" if column == "time" else ""
+        raise InputError(f"{place}: {column} must not be negative, got {value:g}{cure}")
     return value

@@ -336,6 +336,8 @@ def missing(header: Sequence[str], column: str) -> str:
         return f"logarithms are not read: write the numbers themselves, as in a column {example(column)}"
     if any(map(is_number, header)):
         return f"the first line must name the columns, as {example(column)}"
+    if column == "ground_acceleration" and not headings("slip_rate").isdisjoint(names_of(header)):
+        return "a velocity is not differentiated: give the acceleration itself"
     close = next(iter(meant(column, [cell for cell in header if cell.strip()])), column)
     for i, name in enumerate(names_of(header)):  # "lambda V", "theta v"
         if name.rpartition(" ")[2] in headings(column):

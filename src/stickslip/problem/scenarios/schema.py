@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from stickslip.extension import tables
 from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.conversion import unit_among
-from stickslip.foundation.errors import InputError, did_you_mean, nearest, some_of
+from stickslip.foundation.errors import InputError, did_you_mean, meant, nearest, some_of
 from stickslip.foundation.names import KINDS_OF_BODY, TURNS, own_units
 from stickslip.foundation.quantities import LARGEST_SERIES, LawField, NumberSeries, Quantity, fields_of, in_units
 from stickslip.foundation.quantities import Field as Declared
@@ -306,6 +306,8 @@ def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
 
         registered, kind = ALL_HISTORIES, Accelerogram.kind if kind is None and "file" in content else kind
     if kind is None:
+        if table == RECORDED and (wrong := next((key for key in content if meant(key, ["file"])), None)):
+            raise InputError(f"{file}: [{table}] {shown(wrong)} is unknown; did you mean 'file'?")
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {some_of(registered, listed=LISTED)}")
     if not isinstance(kind, str) or kind not in registered:
         raise InputError(f"{file}: [{table}] kind {shown(kind)} is unknown; {nearest(str(kind), registered, listed=LISTED)}")

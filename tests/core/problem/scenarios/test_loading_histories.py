@@ -146,7 +146,10 @@ def test_a_data_file_is_read(tmp_path: Path) -> None:
     [
         ("time (s),rate\n0,1\n1,2\n", ": 'pull.csv', line 1: no column 'pull_rate' in the header; rename 'rate'?"),
         ("time (s),pull_rate (m/s)\n1,1\n0,2\n", ": 'pull.csv', line 3: time must ascend, but 0 follows 1; sort the rows"),
-        ("time (s),pull_rate (m/s)\n-1,1\n0,2\n", ": 'pull.csv', line 2: time must not be negative, got -1"),
+        (
+            "time (s),pull_rate (m/s)\n-1,1\n0,2\n",
+            ": 'pull.csv', line 2: time must not be negative, got -1; subtract the first time from all of them",
+        ),
         (
             "time (s),pull_rate (m/s)\n0,nan\n1,2\n",
             ": 'pull.csv', line 2: pull_rate must be finite, got 'nan'; leave out such rows",
