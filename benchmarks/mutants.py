@@ -110,8 +110,8 @@ NAMED = (
     Named(
         "heat-at-zero-rate",
         "engine/history/history.py",
-        "law.coefficient(slip, np.abs(self.rate(at)), one_argument(states))",
-        "law.coefficient(slip, 0.0 * np.abs(self.rate(at)), one_argument(states))",
+        "place = (slip, np.abs(self.rate(at)), one_argument(states))",
+        "place = (slip, 0.0 * np.abs(self.rate(at)), one_argument(states))",
     ),
     Named(
         "no-kinetic-energy-of-the-block",

@@ -172,6 +172,10 @@ class Drawing:
         elif kind in ("sum", "product"):
             slip, rate = PAIRS[int(self.rng.integers(len(PAIRS)))]
             given = {"slip": self.law(slip), "rate": self.law(rate)}
+        elif kind == "both-ways":
+            given = {way: self.law(str(self.one_of(*SMOOTH))) for way in ("forward", "backward")}
+        elif kind == "self-energising":
+            given = {"law": self.law(str(self.one_of(*SMOOTH))), "gain": float(rng.uniform(-0.5, 0.5))}
         lengths = [len(value) for value in given.values() if isinstance(value, tuple)]
         given = {name: value[: min(lengths)] if isinstance(value, tuple) else value for name, value in given.items()}
         return LAWS[kind](**given)

@@ -30,6 +30,8 @@ OTHER_LOOPS = {
     ("runs.py", "advance_member"): "looks at the flag that stops the batch after each call of the engine, which is bounded",
     ("lanes.py", "step_under"): "each pass clears a bit of a whole number",
     ("lanes.py", "choose_length"): "each pass clears a bit of a whole number",
+    ("contact_equation.py", "face"): "each pass goes to the next piece of a law, whose last one has no end",
+    ("along_motion.py", "take_step"): "each pass shortens a step to at most nine tenths, or a quarter, down to the shortest",
     ("certificate.py", "least_share"): "each pass goes to the next disc of a list, in one direction",
     ("merged_creep.py", "plan_group"): "each pass takes the next piece of a round trip, in one direction",
     ("layer_replay.py", "first_change"): "each pass halves what is between two bounds",

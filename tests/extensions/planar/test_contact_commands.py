@@ -22,6 +22,7 @@ IN_1D = {
     "ensemble": ("planar-patch",),
     "export": ("planar-patch", "out.txt"),
     "find": ("planar-patch", "--along", "friction.static=0.6..0.8"),
+    "identify": ("planar-patch", "record.csv", "--free", "friction.static"),
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
     "schemes": ("planar-patch",),
     "slide": ("record.AT2", "--yield", "0.1", "--analysis", "coupled", "--body", "planar-patch"),

@@ -22,6 +22,8 @@ def test_no_body_has_one_unless_it_is_given() -> None:
         ss.RotatingBlock(1.0, 1e3, 10.0, damping=2.0),
         ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0).on_belt(),
         ss.RotatingBlock(1.0, 1e3, 10.0, damping=2.0).on_belt(),
+        ss.PositionLoop(1.0, 1e3, 1e2, 10.0),
+        ss.RotaryLoop(1.0, 1e3, 1e2, 10.0),
         ss.TorsionalString(2e3, 7850.0, 8e10, polar_moment=1e-5, normal_torque=10.0),
         ss.SectionedString([1e2, 2e3], [0.17, 0.13], [0.07, 0.11], [7850.0] * 2, [8e10] * 2, normal_torque=10.0),
         ss.LayeredSlab([1e3, 9e3], [2800, 2800], [1750, 3500], 1e8),
@@ -29,7 +31,7 @@ def test_no_body_has_one_unless_it_is_given() -> None:
     )
     assert {type(body) for body in plain} == set(BODIES.values())
     assert not any(body.dashpot for body in plain)
-    for body in plain[:1] + plain[6:]:
+    for body in plain[:1] + plain[8:]:
         given = replace(body, contact_damping=0.25 * body.impedance)  # type: ignore[type-var] # all are dataclasses
         assert given.damping == pytest.approx(1.25 * body.impedance, rel=1e-15)
         assert given.equivalent_block().damping == pytest.approx(0.25 * body.impedance, rel=1e-15)

@@ -64,11 +64,14 @@ def identify(
     from stickslip.cli.output.show import console, print_sentences
     from stickslip.cli.overrides import load, typed_columns, typed_values
     from stickslip.extensions.given_motion.identify import identify as study
-    from stickslip.problem.scenarios import typed_number
+    from stickslip.extensions.given_motion.moved import MovedContact
+    from stickslip.problem.scenarios import check_solved_by_core, typed_number
 
     check_targets(Target("--out", out, (".json", ".csv")), Target("--figure", figure))
     look.check(figure)
     chosen = load(scenario, "identify", changes, any_kind=True)
+    if not isinstance(chosen.to_solve, MovedContact):
+        check_solved_by_core("identify", chosen)
     found: Identification = study(
         chosen,
         data,

@@ -29,7 +29,7 @@ class SpringBlock(Declared, OnSpring):
     load_unit: ClassVar[str] = "N"
     mass_field: ClassVar[str] = "mass"
 
-    mass: Number = quantity("kg", "mass m; for a spring without mass a small one: check says how small", above=0)
+    mass: Number = quantity("kg", "mass m", above=0)
     stiffness: Number = quantity("N/m", "stiffness K of the spring; 0: there is none", at_least=0)
     normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)

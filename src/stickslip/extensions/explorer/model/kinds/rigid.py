@@ -21,6 +21,9 @@ RIGID_DRIVER = {
     "driver_integral_gain": 0.0,
 }
 """Numbers of a driver that does not give way: the block equivalent to a body needs one."""
+GAINS = {"proportional_gain": "stiffness", "derivative_gain": "driver_damping"}
+"""The gains of a position loop that act as a spring and its dashpot, and the fields of a block for these."""
+ONLY_OF_LOOPS = ("integral_gain", "reference_step")
 
 
 class ShownRigid(ShownKind):
@@ -42,8 +45,9 @@ class ShownRigid(ShownKind):
 
     def in_place_of(self, own: BodyOnCharacteristics, kind: str, name: str) -> dict[str, Any]:
         """Return the block to which a body with waves is equivalent, under a driver that does not give way; or the same block."""
-        if not own.has_waves:  # on a belt, or off it
-            return to_table(own) | {"kind": kind}
+        if not own.has_waves:  # on a belt, or off it, or in a loop
+            kept = {key: value for key, value in to_table(own).items() if key not in ONLY_OF_LOOPS}
+            return {GAINS.get(key, key): value for key, value in kept.items()} | {"kind": kind}
         known = {one.name for one in fields(own)}
         whole = replace(own, **{field: value for field, value in RIGID_DRIVER.items() if field in known})
         return to_table(cast(BodyWithWaves, whole).equivalent_block()) | {"kind": kind}
