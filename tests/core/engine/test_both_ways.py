@@ -102,6 +102,7 @@ def integrated(forward: FrictionLaw, backward: FrictionLaw, times: np.ndarray) -
     return found
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", LAWS)
 def test_a_block_slides_as_an_integrator_of_two_laws_does(name: str) -> None:
     """Slip within 1e-7 m of 0.1 m, which is the integrator's own error at kinks; the other way round it is 1e-2 m off."""
@@ -157,6 +158,7 @@ def on_the_grid(law: dict[int, Callable[[float], float]], static: dict[int, floa
     return time, rate
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ["coulomb", "one coefficient each", "of the rate", "by points"])
 def test_a_slab_slides_as_the_method_of_steps_says(name: str) -> None:
     """Slip rates within 1e-8 m/s of 0.5 m/s, but for the few points of the grid next to a jump."""

@@ -80,6 +80,7 @@ def test_rate_and_state_is_found_from_velocity_steps_and_a_typed_law_alike() -> 
 
 
 @pytest.mark.parametrize(("way", "noise"), [("slip_rate", 3e-5), ("smooth", 1e-4)])
+@pytest.mark.slow
 def test_most_stated_intervals_hold_the_truth_where_the_rate_is_noisy(way: str, noise: float) -> None:
     """Records of an encoder's rate with white noise of 3 % and 10 % of the Stribeck rate, 12 and 6 of them.
 
