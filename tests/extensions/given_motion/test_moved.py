@@ -42,6 +42,29 @@ def test_at_rest_a_law_that_sticks_leaves_the_traction_open_between_its_bounds()
     assert "any traction up to static friction is possible" in str(run)
 
 
+def test_backward_slip_has_the_friction_of_its_own_direction() -> None:
+    law = ss.friction.BothWays(COULOMB, ss.friction.Coulomb(static=0.3, dynamic=0.2))
+    run = ss.simulate(ss.MovedContact(law, THERE_AND_BACK, "100 N"), 4.0)
+    np.testing.assert_allclose(run.traction([0.5, 1.5, 2.5, 3.5]), [50.0, np.nan, -20.0, 50.0], rtol=1e-15, atol=0.0)
+    np.testing.assert_allclose(run.coefficient([0.5, 2.5]), [0.5, -0.2], rtol=1e-15, atol=0.0)
+    np.testing.assert_allclose(run.bounds([1.5, 2.5]), [[-30.0, -20.0], [60.0, -20.0]], rtol=1e-15, atol=0.0)
+
+
+def test_friction_that_presses_its_contact_is_smaller_backwards() -> None:
+    """tau = S mu / (1 - gain mu) forwards, S mu / (1 + gain mu) backwards: 100, 0.5 and a gain of 0.8 make 83.3 and 35.7."""
+    run = ss.simulate(ss.MovedContact(ss.friction.SelfEnergising(COULOMB, gain=0.8), THERE_AND_BACK, "100 N"), 4.0)
+    np.testing.assert_allclose(run.traction([0.5, 2.5]), [50.0 / 0.6, -50.0 / 1.4], rtol=1e-14, atol=0.0)
+    np.testing.assert_allclose(run.bounds(1.5), [-60.0 / 1.48, 60.0 / 0.52], rtol=1e-14, atol=0.0)
+
+
+def test_backward_friction_of_slip_and_rate_is_that_of_the_backward_law() -> None:
+    backward = ss.friction.ExponentialStribeck(static=0.5, dynamic=0.1, rate=1e-3)
+    run = ss.simulate(ss.MovedContact(ss.friction.BothWays(COULOMB, backward), ss.loading.Sinusoidal(0.0, 2e-3, 2.0), 10.0), 2.0)
+    t = np.linspace(1.01, 1.99, 20)
+    expected = -10.0 * np.array([float(backward.coefficient(0.0, abs(v))) for v in run.slip_rate(t)])
+    np.testing.assert_allclose(run.traction(t), expected, rtol=1e-13, atol=0.0)
+
+
 @pytest.mark.parametrize(("memory", "at_end"), [("all", 3e-3), ("since-arrest", 2e-3)])
 def test_slip_is_counted_as_the_law_says(memory: str, at_end: float) -> None:
     """The path is 3 mm after the motion to and fro, 2 mm of it since the arrest."""

@@ -193,7 +193,7 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     driver = next((kind for name, kind in MOVING.items() if name in parameters), problem.driver_kind)
     alone = [ONE_AT_A_TIME[kind].format(problem.body.kind) for kind in (problem.body.structure, driver) if kind in ONE_AT_A_TIME]
     yield from (f"{reason} is followed one run at a time" for reason in alone)
-    if not alone and problem.varies:
+    if not alone and (problem.varies or "loading.force" in parameters):
         yield "[loading] a batch needs a pull, far stress and normal load that do not vary in time"
     if problem.one_way or "loading.one_way" in parameters:
         yield "[loading] one_way: a batch slips both ways"

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from stickslip.extensions.given_motion.moved import MovedContact
     from stickslip.foundation.place import Place
+    from stickslip.friction import FrictionLaw
 
 AT_ENDS = 1e-12
 """Times outside the run by this share (1) of its duration are its ends, rounded."""
@@ -176,7 +177,14 @@ class FrictionAlongMotion:
 
     def _coefficients(self, found: At) -> Floats:
         """Return friction coefficients in the direction of slip, of the last slip at rest."""
-        return self.moved.friction.coefficient(found.counted, abs(found.rate), one_argument(found.states))
+        place = (found.counted, abs(found.rate), one_argument(found.states))
+        forward, backward = self.moved.friction.ways
+        mu = forward.coefficient(*place)
+        return mu if backward is forward else np.where(self.motion.facing[found.interval] < 0.0, backward.coefficient(*place), mu)
+
+    def _static(self, law: FrictionLaw, found: At) -> Floats:
+        """Return the static friction (N, Pa or N m) of the law of one direction of slip."""
+        return found.load * (law.coefficient(found.counted, 0.0 * found.rate, one_argument(found.states)) + law.static_excess)
 
     def _is_open(self, found: At) -> Floats:
         """Return where friction does not say what it is: at rest, under a law that sticks."""
@@ -201,14 +209,14 @@ class FrictionAlongMotion:
     def bounds(self, t: ArrayLike) -> TractionBounds:
         """Return the lowest and the highest traction (N, Pa or N m) that is possible at times (s).
 
-        They differ at rest under a law that sticks: minus and plus static friction. Elsewhere both are the traction.
+        They differ at rest under a law that sticks: minus static friction of backward slip, and that of forward slip. Elsewhere
+        both are the traction.
         """
         found = self._at(t)
         traction = self.motion.facing[found.interval] * found.load * self._coefficients(found)
-        at_rest = self.moved.friction.coefficient(found.counted, 0.0 * found.rate, one_argument(found.states))
-        static = found.load * (at_rest + self.moved.friction.static_excess)
+        forward, backward = (self._static(one, found) for one in self.moved.friction.ways)
         is_open = self._is_open(found)
-        return TractionBounds(np.where(is_open, -static, traction), np.where(is_open, static, traction))
+        return TractionBounds(np.where(is_open, -backward, traction), np.where(is_open, forward, traction))
 
     def error(self, t: ArrayLike) -> Floats:
         """Return a bound of the error of the traction (N, Pa or N m) at times (s).
