@@ -64,13 +64,15 @@ def test_an_irregular_contact_jumps_in_one_direction_only_and_its_mirror_image_i
 
 
 def test_a_brake_that_would_jam_is_refused_and_the_answer_says_how_far_it_is() -> None:
-    for gain, way in ((2.5, "forwards"), (-2.5, "backwards")):
-        with pytest.raises(ss.InputError, match=rf"the contact jams: no finite force slides it {way} \(self-locking\)"):
+    for gain, edge, way in ((2.5, "is 1.125, and from 1 on", "forwards"), (-2.5, "is -1.125, and from -1 down", "backwards")):
+        with pytest.raises(ss.InputError, match=rf"{edge} the contact jams: no finite force slides it {way} \(self-locking\)"):
             SelfEnergising(law=Coulomb(static=0.45, dynamic=0.4), gain=gain)
     said = ss.uniqueness(
         ss.Problem(BLOCK, SelfEnergising(law=Coulomb(static=0.5, dynamic=0.4), gain=1.0), initial_load=0.0)
     ).summary
     assert "at gains of 2 and more the contact jams (self-locking): no finite force slides it; here gain = 1." in said
+    behind = SelfEnergising(law=Coulomb(static=0.5, dynamic=0.4), gain=-1.0).said_of_uniqueness
+    assert "at gains of -2 and less the contact jams (self-locking): no finite force slides it backwards; here gain = -1." in behind
 
 
 def test_friction_that_presses_its_contact_makes_several_rates_of_one() -> None:
