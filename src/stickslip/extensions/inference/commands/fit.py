@@ -93,6 +93,7 @@ def fit(
     """
     from stickslip import friction
     from stickslip.cli.overrides import typed_columns, typed_values
+    from stickslip.foundation.headings import is_number
     from stickslip.friction import Points
     from stickslip.problem.scenarios import is_scenario_name
 
@@ -105,6 +106,9 @@ def fit(
     values = typed_values(changes or (), "fit: --set", '"body.normal_force=50 kN"')
     if values and out is None:
         raise InputError("fit: --set belongs to --out, which takes its body and loading from --body")
+    if normal_force is not None and is_number(normal_force):
+        cure = f'write --normal-force "{normal_force} N", of torques in N m, of stresses in Pa'
+        raise InputError(f"fit: --normal-force has no unit, got {normal_force}: {cure}")
     points = Points.read(data, columns=typed_columns(column, "fit: --column"), normal_force=normal_force)
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
