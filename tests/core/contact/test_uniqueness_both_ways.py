@@ -99,3 +99,25 @@ def test_what_is_not_followed_both_ways_is_refused_in_one_line() -> None:
         BothWays(forward=state, backward=state)
     with pytest.raises(ss.InputError, match="backward must be the same in both directions of slip, both-ways is not"):
         BothWays(forward=slips, backward=two)
+
+
+def test_steady_sliding_says_the_direction_it_is_for() -> None:
+    """Backwards Coulomb friction never makes a loop unstable; forwards the law falls, and sliding is unstable below some rate."""
+    loop = ss.PositionLoop(mass=1.0, proportional_gain=100.0, normal_force=10.0, integral_gain=50.0, derivative_gain=10.0)
+    falls = ss.friction.ExponentialStribeck(static=0.4, dynamic=0.2, rate="10 mm/s")
+    law = BothWays(forward=falls, backward=Coulomb(static=0.3, dynamic=0.3))
+    behind = ss.Problem(loop, law, pull_rate="-5 mm/s", initial_load=0.0)
+    assert "stable at any other slip rate backwards, too (proven)" in steady_slidings(behind).lines()
+    assert any(line.startswith("forwards: unstable below") for line in steady_slidings(replace(behind, pull_rate=0.005)).lines())
+    alone = steady_slidings(replace(behind, friction=law.backward))
+    assert "stable at any other slip rate, too (proven)" in alone.lines()
+
+
+def test_a_loop_that_gathers_the_lag_of_a_rest_is_not_said_to_have_no_event() -> None:
+    """An exact run rests again after it has slipped; without the integral it slides on."""
+    law = Coulomb(static=0.3, dynamic=0.3)
+    for gain, comes in ((500.0, True), (0.0, False)):
+        loop = ss.PositionLoop(mass=1.0, proportional_gain=100.0, normal_force=10.0, integral_gain=gain, derivative_gain=10.0)
+        problem = ss.Problem(loop, law, pull_rate="5 mm/s", initial_load=0.0)
+        assert ss.simulate(problem, 20.0).events.end.notna().any() == comes
+        assert any("no event will come" in line for line in steady_slidings(problem).lines()) is not comes
