@@ -24,6 +24,13 @@ def test_each_direction_has_the_answer_of_its_own_law() -> None:
     ahead, behind = (ss.uniqueness(replace(BOTH, friction=law)) for law in (FALLS, FLAT))
     assert (both.regime, ahead.regime, behind.regime) == ("irregular", "irregular", "regular")
     assert ss.uniqueness(replace(BOTH, friction=BothWays(forward=FLAT, backward=FALLS))).regime == "irregular"
+    turned = ss.uniqueness(replace(BOTH, friction=BothWays(forward=FLAT, backward=FALLS)))
+    assert (turned.critical_parameter, turned.critical_value) == ("backward.alpha", ahead.critical_value)
+    assert turned.folds == ()
+    assert turned.backward is not None
+    assert turned.backward.folds == ahead.folds != ()
+    assert turned.fold_lines()[0][0] == "backward fold"
+    assert ("backward fold", ahead.fold_lines()[0][1]) in turned._lines()
     assert both.folds == ahead.folds
     assert both.critical_parameter == "forward.alpha"
     assert both.critical_value == ahead.critical_value

@@ -226,9 +226,10 @@ def _show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:
     print_sentences(screen, contact.summary.removesuffix("."))
     if contact.resistance is None or not problem.friction.depends_on_rate:
         return
+    folds = len(contact.folds) + (0 if contact.backward is None else len(contact.backward.folds))
     joined = _folds_of_points(result.points, problem)
     before = "" if joined is None else f"{joined} with the points joined exactly, "
-    print_sentences(screen, f"folds of the contact equation: {before}{len(contact.folds)} with this law")
+    print_sentences(screen, f"folds of the contact equation: {before}{folds} with this law")
 
 
 def _folds_of_points(points: Points, problem: Problem) -> int | None:
