@@ -60,6 +60,10 @@ class ContactOfKind(ABC, Generic[BodyT, ModesT]):
         """Return what proves whether sliding is stable under a law with `many` states; None if nothing does."""
         return None
 
+    def overshoots(self, body: BodyT) -> bool:
+        """Return True if a contact that was held may pass steady sliding so far that it rests again."""
+        return False
+
     def not_sought(self, body: BodyT) -> str:
         """Return why steady sliding is not sought, "" if it is."""
         return ""

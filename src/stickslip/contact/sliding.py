@@ -269,13 +269,14 @@ class SteadySlidings(ShownAsTable):
     def _changes(self) -> str:
         """Return a sentence on the critical rates and their proof."""
         if not self.changes and self.proven and self.slidings:
-            return f"{self.slidings[0].verdict} at any other slip rate, too (proven{self._searched})" * (len(self.slidings) == 1)
+            said = f"{self.slidings[0].verdict} at any other slip rate{self._way}, too (proven{self._searched})"
+            return said * (len(self.slidings) == 1)
         if not self.changes:
             return ""
         hint = "" if self.regained is None else "; from rest it may stick at a higher rate all the same: stickslip find"
         hint = hint if self.from_rest is None else f"; {self.from_rest}"
         how = f"proven by interval arithmetic{self._searched}" if self.proven else f"found{self._searched}, not proven"
-        return f"{', '.join(self._ranges())} ({how}){hint}"
+        return f"{self._way[1:]}{': ' * bool(self._way)}{', '.join(self._ranges())} ({how}){hint}"
 
     def _ranges(self) -> Iterator[str]:
         """Yield the words for each range of rates between two changes, and for the ranges below and above all of them."""
@@ -290,6 +291,12 @@ class SteadySlidings(ShownAsTable):
     def _rate(self) -> str:
         """The unit of slip rates."""
         return si_unit("slip_rate", self.unit)
+
+    @property
+    def _way(self) -> str:
+        """The direction of slip that the results are for, if friction differs in the other one."""
+        differs = self.problem is not None and self.problem.friction.backward_from and self.slidings
+        return "" if not differs else " backwards" if self.slidings[0].rate < 0.0 else " forwards"
 
     @property
     def _searched(self) -> str:

@@ -170,6 +170,8 @@ class _Steady:
         swings = problem.body.inertia or problem.body.has_machine or problem.body.is_damped
         if self.varies or (problem.friction.states and not self._starts_steadily) or (swings and changes):
             return False
+        if self.kind.overshoots(problem.body) and not self._starts_steadily:
+            return False
         if problem.friction.sticks and not math.isclose(problem.strength, abs(self.traction(CRAWL)), rel_tol=SAME):
             return False
         return self._starts_steadily or abs(problem.load) <= max(abs(sliding.traction), problem.strength) * (1.0 + SAME)

@@ -58,6 +58,7 @@ class Uniqueness(NamesAttributes, ShownAsTable):
     """The result of `stickslip.uniqueness`; `print` shows it in sentences.
 
     Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image, or `backward` says otherwise.
+    Then `regime` and the critical values are those of the direction that is less certain, and `folds` are those forwards.
     """
 
     regime: Regime

@@ -111,7 +111,7 @@ def regime_lines(contact: Any) -> Iterator[NamedLine]:
 def fold_lines(contact: Any, most: int | None = None) -> Iterator[NamedLine]:
     """Yield the folds, what is not decided of them, and what depends on the rule: jumps, and the loop that they enclose.
 
-    Of folds and of jumps `most` are shown, by default all.
+    Of folds and of jumps `most` are shown, by default all. Those of backward slip follow where friction differs there.
     """
     loads, rates = _units(contact)
     for fold in contact.folds[:most]:
@@ -128,6 +128,8 @@ def fold_lines(contact: Any, most: int | None = None) -> Iterator[NamedLine]:
         retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
         yield "loop *", f"the load going up and down encloses {brief(contact.loop_area, f'{loads} {rates}')}{retraced}"
         yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."
+    for name, text in () if contact.backward is None else fold_lines(contact.backward, most):
+        yield name if name in ("", "*") else f"backward {name}", text
 
 
 def _more(what: str, shown: tuple[object, ...], found: tuple[object, ...]) -> Iterator[NamedLine]:

@@ -24,6 +24,13 @@ def test_each_direction_has_the_answer_of_its_own_law() -> None:
     ahead, behind = (ss.uniqueness(replace(BOTH, friction=law)) for law in (FALLS, FLAT))
     assert (both.regime, ahead.regime, behind.regime) == ("irregular", "irregular", "regular")
     assert ss.uniqueness(replace(BOTH, friction=BothWays(forward=FLAT, backward=FALLS))).regime == "irregular"
+    turned = ss.uniqueness(replace(BOTH, friction=BothWays(forward=FLAT, backward=FALLS)))
+    assert (turned.critical_parameter, turned.critical_value) == ("backward.alpha", ahead.critical_value)
+    assert turned.folds == ()
+    assert turned.backward is not None
+    assert turned.backward.folds == ahead.folds != ()
+    assert turned.fold_lines()[0][0] == "backward fold"
+    assert ("backward fold", ahead.fold_lines()[0][1]) in turned._lines()
     assert both.folds == ahead.folds
     assert both.critical_parameter == "forward.alpha"
     assert both.critical_value == ahead.critical_value
@@ -64,13 +71,15 @@ def test_an_irregular_contact_jumps_in_one_direction_only_and_its_mirror_image_i
 
 
 def test_a_brake_that_would_jam_is_refused_and_the_answer_says_how_far_it_is() -> None:
-    for gain, way in ((2.5, "forwards"), (-2.5, "backwards")):
-        with pytest.raises(ss.InputError, match=rf"the contact jams: no finite force slides it {way} \(self-locking\)"):
+    for gain, edge, way in ((2.5, "is 1.125, and from 1 on", "forwards"), (-2.5, "is -1.125, and from -1 down", "backwards")):
+        with pytest.raises(ss.InputError, match=rf"{edge} the contact jams: no finite force slides it {way} \(self-locking\)"):
             SelfEnergising(law=Coulomb(static=0.45, dynamic=0.4), gain=gain)
     said = ss.uniqueness(
         ss.Problem(BLOCK, SelfEnergising(law=Coulomb(static=0.5, dynamic=0.4), gain=1.0), initial_load=0.0)
     ).summary
     assert "at gains of 2 and more the contact jams (self-locking): no finite force slides it; here gain = 1." in said
+    behind = SelfEnergising(law=Coulomb(static=0.5, dynamic=0.4), gain=-1.0).said_of_uniqueness
+    assert "at gains of -2 and less the contact jams (self-locking): no finite force slides it backwards; here gain = -1." in behind
 
 
 def test_friction_that_presses_its_contact_makes_several_rates_of_one() -> None:
@@ -97,3 +106,25 @@ def test_what_is_not_followed_both_ways_is_refused_in_one_line() -> None:
         BothWays(forward=state, backward=state)
     with pytest.raises(ss.InputError, match="backward must be the same in both directions of slip, both-ways is not"):
         BothWays(forward=slips, backward=two)
+
+
+def test_steady_sliding_says_the_direction_it_is_for() -> None:
+    """Backwards Coulomb friction never makes a loop unstable; forwards the law falls, and sliding is unstable below some rate."""
+    loop = ss.PositionLoop(mass=1.0, proportional_gain=100.0, normal_force=10.0, integral_gain=50.0, derivative_gain=10.0)
+    falls = ss.friction.ExponentialStribeck(static=0.4, dynamic=0.2, rate="10 mm/s")
+    law = BothWays(forward=falls, backward=Coulomb(static=0.3, dynamic=0.3))
+    behind = ss.Problem(loop, law, pull_rate="-5 mm/s", initial_load=0.0)
+    assert "stable at any other slip rate backwards, too (proven)" in steady_slidings(behind).lines()
+    assert any(line.startswith("forwards: unstable below") for line in steady_slidings(replace(behind, pull_rate=0.005)).lines())
+    alone = steady_slidings(replace(behind, friction=law.backward))
+    assert "stable at any other slip rate, too (proven)" in alone.lines()
+
+
+def test_a_loop_that_gathers_the_lag_of_a_rest_is_not_said_to_have_no_event() -> None:
+    """An exact run rests again after it has slipped; without the integral it slides on."""
+    law = Coulomb(static=0.3, dynamic=0.3)
+    for gain, comes in ((500.0, True), (0.0, False)):
+        loop = ss.PositionLoop(mass=1.0, proportional_gain=100.0, normal_force=10.0, integral_gain=gain, derivative_gain=10.0)
+        problem = ss.Problem(loop, law, pull_rate="5 mm/s", initial_load=0.0)
+        assert ss.simulate(problem, 20.0).events.end.notna().any() == comes
+        assert any("no event will come" in line for line in steady_slidings(problem).lines()) is not comes

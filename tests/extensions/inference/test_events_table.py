@@ -134,6 +134,10 @@ FAULTS = [
     ({"peak force (N)": [1, 2, 3], "rest force (N)": [4, 4, 4], "time (s)": [0, 1, 2]}, "named the wrong way round?"),
     ({"peak force (N)": [1, -2, 3], "time (s)": [0, 1, 2]}, "shear_force_peak must be above 0, got -2 in event 2"),
     ({"peak stress (MPa)": [1, 1, 1, 2], "time (s)": [0, 1, 2, 3]}, "the loads of a block are in N, and shear_stress in Pa"),
+    (
+        {"peak (N)": [1, 2], "rest (N)": [0, 1], "recurrence (s)": [1, 1]},
+        "such as peak force (N), and is fitted with --by features",
+    ),
     ({"peak force (N)": [1, 2, 3], "time (s)": [0, 1, 2]}, "3 whole slip events are too few for the scatter of 2 features"),
 ]
 

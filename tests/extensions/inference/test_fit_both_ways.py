@@ -83,7 +83,7 @@ def test_a_table_of_each_direction_makes_a_law_of_both(tmp_path: Path) -> None:
     assert float(law.coefficient(0.0, 0.1)) == 0.5
     assert float(law.ways[1].coefficient(0.0, 0.2)) == 0.3
     for refused in (FromTable, smooth):
-        with pytest.raises(ss.InputError, match="slip was measured in both directions"):
+        with pytest.raises(ss.InputError, match=r"slip was measured in both directions: .*points\.ways"):
             refused(points)
 
 
@@ -123,6 +123,8 @@ def test_a_force_without_a_normal_force_is_questioned_in_one_line(tmp_path: Path
         ss.InputError, match="no column 'friction'; with shear_force give its normal force, `--normal-force '100 N'`"
     ):
         Points.read(path)
+    with pytest.raises(ss.InputError, match="with torque give its normal torque, `--normal-force '100 N m'`"):
+        Points.read({"v (rpm)": [1, 2], "torque (N m)": [4, 3]})
     with pytest.raises(ss.InputError, match="a force is shear_force and needs --normal-force"):
         Points.read(path, columns={"friction": "Friction force"})
     with pytest.warns(InputWarning, match=r"friction reaches 41: .* give its normal force: `--normal-force '100 N'`"):
@@ -143,3 +145,40 @@ def test_the_command_fits_both_directions_of_a_force_and_writes_a_scenario(tmp_p
     assert isinstance(law, BothWays)
     assert law.forward.static == pytest.approx(0.7, abs=0.02, rel=0.0)
     assert law.backward.static == pytest.approx(0.5, abs=0.02, rel=0.0)
+
+
+def test_what_a_typed_fit_lacks_is_said_as_it_is_typed(tmp_path: Path) -> None:
+    """A normal force without a unit, points of one direction that are too few, and what smooths both."""
+    path = axis_file(tmp_path / "axis.csv", FORWARD, BACKWARD, 30.0, 0.003)
+    few = tmp_path / "few.csv"
+    few.write_text("v (mm/s),mu\n" + "".join(f"{v},0.4\n" for v in (1, 2, 3, 4, 5, 6, -1, -2, -3, -4, -5)))
+    for typed, said in (
+        ([str(path), "--normal-force", "100"], 'no unit, got 100: write --normal-force "100 N", of torques in N m'),
+        ([str(few), "--law", "exponential-stribeck"], "5 points backwards cannot determine 5 parameters"),
+        ([str(few), "--smooth", "auto"], "fit a law (--law), or in Python smooth each of points.ways"),
+    ):
+        assert said in str(CliRunner().invoke(app, ["fit", *typed]).exception)
+
+
+def test_a_torque_and_the_torque_of_its_normal_load_make_the_coefficient(tmp_path: Path) -> None:
+    path = tmp_path / "turning.csv"
+    path.write_text("v (rpm),torque (N m)\n1,4\n2,3\n3,2\n")
+    assert Points.read(path, normal_force="5 N m").friction.tolist() == [0.8, 0.6, 0.4]
+    with pytest.raises(ss.InputError, match="'N' does not convert to N m"):
+        Points.read(path, normal_force="5 N")
+
+
+@pytest.mark.parametrize("first", ["1.000", "0.5"])
+def test_decimal_commas_beside_points_in_one_column_are_refused(tmp_path: Path, first: str) -> None:
+    """There "1.000" may be a thousand; columns that differ from each other are taken."""
+    path = tmp_path / "mixed.csv"
+    path.write_text(f"v (mm/s);mu\n1;{first}\n2;0,4\n3;0,3\n")
+    with pytest.raises(
+        ss.InputError, match=rf"line 3, column 2: numbers with decimal commas and with points are mixed, '{first}' and '0,4'"
+    ):
+        Points.read(path)
+    path.write_text("v (mm/s);mu\n1;0,5\n2;0.4\n3;0,3\n")
+    with pytest.raises(ss.InputError, match="line 3, column 2"):
+        Points.read(path)
+    path.write_text("v (mm/s);mu\n1;0,5\n2.5;0,4\n3;0,3\n")
+    assert Points.read(path).friction.tolist() == [0.5, 0.4, 0.3]

@@ -17,6 +17,7 @@ MACHINE = replace(SLAB, driver_impedance=5e6, driver_inertia=1e6, driver_integra
 PRESSED = replace(STILL, normal_load=ss.loading.Steps([0.0, 1.0], [1e8, 9e7]))
 SHAKEN = replace(STILL, ground_velocity=ss.loading.Sinusoidal(mean=0.0, amplitude=0.1, period=1.0))
 FREED = replace(STILL, far_stress=0.0, driver_reflection=ss.loading.Steps([0.0, SLAB.two_way_time], [-1.0, 1.0]))
+WAYS = replace(STILL, friction=ss.friction.BothWays(forward=LAW, backward=ss.friction.LinearSlipWeakening(0.4, 0.3, 0.1)))
 ROUGH = ss.Problem(SLAB, ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-3), initial_load=3e7, initial_state=1e3)
 
 
@@ -31,6 +32,7 @@ ROUGH = ss.Problem(SLAB, ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-3), initi
         ),
         (FREED, r"PlanarSlab: a driver that changes is followed in 1D only: leave driver_reflection"),
         (SHAKEN, r"PlanarSlab: ground that moves is followed at one place only: leave it out$"),
+        (WAYS, r"PlanarSlab: friction of BothWays differs with the direction of slip, which planar slabs do not follow$"),
         (PRESSED, r"PlanarSlab: .*normal_load"),
         *(
             (ss.load_scenario(name).problem, r"PlanarSlab: ")

@@ -31,6 +31,10 @@ class ContactOfLoop(ContactOfRigid):
         taken = body.inertia * as_on_spring(body).integral_gain / body.stiffness
         return Withstood(body.total_damping - taken, is_known=True)
 
+    def overshoots(self, body: BodyOnCharacteristics) -> bool:
+        """Return True for an axis with an integral: it has gathered the lag of the rest."""
+        return bool(as_on_spring(body).integral_gain)
+
     def judge(self, body: BodyOnCharacteristics, normal: float, many: int) -> Judge | None:
         """Return the proof for an axis without an integral."""
         return None if as_on_spring(body).integral_gain else super().judge(body, normal, many)

@@ -132,6 +132,10 @@ class PlanarSlab(CheckedArguments):
             raise InputError(
                 f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow"
             )
+        if law.backward_from:
+            raise InputError(
+                f"PlanarSlab: friction of {type(law).__name__} differs with the direction of slip, which planar slabs do not follow"
+            )
         if problem.rule != "perfect-delay":
             raise InputError(
                 f"PlanarSlab: the selection rule {problem.rule!r} would have no effect: laws under which it has one are refused,"

@@ -20,6 +20,7 @@ from stickslip.extensions.schemes.sbp import SummationByParts
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.law import FrictionLaw
 from stickslip.problem import Problem, features
 from stickslip.problem.bodies import ElasticSlab, as_slab
 
@@ -85,17 +86,22 @@ class GridContact:
 
     def meet(self, meeting: Meeting, before: float) -> Met:
         """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
-        strength = self.normal * float(self.law.static_coefficient(self._seen(meeting.slip)))
+        way = 1.0 if meeting.load >= 0.0 else -1.0
+        strength = self.normal * float(self._law(way).static_coefficient(self._seen(meeting.slip)))
         margin = (
             -ROUNDING_OF_LOAD if self._yields else ROUNDING_OF_LOAD
         )  # a load at the strength that is about to rise begins slip at once
         holds = abs(meeting.load) <= strength * (1.0 + margin) and not self.smoothing
         self._yields = False
-        way = 1.0 if meeting.load >= 0.0 else -1.0
         rate = way * self._root(meeting, way, max(way * before, 0.0), holds)
         slip = meeting.slip + meeting.slip_per_rate * rate
         self._law_slip, self._slip = self._seen(slip), slip
         return Met(rate, meeting.load - meeting.impedance * rate)
+
+    def _law(self, way: float) -> FrictionLaw:
+        """Return the law that slip in a direction sees, forwards (1) or backwards (-1)."""
+        found: FrictionLaw = self.law.ways[way < 0.0]
+        return found
 
     def _seen(self, slip: Any) -> Any:
         """Return the slip that the law sees (m): the path so far, if it counts the path."""
@@ -103,11 +109,11 @@ class GridContact:
 
     def _root(self, meeting: Meeting, way: float, before: float, holds: bool) -> float:
         """Return the magnitude of the slip rate, m/s."""
-        load = abs(meeting.load)
+        load, law = abs(meeting.load), self._law(way)
 
         def missing(rate: Floats) -> Floats:
             seen = self._seen(meeting.slip + way * meeting.slip_per_rate * rate)
-            friction = self.normal * self.law.coefficient(seen, rate)
+            friction = self.normal * law.coefficient(seen, rate)
             if self.smoothing:
                 friction = friction * np.tanh(rate / self.smoothing)
             return meeting.impedance * rate + friction - load

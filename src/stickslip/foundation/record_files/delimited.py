@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import PURE, FoundColumn, factor_of, find, has_unit, is_number
-from stickslip.foundation.record_files.number_rows import BLANKS, NumberRows, number_rows
+from stickslip.foundation.record_files.number_rows import BLANKS, COMMA_NUMBER, NumberRows, number_rows
 from stickslip.foundation.record_files.sheet import NO_NUMBER, PREAMBLE, Asked, Lines, Sheet
 
 XLOOK_WIDTH = 12
@@ -36,7 +36,7 @@ def sheet(lines: Lines, asked: Asked) -> Sheet:
     rows = _rows(chain(begin[behind:], lines), behind, head.separator, asked.place)
     if head.rows.has_commas:
         notes.append("decimal commas are read as points")
-        rows = ((at, [cell.replace(",", ".") for cell in row]) for at, row in rows)
+        rows = _with_points(rows, [one.place for one in chosen.values()], asked.place)
     hint = "; decimal commas? Then separate columns by semicolons" if head.separator == "," else ""
     return Sheet(header, head.number, rows, notes, hint=hint)
 
@@ -53,6 +53,22 @@ def _rows(lines: Iterator[str], number: int, separator: str, place: str) -> Iter
                 yield number + read.line_num, row
     except csv.Error as error:
         raise InputError(f"{place}, line {number + read.line_num}: {error}") from None
+
+
+def _with_points(rows: Iterator[tuple[int, list[str]]], places: Sequence[int], where: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield rows with decimal commas as points. Raises InputError if a column, of those at `places`, has numbers with both.
+
+    There "1.000" may be 1 or a thousand.
+    """
+    seen = dict[tuple[int, str], str]()
+    for at, row in rows:
+        for place, cell in ((place, row[place].strip()) for place in places if place < len(row)):
+            mark = "," if COMMA_NUMBER.fullmatch(cell) else "." if "." in cell and is_number(cell) else ""
+            seen.setdefault((place, mark), cell)
+            if mark and (other := seen.get((place, ",."[mark == ","]))):
+                mixed = f"numbers with decimal commas and with points are mixed, {other!a:.40} and {cell!a:.40}"
+                raise InputError(f"{where}, line {at}, column {place + 1}: {mixed}: write all with one mark")
+        yield at, [cell.replace(",", ".") for cell in row]
 
 
 def _is_empty(line: str) -> bool:

@@ -32,6 +32,8 @@ LARGEST_FILE = 100_000_000
 MOST_POINTS = 1_000_000
 """Take at most this many measured points; a fit to that many takes minutes."""
 ALONG: tuple[Along, ...] = ("slip", "slip_rate")
+NORMAL_UNITS = {"shear_force": "N", "torque": "N m"}
+"""Units of the normal load that is asked for beside a lone column; of stresses a missing column is the likelier cause."""
 RATIOS = {"shear_stress": "normal_stress", "shear_force": "normal_force", "torque": "normal_torque"}
 """Columns whose ratio is friction, where no column holds friction itself; the last are those of a contact that turns."""
 ROLLING = ("slide_roll_ratio", "rolling_speed")
@@ -228,7 +230,8 @@ def _complete(table: Table, given: Any = None, both: bool = False) -> tuple[Tabl
         found[BY_ANGLE[name]] = found.pop(name)
     alone = _take_ratio(table, given)
     if "friction" not in found:
-        cure = f"with {alone} give its normal force, `--normal-force '100 N'`" if alone == "shear_force" else ""
+        unit = NORMAL_UNITS.get(alone)
+        cure = f"with {alone} give its {RATIOS[alone].replace('_', ' ')}, `--normal-force '100 {unit}'`" if unit else ""
         cure = cure or missing(header, "friction")
         raise InputError(f"{place}: no column 'friction'; {cure}")
     if not set(ALONG) & set(found):

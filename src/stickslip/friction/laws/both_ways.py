@@ -205,8 +205,8 @@ class SelfEnergising(LawOfTwoWays):
         most = self.law.range()[1]
         if abs(self.gain) * most < 1.0:
             return
-        way = "forwards" if self.gain > 0.0 else "backwards"
-        jams = f"gain {self.gain:g} times friction {most:g} is {abs(self.gain) * most:.6g}, and from 1 on the contact jams"
+        way, edge = ("forwards", "from 1 on") if self.gain > 0.0 else ("backwards", "from -1 down")
+        jams = f"gain {self.gain:g} times friction {most:g} is {self.gain * most:.6g}, and {edge} the contact jams"
         allowed = f"gains between {-1.0 / most:.6g} and {1.0 / most:.6g} slide" if most < math.inf else "take a law with bounds"
         raise InputError(f"SelfEnergising: {jams}: no finite force slides it {way} (self-locking); {allowed}")
 
@@ -216,7 +216,8 @@ class SelfEnergising(LawOfTwoWays):
         most = float(self.law.range()[1])
         if most == 0.0:
             return ""
-        jams = f"at gains of {1.0 / most:.6g} and more the contact jams (self-locking): no finite force slides it"
+        edge, way = (f"{1.0 / most:.6g} and more", "") if self.gain >= 0.0 else (f"{-1.0 / most:.6g} and less", " backwards")
+        jams = f"at gains of {edge} the contact jams (self-locking): no finite force slides it{way}"
         return f" Friction presses the contact: {jams}; here gain = {self.gain:g}."
 
 

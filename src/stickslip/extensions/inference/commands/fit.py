@@ -93,6 +93,7 @@ def fit(
     """
     from stickslip import friction
     from stickslip.cli.overrides import typed_columns, typed_values
+    from stickslip.foundation.headings import is_number
     from stickslip.friction import Points
     from stickslip.problem.scenarios import is_scenario_name
 
@@ -105,6 +106,9 @@ def fit(
     values = typed_values(changes or (), "fit: --set", '"body.normal_force=50 kN"')
     if values and out is None:
         raise InputError("fit: --set belongs to --out, which takes its body and loading from --body")
+    if normal_force is not None and is_number(normal_force):
+        cure = f'write --normal-force "{normal_force} N", of torques in N m, of stresses in Pa'
+        raise InputError(f"fit: --normal-force has no unit, got {normal_force}: {cure}")
     points = Points.read(data, columns=typed_columns(column, "fit: --column"), normal_force=normal_force)
     body = body or ("string" if points.slips_in else "slab")
     if out is not None:
@@ -222,9 +226,10 @@ def _show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:
     print_sentences(screen, contact.summary.removesuffix("."))
     if contact.resistance is None or not problem.friction.depends_on_rate:
         return
+    folds = len(contact.folds) + (0 if contact.backward is None else len(contact.backward.folds))
     joined = _folds_of_points(result.points, problem)
     before = "" if joined is None else f"{joined} with the points joined exactly, "
-    print_sentences(screen, f"folds of the contact equation: {before}{len(contact.folds)} with this law")
+    print_sentences(screen, f"folds of the contact equation: {before}{folds} with this law")
 
 
 def _folds_of_points(points: Points, problem: Problem) -> int | None:

@@ -40,7 +40,9 @@ class FitBothWays(Fit):
 
 def fit_both_ways(points: Points, law: Any, start: Mapping[str, Any] | None, fixed: Mapping[str, Any] | None) -> Fit:
     """Fit a law to points of both directions, as `fit` does, with a note on how far the directions differ."""
-    ahead, behind = (fit_one_way(one, law, start, fixed) for one in points.ways)
+    ahead, behind = (
+        fit_one_way(one, law, start, fixed, way=way) for one, way in zip(points.ways, (" forwards", " backwards"), strict=True)
+    )
     one = fit_one_way(_joined(ahead.points, behind.points), law, start, fixed)
     n, fits = len(one.points), (ahead, behind)
     freedom = [max(len(fit.points) - _parameters(fit), 1) for fit in fits]

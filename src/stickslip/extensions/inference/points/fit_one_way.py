@@ -94,8 +94,10 @@ class Fit(NamesAttributes, ShownAsTable):
         return [*self.rows, *(("note", note) for note in self.notes)]
 
 
-def fit_one_way(points: Points, law: Any, start: Mapping[str, Any] | None, fixed: Mapping[str, Any] | None) -> Fit:
-    """Fit the parameters of a law to points of one direction of slip, as `fit` does."""
+def fit_one_way(
+    points: Points, law: Any, start: Mapping[str, Any] | None, fixed: Mapping[str, Any] | None, *, way: str = ""
+) -> Fit:
+    """Fit the parameters of a law to points of one direction of slip, as `fit` does; `way` names it in messages."""
     wanted = template(law)
     chosen = _points_for(wanted, points)
     units = own_units(chosen.load_unit)
@@ -106,7 +108,7 @@ def fit_one_way(points: Points, law: Any, start: Mapping[str, Any] | None, fixed
     if not free:
         raise InputError("fit: every parameter is fixed: there is nothing to fit")
     if len(chosen) <= len(free) + len(whole):
-        raise InputError(f"fit: {len(chosen)} points cannot determine {len(free) + len(whole)} parameters of {wanted.kind}")
+        raise InputError(f"fit: {len(chosen)} points{way} cannot determine {len(free) + len(whole)} parameters of {wanted.kind}")
     found = []
     for exponents in product(*([begun[name]] if name in begun else EXPONENTS for name in whole)):
         tried = held | dict(zip(whole, exponents, strict=True))

@@ -158,7 +158,7 @@ def smooth(
     """
     read = Points.read(points).along(along)
     if read.backward is not None:
-        cure = "smooth each of points.ways, and join their laws by BothWays, or fit a law"
+        cure = "fit a law (--law), or in Python smooth each of points.ways, and join their laws by BothWays"
         raise InputError(f"{read.name}: slip was measured in both directions: {cure}")
     given = _checked(strength)
     tried = []

@@ -68,14 +68,20 @@ def events_in(source: Any, columns: Any = None) -> Record | None:
     """
     given = NamedColumns(columns or {}).given
     try:
-        header = _read(source, (), None).header
+        empty = _read(source, (), None)
     except (InputError, TypeError):
         return None
+    header = empty.header
     known = [EVENT_HEADINGS.get(name) for name in names_of(header)]
     places = {name: heading for name, heading in zip(known, header, strict=True) if name is not None}
     places |= {name: heading for name, heading in given.items() if name in EVENT_COLUMNS}
     shears = list(dict.fromkeys(EVENT_COLUMNS[name] for name in places if EVENT_COLUMNS[name] in _SHEARS))
     if not shears:
+        levels = {word for words in _LEVELS.values() for word in words}
+        bare = [heading for heading, name in zip(header, names_of(header), strict=True) if name in levels]
+        if "recurrence" in places and bare:
+            asked = f"{quoted(bare[0])} of what? A table of slip events has columns such as {names_of(bare)[0]} force (N)"
+            raise InputError(f"{empty.at_header or empty.place}: {asked}, and is fitted with --by features")
         return None
     for name in given:
         if name not in EVENT_COLUMNS:
