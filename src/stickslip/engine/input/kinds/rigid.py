@@ -53,8 +53,8 @@ class InputOfRigid(InputOfBody):
 
 
 def _first(problem: Problem) -> float:
-    """Return the load minus the reference strength (N) of the start, after a step of a reference."""
-    return problem.excess + problem.body.stiffness * as_on_spring(problem.body).reference_step
+    """Return the load minus the reference strength (N) of the start, after the reference has jumped."""
+    return problem.excess + driver_of(problem).jump_at_start(problem)
 
 
 ANSWERS = InputOfRigid()
