@@ -218,6 +218,11 @@ def lag_of_approach(solution: ss.Solution) -> float:
             lambda: ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0, stop_behind=0.1), ss.friction.LuGre(0.2, 0.1, 1e-3, 1e4)),
             "Problem: friction: hard stops need a law that knows rest, which LuGre does not",
         ),
+        (
+            lambda: block(ahead=0.0, initial_rate=1.0),
+            "Problem: initial_rate: stop_ahead is 0, so that the body cannot move forwards",
+        ),
+        (lambda: block(behind=0.0, initial_rate=-1.0), "initial_rate: stop_behind is 0, so that the body cannot move backwards"),
     ],
 )
 def test_what_stops_do_not_follow_is_refused(make: Any, text: str) -> None:
