@@ -142,7 +142,7 @@ class _Steady:
             far = slidings[0].traction + self._lost * slidings[0].rate
         strength = problem.strength if problem.friction.sticks else 0.0
         rests = self.far_stress is not None and abs(self.drive) <= strength
-        damped = not slidings or bool(problem.friction.states) or self.withstood.fall > 0.0
+        damped = not slidings or bool(problem.friction.states) or self.withstood.fall > 0.0 or problem.body.total_damping > 0.0
         return SteadySlidings(
             pull_rate=problem.first_pull_rate,
             far_stress=far,

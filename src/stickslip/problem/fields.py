@@ -409,6 +409,11 @@ class ProblemFields(CheckedArguments):
         return self.initial_load is None and self.initial_excess is None and not self.given_states
 
     @property
+    def begins_in_balance(self) -> bool:
+        """True if no load is given: it then is the load of steady sliding."""
+        return self.initial_load is None and self.initial_excess is None
+
+    @property
     def given_states(self) -> tuple[float, ...]:
         """The initial states, as users see them; none for a law without a state, or in steady sliding that is not written out."""
         given: list[Any] = [getattr(self, name) for name in INITIAL_STATES]

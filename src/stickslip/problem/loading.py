@@ -77,6 +77,7 @@ class Waypoints(InParts):
     """The rate of a straight way from position to position, at rest before the first and after the last: a reference of an axis."""
 
     kind = "waypoints"
+    rests_before = True
     example: ClassVar = {"times": [0.0, "1 s", "3 s"], "positions": [0.0, 0.01, 0.01]}
     columns: ClassVar = {"time": "times", "position": "positions"}
     unit = " or ".join(f"{one}/s" for one in WAY.split(" or "))

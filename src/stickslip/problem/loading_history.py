@@ -66,6 +66,8 @@ class LoadingHistory(Declared, ABC):
 
     kind: ClassVar[str]
     """Name of the history in scenario files and in HISTORIES."""
+    rests_before: ClassVar[bool] = False
+    """True if the value is 0 before the start of the run, whatever it is at the start."""
     example: ClassVar[dict[str, Any]]
     """Plausible values of the fields, in the form of a scenario file."""
 

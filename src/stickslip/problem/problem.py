@@ -176,6 +176,10 @@ class Problem(ShownAsTable, ProblemFields):
     def _check_rate(self) -> None:
         """Raise InputError if the problem has an initial rate that it cannot have."""
         given = self.initial_rate
+        if given is not None and self.body.has_stops:
+            from stickslip.problem.rare_checks import check_thrown  # here, because few bodies have stops
+
+            check_thrown(self.body, self.rate)
         if given is None or self.body.has_inertia:
             return
         if given == 0.0 and not (self.starts_steadily or self.friction.sticks):

@@ -74,5 +74,14 @@ def check_force(problem: Any) -> None:
         object.__setattr__(problem, "initial_load", 0.0)  # no spring holds a load before the force acts
 
 
+def check_thrown(body: Any, rate: float) -> None:
+    """Refuse a rate of the start (m/s) towards a stop at which the body already is."""
+    name = "stop_ahead" if rate > 0.0 else "stop_behind"
+    if rate != 0.0 and getattr(body, name) == 0.0:
+        way = "forwards" if rate > 0.0 else "backwards"
+        cure = f"give a larger {name}, or a rate the other way, with which it leaves the stop"
+        raise InputError(f"Problem: initial_rate: {name} is 0, so that the body cannot move {way} from the start: {cure}")
+
+
 def _swings(given: Any) -> bool:
     return isinstance(given, LoadingHistory) and given.tone.amplitude != 0.0

@@ -126,6 +126,37 @@ def test_bounces_without_friction_come_to_rest_as_a_geometric_series() -> None:
     assert float(solution.slip_rate(9.0)) == 0.0
 
 
+@pytest.mark.parametrize("restitution", [0.9, 0.99])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_force_presses_a_free_block_to_rest_where_slip_no_longer_resolves_its_hops(restitution: float, side: float) -> None:
+    """The number of impacts is that of a geometric series with friction: out under F + f, back under F - f (N), to 1e-7 m/s."""
+    force, friction = 9.0, 0.6
+    body = ss.SpringBlock(1.0, 0.0, 3.0, stop_ahead=0.04, stop_behind=0.04, restitution=restitution)
+    solution = ss.simulate(ss.Problem(body, ss.friction.Coulomb(0.3, 0.2), force=side * force), 30.0)
+    shocks = solution.shocks[solution.shocks.cause == "stop"]
+    loss = restitution * math.sqrt((force - friction) / (force + friction))
+    strong = np.abs(shocks.rate_before.to_numpy()) > 1e-4
+    expected = math.sqrt(2.0 * 0.04 * (force - friction)) * loss ** np.arange(strong.sum())
+    assert np.abs(shocks.rate_before.to_numpy())[strong] == pytest.approx(expected, rel=1e-4)
+    assert expected[-1] * loss < 1e-4
+    assert len(shocks) < math.log(1e-8) / math.log(loss)
+    assert float(solution.slip(30.0)) == side * 0.04
+    assert abs(solution.shocks.rate_after.iloc[-2]) < 1e-6
+
+
+@pytest.mark.parametrize("restitution", [0.9, 0.99])
+def test_a_pulled_spring_and_a_loop_press_a_bouncing_body_to_rest(restitution: float) -> None:
+    pulled = ss.SpringBlock(1.0, 100.0, 3.0, stop_ahead=0.04, restitution=restitution)
+    gains = {"integral_gain": 50.0, "derivative_gain": 5.0, "reference_step": 0.05}
+    held = ss.PositionLoop(1.0, 100.0, 3.0, stop_ahead=0.03, restitution=restitution, **gains)
+    law = ss.friction.Coulomb(0.3, 0.2)
+    for body, rate, place in ((pulled, 0.28, 0.04), (held, 0.0, 0.03)):
+        solution = ss.simulate(ss.Problem(body, law, pull_rate=rate, initial_load=0.0), 10.0)
+        assert float(solution.slip(10.0)) == place
+        assert float(solution.slip_rate(10.0)) == 0.0
+        assert len(solution.shocks) < 3000
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.7])
 def test_energies_balance_with_what_stops_take(restitution: float) -> None:
     swings = block(restitution, 0.01, 0.02, pull_rate=ss.loading.Sinusoidal(0.0, 0.4, 1.3), initial_load=1.0)
@@ -187,6 +218,11 @@ def lag_of_approach(solution: ss.Solution) -> float:
             lambda: ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0, stop_behind=0.1), ss.friction.LuGre(0.2, 0.1, 1e-3, 1e4)),
             "Problem: friction: hard stops need a law that knows rest, which LuGre does not",
         ),
+        (
+            lambda: block(ahead=0.0, initial_rate=1.0),
+            "Problem: initial_rate: stop_ahead is 0, so that the body cannot move forwards",
+        ),
+        (lambda: block(behind=0.0, initial_rate=-1.0), "initial_rate: stop_behind is 0, so that the body cannot move backwards"),
     ],
 )
 def test_what_stops_do_not_follow_is_refused(make: Any, text: str) -> None:

@@ -158,7 +158,8 @@ def with_bristles(pull: Any, times: Floats) -> Floats:
         force = g["proportional_gain"] * lag + q + g["derivative_gain"] * (pulls - v) - g["damping"] * v
         return [pulls - v, (force - g["normal_force"] * friction) / g["mass"], g["integral_gain"] * lag, bends]
 
-    motion, found = np.array([0.0, 0.0, -g["derivative_gain"] * pull.first, 0.0]), []
+    before = 0.0 if pull.rests_before else pull.first  # what the load of the start has in it
+    motion, found = np.array([0.0, 0.0, -g["derivative_gain"] * before, 0.0]), []
     edges = [*pull.parts[0][pull.parts[0] < times[-1]], times[-1]]
     for n, (begin, end) in enumerate(pairwise(edges)):
         inside = times[(times > begin) & (times <= end)]
@@ -192,6 +193,26 @@ def test_bristles_under_a_moving_reference_meet_another_integrator(pull: str) ->
     t = np.linspace(0.4, 3.2, 8)
     assert solution.slip(t) == pytest.approx(with_bristles(PULLS[pull], t), abs=2e-9)
     assert np.ptp(way_of(PULLS[pull], t)) > 1e-2
+    check_account(solution)
+
+
+@pytest.mark.parametrize("integral", [0.0, 10.0])
+def test_waypoints_begin_from_a_reference_at_rest(integral: float) -> None:
+    """The same way begun a moment (1e-6 s) later makes the same motion, to 5e-7 m; it ends within what friction holds, 1e-5 m."""
+    body = ss.PositionLoop(1.0, 100.0, 0.01, derivative_gain=20.0, integral_gain=integral)
+    ways = ss.loading.Waypoints([0.0, 1.0], [0.0, 0.05]), ss.loading.Waypoints([0.0, 1e-6, 1.0], [0.0, 0.0, 0.05])
+    runs = [ss.simulate(ss.Problem(body, ss.friction.Coulomb(0.1, 0.1), one, initial_load=0.0), 30.0) for one in ways]
+    times = np.linspace(0.0, 30.0, 301)
+    assert runs[0].slip(times) == pytest.approx(runs[1].slip(times), abs=5e-7)
+    assert float(runs[0].slip(30.0)) == pytest.approx(0.05, abs=2e-5)
+    check_account(runs[0])
+
+
+def test_a_block_with_a_dashpot_begins_from_waypoints_at_rest_too() -> None:
+    body = ss.SpringBlock(1.0, 100.0, 0.01, driver_damping=20.0)
+    way = ss.loading.Waypoints([0.0, 1.0], [0.0, 0.05])
+    solution = ss.simulate(ss.Problem(body, ss.friction.Coulomb(0.1, 0.1), way, initial_load=0.0), 10.0)
+    assert float(solution.slip(10.0)) == pytest.approx(0.05, abs=2e-5)
     check_account(solution)
 
 
@@ -270,6 +291,28 @@ def test_check_says_whether_it_hunts_and_why() -> None:
     falling = replace(problem(), friction=ss.friction.ExponentialStribeck(0.4, 0.3, 0.05, 1.0))
     assert any(text.startswith("may hunt") for text in said(falling).chosen)
     assert any("the reference jumps by 0.1 m at the start" in text for text in said(problem()).chosen)
+
+
+def test_check_counts_the_jump_of_the_reference_at_the_start() -> None:
+    """The step of 0.1 m makes a load of 10 N, and waypoints one of kd V(0) = 4 N; 3 N of friction slip at once."""
+    held = ss.PositionLoop(1.0, 100.0, 10.0, reference_step=0.1)
+    stepped = said(ss.Problem(held, ss.friction.ExponentialStribeck(0.4, 0.3, 0.01), 0.005, initial_load=0.0))
+    assert stepped.start.startswith("slips at once: the load, with the jump of the reference, exceeds the static strength by 6 N")
+    turned = ss.Problem(held, ss.friction.Coulomb(0.4, 0.3), 0.005, initial_load=0.0)
+    assert ss.simulate(turned, 1.0).events.start[0] == 0.0
+    back = replace(turned, body=replace(held, reference_step=-0.1))
+    assert said(back).start.startswith("slips backwards at once")
+    led = replace(held, reference_step=0.0, derivative_gain=40.0)
+    ways = ss.loading.Waypoints([0.0, 1.0], [0.0, 0.1])
+    found = said(ss.Problem(led, ss.friction.Coulomb(0.3, 0.3), ways, initial_load=0.0))
+    assert "exceeds the static strength by 1 N" in found.start
+
+
+def test_check_names_an_integral_gain_that_is_too_large() -> None:
+    given = ss.PositionLoop(1.0, 100.0, 10.0, integral_gain=5000.0, derivative_gain=10.0, reference_step=0.1)
+    found = said(ss.Problem(given, ss.friction.Coulomb(0.3, 0.3), 0.005, initial_load=0.0))
+    assert any("exceeds the largest ki 1000 N/m/s" in text for text in found.chosen)
+    assert "neither body nor driver damps" not in str(found.steady)
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])

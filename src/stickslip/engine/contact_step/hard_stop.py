@@ -1,7 +1,8 @@
 """Hard stops of a rigid body: it bounces off with a share of its slip rate, or rests there, and the stop bears what is too much.
 
 Where a load presses the body to a stop, bounces under a restitution below 1 are infinitely many in a finite time. Those at a rate
-of at most `Params.least_bounce` are left out: the body then rests at the stop.
+of at most `Params.least_bounce` are left out, and so are those that carry it less than some hundred roundings of its slip away: the
+body then rests at the stop.
 """
 
 from __future__ import annotations
@@ -26,8 +27,11 @@ def meet_stop(run: Run) -> None:
     """Turn the body round at the stop that it has reached, or bring it to rest there."""
     way, bounce = run.counts.mode, run.params.restitution * abs(run.state.rate_now)
     run.state.slip_now = run.params.stop_ahead if way > 0 else run.params.stop_behind
-    pulled_off = towards(run, evaluate(run.load, run.state.xi), -way) > rest_limit(run, -way)
-    if pulled_off or bounce > run.params.least_bounce:
+    load = evaluate(run.load, run.state.xi)
+    pulled_off = towards(run, load, -way) > rest_limit(run, -way)
+    # A hop under a force F goes no farther than m v^2 / (2 F). Slip would not resolve it, and the rate would no longer fall.
+    rounded = run.params.least_hop * abs(run.state.slip_now) * way * (load + run.params.reference)
+    if pulled_off or (bounce > run.params.least_bounce and bounce * bounce > rounded):
         run.counts.mode = -way
         turn_states(run, run.state.state_now)
     else:

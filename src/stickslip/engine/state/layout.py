@@ -82,6 +82,7 @@ class Params(MemoryRecord):
     stop_behind: float  # m: slip where another bars the way backwards; -inf without one
     restitution: float  # 1: share of the slip rate with which a body bounces off a stop
     least_bounce: float  # m/s: a body that would bounce off at no more than this rate stays at the stop
+    least_hop: float  # 1/kg: twice the share of the way to a stop below which a hop off it is rounding, over the inertia
     slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative

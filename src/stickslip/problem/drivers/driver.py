@@ -82,6 +82,10 @@ class Driver(ABC):
         value, slope = steady_inflow(problem)
         return arriving(np.array([[0.0], [value], [slope]]), SILENT, 0.0, problem)
 
+    def jump_at_start(self, problem: Problem) -> float:
+        """Return by how much (N) the load on a rigid body jumps from the initial load as the run begins."""
+        return 0.0
+
     def at_first(self, problem: Problem) -> tuple[float, float]:
         """Return the rate (m/s) of a driver that moves when the first wave of the run leaves it, and the force of its gain (Pa)."""
         return 0.0, 0.0

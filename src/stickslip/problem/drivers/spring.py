@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.problem.bodies import BodyOnCharacteristics
+from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
 from stickslip.problem.drivers.driver import Driver
 from stickslip.problem.drivers.impedance import DriverImpedance
 from stickslip.problem.drivers.segments import arriving, scaled
@@ -59,6 +59,10 @@ class Spring(Driver):
         pulled, force = self.varying_inflow(problem), problem.force_in_time
         found = pulled if problem.ground is None else _on_ground(pulled, problem.ground, problem.body.inertia)
         return found if force is None else pushed(found, force)
+
+    def jump_at_start(self, problem: Problem) -> float:
+        """Return what the step of a reference makes of the load (N); 0 without one."""
+        return problem.body.stiffness * as_on_spring(problem.body).reference_step
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
         """Return the times (s) when a force on the body jumps, and by how much (N)."""

@@ -46,6 +46,13 @@ class SpringAndDashpot(Spring):
         grows = float(pull.parts[2, 0]) + amplitude * frequency * math.cos(phase)
         return found + as_on_spring(problem.body).driver_damping * grows
 
+    def jump_at_start(self, problem: Problem) -> float:
+        """Return it with c V(0), where the pulled end was at rest before and the load is given."""
+        found, pull = super().jump_at_start(problem), problem.pull_rate
+        if isinstance(pull, LoadingHistory) and pull.rests_before and not problem.begins_in_balance:
+            found += as_on_spring(problem.body).driver_damping * problem.first_pull_rate
+        return found
+
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
         """Return the times (s) when V or a force jumps, and c times the jumps of V, or those of the force (N)."""
         found = super().steps(problem)

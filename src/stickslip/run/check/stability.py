@@ -7,7 +7,7 @@ import math
 from stickslip.contact import first_rate, resolved
 from stickslip.foundation.show import exactly
 from stickslip.friction import RateAndState
-from stickslip.problem import Problem, loading_rate
+from stickslip.problem import Problem, driver_of, loading_rate
 from stickslip.run.check.asked import CHECK_KINDS
 from stickslip.run.reference.rate_and_state import SteadySliding
 
@@ -20,9 +20,12 @@ def start_of(problem: Problem) -> str:
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     push = 0.0 if problem.force_in_time is None else problem.force_in_time.first
+    jump_of_load = driver_of(problem).jump_at_start(problem)
+    what = "the load" if push == 0.0 else "the load, with the force,"
+    what = what if jump_of_load == 0.0 else f"{what.rstrip(',')}, with the jump of the reference,"
+    push += jump_of_load
     load, excess, unit, pulled = problem.load + push, problem.excess + push, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
-    what = "the load" if push == 0.0 else "the load, with the force,"
     rate = resolved(rate, problem.load, problem.body.total_damping)
     jump = f"; the slip rate jumps to {exactly(rate, slip_rate)}" if rate > 0.0 else ""
     if load < -problem.backward_strength:
@@ -65,7 +68,8 @@ def wait_of(problem: Problem) -> float:
     if problem.varies:
         return math.inf
     rate = loading_rate(problem)
-    return max(-problem.excess, 0.0) / rate if rate > 0 else math.inf
+    excess = problem.excess + driver_of(problem).jump_at_start(problem)
+    return max(-excess, 0.0) / rate if rate > 0 else math.inf
 
 
 def stability_of(problem: Problem) -> str:

@@ -13,6 +13,8 @@ from stickslip.problem.bodies import as_on_spring
 LEAST_BOUNCE = 1e-9
 """A body stays at a hard stop that it would leave at no more than this share (1) of the rate that the normal load gives it in a
 period."""
+LEAST_HOP = 300.0 * 2.0**-52
+"""It stays there, too, if the load presses it back before it is away by this share (1) of the way from the start to that stop."""
 
 
 class InputOfRigid(InputOfBody):
@@ -27,7 +29,7 @@ class InputOfRigid(InputOfBody):
             stops = as_on_spring(body)
             least = LEAST_BOUNCE * problem.normal * body.longest_way / body.inertia
             numbers |= {"stop_ahead": stops.stop_ahead, "stop_behind": -stops.stop_behind}
-            numbers |= {"restitution": stops.restitution, "least_bounce": least}
+            numbers |= {"restitution": stops.restitution, "least_bounce": least, "least_hop": 2.0 * LEAST_HOP / body.inertia}
         return numbers
 
     def steady_numbers(self, problem: Problem) -> dict[str, Any]:
@@ -51,8 +53,8 @@ class InputOfRigid(InputOfBody):
 
 
 def _first(problem: Problem) -> float:
-    """Return the load minus the reference strength (N) of the start, after a step of a reference."""
-    return problem.excess + problem.body.stiffness * as_on_spring(problem.body).reference_step
+    """Return the load minus the reference strength (N) of the start, after the reference has jumped."""
+    return problem.excess + driver_of(problem).jump_at_start(problem)
 
 
 ANSWERS = InputOfRigid()

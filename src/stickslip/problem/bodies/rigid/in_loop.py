@@ -81,7 +81,8 @@ class PositionLoop(Declared, InLoop):
     """A rigid axis that a controller holds at a reference: m dv/dt + damping v + tau = kp (r - u) + kd (r' - v) + q.
 
     q' = ki (r - u) is the integral, r' is the pull rate, and slip u is the position. Loads and tractions are forces, in N. Without
-    an integral gain it is a `SpringBlock`. At the start the lag r - u is `reference_step`, and q the initial load less kd r'.
+    an integral gain it is a `SpringBlock`. At the start the lag r - u is `reference_step`, and q the initial load less kd r' before
+    the start, which is 0 for `Waypoints`, else that at the start.
     """
 
     kind: ClassVar[str] = "position-loop"
@@ -114,7 +115,8 @@ class RotaryLoop(Declared, InLoop):
     """A rigid axis that turns, which a controller holds at a reference: I dv/dt + damping v + tau = kp (r - u) + kd (r' - v) + q.
 
     q' = ki (r - u) is the integral, r' is the pull rate, and slip u is the angle (rad). Loads and tractions are torques, in N m.
-    Without an integral gain it is a `RotatingBlock`. At the start the lag is `reference_step`, and q the initial load less kd r'.
+    Without an integral gain it is a `RotatingBlock`. At the start the lag is `reference_step`, and q the initial load less kd r'
+    before the start, which is 0 for `Waypoints`, else that at the start.
     """
 
     kind: ClassVar[str] = "rotary-loop"

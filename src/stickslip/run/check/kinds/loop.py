@@ -38,6 +38,11 @@ class CheckOfLoop(CheckOfRigid):
         body = as_on_spring(problem.body)
         if body.reference_step:
             yield f"the reference jumps by {brief(body.reference_step, problem.unit_of('slip'))} at the start, and the load with it"
+        largest = body.total_damping * body.stiffness / body.inertia
+        if body.integral_gain > largest:
+            unit = f"{si_unit('stiffness', body.load_unit)}/s"
+            given = f"the integral gain {brief(body.integral_gain, unit)} exceeds the largest ki {brief(largest, unit)}"
+            yield f"{given}: the axis swings with a growing amplitude even where friction does not fall with the slip rate"
         if hunts := why_it_hunts(problem):
             yield hunts
 

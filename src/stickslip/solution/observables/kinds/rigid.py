@@ -14,7 +14,7 @@ import numpy as np
 from stickslip.engine import Cause, History, Positions, Side
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem import Problem
+from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies import as_on_spring
 from stickslip.solution.observables.asked import AtContact, AtDriver, Extent, Field, FollowedFronts, LoadCompared, ObservablesOfKind
 from stickslip.solution.observables.energy.balance import heat
@@ -33,7 +33,8 @@ class ObservablesOfRigid(ObservablesOfKind):
         problem = history.problem
         body = problem.body
         force, rate = spring_force(history, at), history.rate(at)
-        first = problem.excess - as_on_spring(body).driver_damping * problem.first_pull_rate
+        first = problem.excess + driver_of(problem).jump_at_start(problem)
+        first -= as_on_spring(body).driver_damping * problem.first_pull_rate
         spring = _stretching(history, np.full(len(force), first), force)
         return {
             "work": up_to(history, at, _pulling(history), nodes=nodes) + _at_rest(history, at),
@@ -218,7 +219,8 @@ def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
     _, _, time, inside = times_in(history, piece, xi)
     slip = history.slipped(Positions.inside(piece, xi))
     _, acceleration = of_ground(problem, time, inside)
-    spring = problem.excess + problem.body.stiffness * (pulled(problem, time) - slip)
+    first = problem.excess + driver_of(problem).jump_at_start(problem)
+    spring = first + problem.body.stiffness * (pulled(problem, time) - slip)
     gained = value_at(problem.pull_rate, time, inside) - problem.first_pull_rate
     pushing = value_at(problem.force_in_time or 0.0, time, inside) - problem.body.inertia * acceleration
     return np.asarray(spring + as_on_spring(problem.body).driver_damping * gained + pushing)
