@@ -68,6 +68,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: ss.friction.RateAndState(**STATE, evolution="dieterich"), "allowed: ageing, prz, slip"),
     (lambda: ss.loading.Steps([0, 1], [1, 2, 3]), "Steps: 2 times but 3 values"),
     (lambda: ss.loading.Steps([1, 0], [1, 2]), "times must ascend, but [1] = 0 follows 1; sort the points"),
+    (lambda: ss.loading.Waypoints([0, 1], [0, "1 s"]), "positions[1] must be ... 's' does not convert to m or rad"),
     (lambda: ss.loading.Steps(["0 s", "1 h"], ["1 um/s", "10 MPa"]), "values[1] must be ... 'MPa' does not convert to m/s"),
     # problems
     (lambda: ss.Problem(LAW, SLAB), "body comes first, then friction"),

@@ -140,14 +140,19 @@ def unit_among(value: Any, units: str) -> str:
 
 
 def _in_one_of(number: Any, unit: str, wanted: str) -> Any:
-    """Convert to the first of the units "Pa or N" to which `unit` converts. Raises InputError that names the last one."""
+    """Convert to the first of the units "Pa or N" to which `unit` converts. Raises InputError that names both, or the last one."""
     *others, last = wanted.split(" or ")
     for si in others:
         try:
             return to_si(number, unit, si)
         except InputError:
             continue
-    return to_si(number, unit, last)
+    try:
+        return to_si(number, unit, last)
+    except InputError as error:
+        if len(others) != 1:  # a longer list is not said twice in a message
+            raise
+        raise InputError(str(error).replace(f"does not convert to {last}", f"does not convert to {wanted}")) from None
 
 
 def _hint(text: str) -> str:

@@ -108,6 +108,7 @@ KNOWN_COLUMNS: Mapping[str, HeadingColumn] = {
     "drive_rate_deviation": HeadingColumn("rad/s", ("drive rate error", "sd drive rate")),
     "radius": HeadingColumn("m", ("mean radius", "equivalent radius")),
     "shear_force": HeadingColumn("N", ("force", "shear load", "friction force", "traction"), signed=True),
+    "force": HeadingColumn("N", ("shear force", "shear load", "friction force", "traction"), signed=True),
     "normal_force": HeadingColumn("N", ("normal load",)),
     "friction_deviation": HeadingColumn("1", ("standard deviation", "friction error", "mu error", "sd friction", "sd mu")),
     "shear_stress_deviation": HeadingColumn("Pa", ("shear stress error", "traction deviation", "tau error", "sd tau")),

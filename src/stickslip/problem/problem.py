@@ -229,7 +229,8 @@ class Problem(ShownAsTable, ProblemFields):
             return self.body.turn_time(min(DAY, swing))
         from stickslip.problem.free_turn import turn_of_free  # few bodies have no spring
 
-        return turn_of_free(self, self.rate, swing if self.friction.sticks else min(DAY, swing))
+        found: float = turn_of_free(self, self.rate, swing if self.friction.sticks else min(DAY, swing))
+        return found
 
     @property
     def parameters(self) -> Parameters[Self]:

@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.loading import Sinusoidal, Steps
-from stickslip.problem.scenarios import Scenario
+from stickslip.problem.scenarios import Scenario, read_scenario
 from stickslip.run.check.examine import examine
 from stickslip.run.reference.rate_and_state import SteadySliding
 
@@ -88,6 +88,20 @@ def test_a_column_of_a_file_pushes(text: str, heading: str, tmp_path: Path) -> N
     force = ss.load_scenario(file).problem.force
     assert isinstance(force, ss.loading.LoadingHistory)
     assert force.at([0.0, 1.0, 2.0, 5.0]) == pytest.approx([0.0, 15.0, 30.0, 30.0])
+
+
+def test_a_file_without_the_column_asks_for_a_force(tmp_path: Path) -> None:
+    (tmp_path / "push.csv").write_text("time (s),load (N)\n0,0\n2,30\n")
+    file = tmp_path / "pushed.toml"
+    file.write_text(SLIDES.replace('force = "13 N"', FROM_FILE))
+    with pytest.raises(ss.InputError, match=r"no column 'force' in the header; write it as force \(N\)$"):
+        ss.load_scenario(file)
+
+
+def test_a_file_in_place_of_a_number_hears_where_a_file_is_named() -> None:
+    said = r"got 'push.csv'; a file is named in the scenario: \[loading.force\] kind = \"piecewise-linear\", file = \"push.csv\"$"
+    with pytest.raises(ss.InputError, match=said):
+        read_scenario(SLIDES, "pushed").with_values({"loading.force": "push.csv"})
 
 
 def findings(problem: ss.Problem) -> str:

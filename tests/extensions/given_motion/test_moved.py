@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import stickslip as ss
 from stickslip.problem.scenarios import read_scenario
@@ -109,6 +110,44 @@ def test_a_torque_takes_a_rotation_rate() -> None:
 def test_measured_displacements_give_the_slip_rate_between_them() -> None:
     rate = ss.MovedContact.rate_of([0.0, 1.0, 3.0], [0.0, 1e-3, 0.0])
     np.testing.assert_allclose(rate.at([0.5, 2.0]), [1e-3, -5e-4], rtol=1e-15, atol=0.0)
+    labelled = ss.MovedContact.rate_of(xr.DataArray([0.0, 1.0, 3.0]), ["0 mm", "1 mm", "0 mm"])  # type: ignore[list-item]
+    assert labelled == rate
+
+
+REFUSED_DISPLACEMENTS = {
+    "no number": ([0.0, 1.0, 2.0], [0.0, 1.0, np.nan], r"displacements\[2\] must be finite, got nan"),
+    "one time twice": ([0.0, 1.0, 1.0], [0.0, 1.0, 2.0], r"times must ascend, but \[2\] = 1 follows 1; keep one point of each"),
+    "a later start": ([1.0, 2.0], [0.0, 1.0], "times must begin with 0, got 1: take the first time off all of them"),
+    "one too few": ([0.0, 1.0, 2.0], [0.0, 1.0], "needs as many displacements as times, got 2 and 3"),
+    "a word": ([0.0, "soon"], [0.0, 1.0], r"times\[1\] must be a number in s .*, got 'soon'"),
+}
+
+
+@pytest.mark.parametrize(("times", "places", "said"), REFUSED_DISPLACEMENTS.values(), ids=REFUSED_DISPLACEMENTS)
+def test_displacements_that_cannot_be_used_are_named(times: list[float], places: list[float], said: str) -> None:
+    for numbers in (list, lambda given: pd.Series(given)):
+        with pytest.raises(ss.InputError, match=f"^MovedContact.rate_of: {said}"):
+            ss.MovedContact.rate_of(numbers(times), numbers(places))
+
+
+def test_a_normal_load_takes_no_positions_of_an_axis() -> None:
+    ways = ss.loading.Waypoints([0.0, 1.0], [1.0, 2.0])
+    with pytest.raises(
+        ss.InputError, match=r"^MovedContact: normal_load must be in N or Pa or N m, got a history in m/s or rad/s$"
+    ):
+        ss.MovedContact(COULOMB, 1e-3, ways)
+    assert float(ss.simulate(ss.MovedContact(COULOMB, ways, 10.0), 1.0).traction(0.5)) == 5.0
+
+
+def test_a_missing_normal_load_is_named() -> None:
+    with pytest.raises(ss.InputError, match=r"^MovedContact: normal_load must be given$"):
+        ss.MovedContact(COULOMB, "1 um/s")  # type: ignore[call-arg]
+
+
+def test_studies_of_bodies_refuse_a_given_motion() -> None:
+    scenario = read_scenario(TEXT, "axis")
+    with pytest.raises(ss.InputError, match=r"^sweep: axis has a given \[motion\], for which there are"):
+        ss.sweep(scenario, {"friction.a": [0.01, 0.02]}, quantities=["slip"])
 
 
 def test_a_stiff_spring_in_its_place_comes_near_it_with_many_more_pieces() -> None:

@@ -180,11 +180,14 @@ class FrictionAlongMotion:
         place = (found.counted, abs(found.rate), one_argument(found.states))
         forward, backward = self.moved.friction.ways
         mu = forward.coefficient(*place)
-        return mu if backward is forward else np.where(self.motion.facing[found.interval] < 0.0, backward.coefficient(*place), mu)
+        if backward is forward:
+            return np.asarray(mu)
+        return np.where(self.motion.facing[found.interval] < 0.0, backward.coefficient(*place), mu)
 
     def _static(self, law: FrictionLaw, found: At) -> Floats:
         """Return the static friction (N, Pa or N m) of the law of one direction of slip."""
-        return found.load * (law.coefficient(found.counted, 0.0 * found.rate, one_argument(found.states)) + law.static_excess)
+        at_rest = law.coefficient(found.counted, 0.0 * found.rate, one_argument(found.states))
+        return np.asarray(found.load * (at_rest + law.static_excess))
 
     def _is_open(self, found: At) -> Floats:
         """Return where friction does not say what it is: at rest, under a law that sticks."""

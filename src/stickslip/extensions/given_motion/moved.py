@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import CheckedArguments, shown
-from stickslip.foundation.conversion import Number, WithUnit, to_number, unit_among
+from stickslip.foundation.conversion import Number, WithUnit, has_unit, to_number, unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import quantity
+from stickslip.foundation.quantities import MOST_SAMPLES, NumberSeries, Quantity, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.problem import LoadingHistory, PiecewiseLinear, Steps
 
@@ -152,18 +152,29 @@ class MovedContact(CheckedArguments):
     def rate_of(times: ArrayLike, displacements: ArrayLike) -> Steps:
         """Return the slip rate (m/s) between measured displacements (m) at times (s, the first 0), straight from one to the next.
 
-        This takes the displacements as exact: noise of an encoder becomes noise of the slip rate.
+        This takes the displacements as exact: noise of an encoder becomes noise of the slip rate. Raises InputError for times that
+        do not ascend from 0, and for numbers that are not finite.
         """
-        time, place = np.asarray(times, float), np.asarray(displacements, float)
-        if time.ndim != 1 or time.shape != place.shape or len(time) < 2:
-            raise InputError("MovedContact.rate_of: needs as many displacements as times, at least two of each")
-        return Steps(time[:-1].tolist(), (np.diff(place) / np.diff(time)).tolist())
+        who = "MovedContact.rate_of"
+        time = NumberSeries(Quantity("s", "times"), ascending=True, most=MOST_SAMPLES).check(who, "times", _row(times))
+        place = NumberSeries(Quantity("m", "displacements"), most=MOST_SAMPLES).check(who, "displacements", _row(displacements))
+        if len(time) != len(place):
+            raise InputError(f"{who}: needs as many displacements as times, got {len(place)} and {len(time)}")
+        if time[0] != 0.0:
+            raise InputError(f"{who}: times must begin with 0, got {time[0]:g}: take the first time off all of them")
+        rates, count = np.diff(place) / np.diff(time), max(len(time) - 1, 2)  # steps are two at least
+        return Steps(time[:count], np.append(rates, rates[-1])[:count].tolist())
+
+
+def _row(given: Any) -> Any:
+    """Return an array of another library as one of numpy, but for one with a unit."""
+    return np.asarray(given) if hasattr(given, "__array__") and not has_unit(given) else given
 
 
 def _history(given: Any, name: str, units: str, plain: str) -> tuple[LoadingHistory, str]:
     """Return what is given as a history, and its unit among `units`; plain numbers are in `plain`. Raises InputError."""
     if isinstance(given, LoadingHistory):
-        if given.unit not in units.split(" or ") and " or " not in given.unit:
+        if set(given.unit.split(" or ")).isdisjoint(units.split(" or ")):
             raise InputError(f"MovedContact: {name} must be in {units}, got a history in {given.unit}")
         given.check()
         return given, given.unit if given.unit in units.split(" or ") else plain

@@ -54,7 +54,7 @@ class MotionTable(ScenarioTable):
     """The table [motion]: slip rate and normal load in time, in place of [body], [loading] and [initial]."""
 
     name = MOTION
-    what = "a given [{}]"
+    what = "given [{}]"
     instead = "leave out [{}], and give [body] and [loading], for a contact that moves by itself"
     run_keys = frozenset({"duration", "rtol"})
     why_no_others = "has no effect with a [motion], which says how the contact moves"

@@ -16,7 +16,7 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.names import short_units
 from stickslip.foundation.quantities import Choice, Quantity
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.problem.fields import STEADY
+from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_options import EVENTS_WANTED
@@ -34,6 +34,8 @@ EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
 MAY_BE_STEADY = ("initial.rate", *(f"initial.{name}" for name in STATE_NAMES))
 """Parameters for which "steady" stands for steady sliding; as initial rate it takes the place of load and states, too."""
+TABLES_OF_TEXT = (".csv", ".tsv", ".txt", ".dat")
+"""How names of files end that have what varies in time."""
 _STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
@@ -64,7 +66,13 @@ class ParameterPath:
         if value == STEADY and self.name in MAY_BE_STEADY:
             return STEADY
         value = str(value).lower() if isinstance(value, bool) and self.declared == YES_OR_NO else value
-        return self.declared.check(where, self.name, value)
+        try:
+            return self.declared.check(where, self.name, value)
+        except InputError as error:
+            if not (self.name.removeprefix("loading.") in MAY_VARY and isinstance(value, str) and value.endswith(TABLES_OF_TEXT)):
+                raise
+            given = f'[{self.name}] kind = "piecewise-linear", file = "{value}"'
+            raise InputError(f"{error}; a file is named in the scenario: {given}") from None
 
     def put(self, document: dict[str, Any], value: float | str) -> None:
         """Write a value (SI) into the document of a scenario, in place of the one that is there."""

@@ -44,7 +44,7 @@ SOFT_TORQUE, WITH_SOFT_TORQUE = "soft_torque", "with_soft_torque"
 DRIVE = ("driver_impedance", "driver_inertia", "driver_integral_gain")
 RECORDED = "loading.ground_acceleration"
 """The table that is a record if it names a file and no kind."""
-OF_FORCE = {"N": "shear_force", "N m": "torque"}
+OF_FORCE = {"N": "force", "N m": "torque"}
 """The heading of a force in a data file, which may be "force" alone, by its unit."""
 ONE_WAY = "true: the contact never slips backwards"
 """Meaning of the key one_way."""
