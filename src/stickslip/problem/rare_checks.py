@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
+
+import numpy as np
 
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
@@ -11,6 +14,9 @@ from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics
 from stickslip.problem.bodies.rigid.on_spring import as_on_spring
 from stickslip.problem.ground import Ground
 from stickslip.problem.loading_history import LoadingHistory
+
+MOST_PERIODS = 1e8
+"""Number of periods (1) of a force that a run of a body without a spring may have; so many take an hour or more."""
 
 
 def check_ground(body: BodyOnCharacteristics, ground: Ground, pulls: list[LoadingHistory]) -> None:
@@ -72,6 +78,19 @@ def check_force(problem: Any) -> None:
         raise InputError(f"Problem: pull_rate has nothing to pull: a {name} of stiffness 0 has no spring: {cure}")
     if problem.initial_load is None and problem.initial_excess is None and not isinstance(problem.initial_rate, str):
         object.__setattr__(problem, "initial_load", 0.0)  # no spring holds a load before the force acts
+
+
+def check_period_of_force(problem: Any, duration: float, who: str) -> None:
+    """Refuse a force that swings a body without a spring too often in a run (s): its period bounds no round trip of a spring."""
+    tone = problem.force.tone if _swings(problem.force) else None
+    if tone is None or 2.0 * math.pi * MOST_PERIODS >= tone.frequency * duration:
+        return
+    largest = abs(problem.load) + float(np.abs(problem.force.parts[1]).max()) + abs(tone.amplitude)
+    if len(problem.force.parts[0]) == 1 and largest < min(problem.strength, problem.backward_strength):
+        return  # it rests for ever, which is one step
+    period, least = 2.0 * math.pi / tone.frequency, duration / MOST_PERIODS
+    why = f"the force's period of {period:g} s is too short for a run of {duration:g} s"
+    raise InputError(f"{who}: {why}: at least about {least:.3g} s is needed, or a shorter duration")
 
 
 def check_thrown(body: Any, rate: float) -> None:

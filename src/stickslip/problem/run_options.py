@@ -83,6 +83,10 @@ class RunOptions(CheckedArguments):
 
         Raises InputError, which begins with `who` and names options as `called` says.
         """
+        if problem.force is not None and problem.body.is_free:
+            from stickslip.problem.rare_checks import check_period_of_force
+
+            check_period_of_force(problem, self.duration, who)
         if self.creep_rtol is None and self.shortest_event is None:
             return
         from stickslip.problem.limits import check_creep_rtol, check_shortest_event  # which most scenarios can do without

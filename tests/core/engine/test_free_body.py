@@ -234,3 +234,11 @@ def test_mass_force_and_normal_load_times_a_power_of_2_leave_the_motion_as_it_is
     one, other = ss.simulate(ss.Problem(FREE, DRY, force=POINTS), 6.0), ss.simulate(heavy, 6.0)
     times = np.linspace(0.0, 6.0, 100)
     assert np.array_equal(one.slip(times), other.slip(times))
+
+
+def test_a_force_that_swings_too_often_in_a_run_is_refused() -> None:
+    body, law = ss.RotatingBlock(1.0, 0.0, 10.0), ss.friction.Coulomb(0.1, 0.05)
+    moves = ss.Problem(body, law, force=ss.loading.Sinusoidal(0.0, 2.0, 1e-9))
+    with pytest.raises(ss.InputError, match="the force's period of 1e-09 s is too short for a run of 1 s: at least about 1e-08 s"):
+        ss.simulate(moves, 1.0)
+    assert ss.simulate(moves, 1e-7).duration == 1e-7
