@@ -180,9 +180,9 @@ class FrictionAlongMotion:
         place = (found.counted, abs(found.rate), one_argument(found.states))
         forward, backward = self.moved.friction.ways
         mu = forward.coefficient(*place)
-        if backward is forward:
-            return np.asarray(mu)
-        return np.where(self.motion.facing[found.interval] < 0.0, backward.coefficient(*place), mu)
+        if backward is not forward:
+            mu = np.where(self.motion.facing[found.interval] < 0.0, backward.coefficient(*place), mu)
+        return np.asarray(mu)
 
     def _static(self, law: FrictionLaw, found: At) -> Floats:
         """Return the static friction (N, Pa or N m) of the law of one direction of slip."""
