@@ -1,0 +1,21 @@
+"""Chains and lattices of blocks that are coupled by springs: Burridge and Knopoff's model, with located events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from stickslip.extension import Extension
+
+
+class ChainsExtension(Extension):
+    """`ss.Chain`, and what is made of it."""
+
+    name = "chains"
+
+    def public(self) -> Mapping[str, str]:
+        """Return the chain, and numbers that are drawn for its blocks."""
+        home = "stickslip.extensions.chains"
+        return {"Chain": f"{home}.chain:Chain", "Drawn": f"{home}.drawn:Drawn"}
+
+
+EXTENSION = ChainsExtension()
