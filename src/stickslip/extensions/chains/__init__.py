@@ -1,4 +1,4 @@
-"""Chains of sliding blocks (Burridge & Knopoff 1967), and what catalogues of slip events say."""
+"""Chains and lattices of blocks that are coupled by springs: Burridge and Knopoff's model, with located events."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from stickslip.extension import Extension
 
 
 class ChainsExtension(Extension):
-    """The statistics of catalogues."""
+    """`ss.Chain`, and what is made of it."""
 
     name = "chains"
 
     def public(self) -> Mapping[str, str]:
-        """Return the statistics of catalogues."""
+        """Return the chain, numbers that are drawn for its blocks, and the statistics of catalogues."""
         home = "stickslip.extensions.chains"
         return {
+            "Chain": f"{home}.chain:Chain",
+            "Drawn": f"{home}.drawn:Drawn",
             "studies.GutenbergRichter": f"{home}.statistics:GutenbergRichter",
             "studies.gutenberg_richter": f"{home}.statistics:gutenberg_richter",
             "studies.magnitudes": f"{home}.magnitudes:magnitudes",
