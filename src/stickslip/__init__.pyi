@@ -6,6 +6,8 @@ from . import figures, friction, loading, studies
 from .contact.uniqueness import uniqueness
 
 # One run
+from .extensions.chains.chain import Chain
+from .extensions.chains.drawn import Drawn
 from .extensions.explorer.notebook import explore
 from .extensions.given_motion.moved import MovedContact
 from .extensions.planar.slab import PlanarSlab
@@ -38,6 +40,8 @@ __version__: str
 
 __all__ = [
     "YEAR",
+    "Chain",
+    "Drawn",
     "ElasticSlab",
     "InputError",
     "LayeredSlab",

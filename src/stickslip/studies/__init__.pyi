@@ -1,4 +1,6 @@
 from stickslip.contact import critical_value
+from stickslip.extensions.chains.magnitudes import magnitudes
+from stickslip.extensions.chains.statistics import GutenbergRichter, gutenberg_richter
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
 from stickslip.extensions.inference.infer import infer
@@ -22,6 +24,7 @@ __all__ = [
     "Comparison",
     "Edge",
     "Ensemble",
+    "GutenbergRichter",
     "Identification",
     "Inference",
     "Record",
@@ -33,9 +36,11 @@ __all__ = [
     "critical_value",
     "ensemble",
     "find",
+    "gutenberg_richter",
     "identify",
     "infer",
     "judge_series",
+    "magnitudes",
     "predictability",
     "ranking",
     "schemes",
