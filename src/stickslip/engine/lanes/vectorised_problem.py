@@ -199,6 +199,8 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield "[loading] one_way: a batch slips both ways"
     if problem.body.has_stops or any(name.startswith("body.stop_") for name in parameters):
         yield "[body] a hard stop is followed one run at a time"
+    if problem.body.has_play or "body.backlash" in parameters:
+        yield "[body] backlash is followed one run at a time"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
         yield "[run] creep_rtol: a batch cannot leap over creep from the start of a run"
 
