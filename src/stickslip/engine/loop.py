@@ -207,9 +207,7 @@ def rest(run: Run, xi_to: float) -> None:
     """Stay at rest for one step, up to the place xi_to or the edge of a play at most."""
     edge = edge_at_rest(run, xi_to)
     target = min(xi_to, edge)
-    if target > run.state.xi and (
-        own_states(run) == 0 or call_part(run.implicit_steps, run, Task.STICK_WITH_STATE, target) == 0.0
-    ):
+    if target > run.state.xi and (own_states(run) == 0 or call_part(run.implicit_steps, run, Task.STICK_WITH_STATE, target) == 0.0):
         stick(run, before_turn(run, target))
     if run.state.xi >= edge and run.counts.breach == 0:
         change_side(run)

@@ -87,7 +87,7 @@ class Driver(ABC):
         return 0.0
 
     def lag_at_first(self, problem: Problem) -> float:
-        """Return how far (m) a rigid body is behind the end of its spring at the start."""
+        """Return how far (m) a body is behind the end of its spring at the start; 0 if there is no play between them."""
         return 0.0
 
     def at_first(self, problem: Problem) -> tuple[float, float]:

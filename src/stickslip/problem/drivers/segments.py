@@ -33,7 +33,7 @@ def straight(parts: Floats, start: Floats) -> tuple[Floats, Floats]:
 
 
 def put_way(history: float | LoadingHistory, segments: Any, start: Floats) -> None:
-    """Write how far (m) what moves at a rate has come, and this rate, but for their sinusoid, into segments that begin at times (s)."""
+    """Write how far (m) what moves at a rate has come, and the rate, without a sinusoid, into segments that begin at times (s)."""
     own, value, slope = scaled(history, 1.0)[0]
     lasting = np.diff(own)
     whole = np.append(0.0, np.cumsum(lasting * (value[:-1] + 0.5 * slope[:-1] * lasting)))

@@ -80,7 +80,9 @@ class Spring(Driver):
             put_way(problem.pull_rate, segments, start)
 
     def lag_at_first(self, problem: Problem) -> float:
-        """Return it with the play that the force of the spring has taken up; without a force the body is in the middle of the play."""
+        """Return it with the play that the spring's force has taken up; without a force the body is in the middle of the play."""
+        if not problem.body.has_play:
+            return 0.0
         body, force = as_on_spring(problem.body), problem.load + self.jump_at_start(problem)
         force -= body.driver_damping * problem.first_pull_rate
         return float(force / problem.body.stiffness + 0.5 * body.backlash * np.sign(force))
