@@ -125,6 +125,7 @@ BESIDE: dict[str, Callable[[ss.Problem], ss.Problem]] = {
     "friction.slip.memory": to_and_fro,
     "friction.counts": to_and_fro,
     "body.stop_behind": lambda problem: replace(problem, pull_rate=-80.0),
+    "body.backlash": lambda problem: replace(problem, initial_load=0.0, initial_excess=None),
 }
 """Entries that act only beside something else, which is added to the problem here."""
 STRAIN_ONLY = "body.p_wave_speed"

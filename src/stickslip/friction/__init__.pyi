@@ -9,6 +9,7 @@ from stickslip.friction.laws.both_ways import BothWays, SelfEnergising
 from stickslip.friction.laws.bristles import Dahl, LuGre
 from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
 from stickslip.friction.laws.of_rate import (
+    CarlsonLanger,
     Coulomb,
     ExponentialStribeck,
     HyperbolicRate,
@@ -30,6 +31,7 @@ from stickslip.friction.register import LAWS
 __all__ = [
     "LAWS",
     "BothWays",
+    "CarlsonLanger",
     "Coulomb",
     "Dahl",
     "ExponentialCohesiveZone",

@@ -284,8 +284,9 @@ class ProblemFields(CheckedArguments):
 
     @cached_property
     def varies(self) -> bool:
-        """True if the load at rest is no ramp: a history or a force is given, the ground moves, or the driver changes or moves."""
-        moves = self.body.has_machine or self.body.is_damped or self.force is not None
+        """True if the load at rest is no ramp: by a history, a force, a play, moving ground, or a driver that changes or moves."""
+        body = self.body
+        moves = body.has_machine or body.is_damped or body.has_play or self.force is not None
         return moves or self.driver_changes or any(name != "driver_reflection" for name in self._felt)
 
     @cached_property

@@ -207,6 +207,7 @@ CLOSED: dict[str, tuple[dict[str, Any], float, float, float]] = {
         0.1,
         0.45 + 0.2 / math.e,
     ),
+    "carlson-langer": ({"static": 0.6, "drop": 0.1, "rate": 0.5}, 0.0, 1.0, 0.18),
     "both-ways": ({"forward": Coulomb(0.6, 0.5), "backward": Coulomb(0.4, 0.3)}, 0.0, 1.0, 0.5),
     "self-energising": ({"law": Coulomb(0.45, 0.4), "gain": 0.8}, 0.0, 1.0, 0.4 / 0.68),
     "power-stribeck": ({"static": 0.6, "dynamic": 0.4, "rate": 0.1, "exponent": 3}, 0.0, 0.2, 0.4 + 0.2 / 9),

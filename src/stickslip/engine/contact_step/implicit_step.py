@@ -15,7 +15,7 @@ from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_long
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE_FRICTION
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
-from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
+from stickslip.engine.contact_step.step_events import Cut, cut_at_edge, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
@@ -46,7 +46,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     reached = length >= xi_to - run.state.xi
     if own_states(run) == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
-    cut = Cut(StepEvent.NONE, 0, 1.0) if hanging else cut_at_first_event(run, rate, 1.0)
+    cut = cut_at_edge(run, rate) if hanging else cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)
     keep_state(run, cut.end)
     keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * length)

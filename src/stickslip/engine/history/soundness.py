@@ -41,7 +41,7 @@ FIXED_COUNTS = (
 """Counts that follow from the problem alone, so that those in a file must be the same."""
 FLAGS = ("moved", "jump", "stiff", "folds_move", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps", "merging")
 """Counts that are 0 or 1."""
-SIGNS = ("mode", "leaving_rest")
+SIGNS = ("mode", "leaving_rest", "side")
 """Counts that are a direction: -1, 0 or 1."""
 NOT_NEGATIVE = (
     "trip",
@@ -58,7 +58,7 @@ NOT_NEGATIVE = (
     "merge_at",
 )
 """Counts of round trips or steps, from 0 to NEVER."""
-FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "missed", "exit")
+FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "missed", "exit", "edge")
 """Numbers of the state that may be infinite or NaN."""
 Fault = tuple[str, Any]
 """The name of a check, and whether it fails."""

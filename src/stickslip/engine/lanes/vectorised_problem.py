@@ -190,6 +190,8 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     problem = scenario.problem
     if scenario.max_events is not None:
         yield "[run] events: a batch runs for a time, not until a number of events"
+    if problem.body.has_play or "body.backlash" in parameters:
+        yield "[body] backlash is followed one run at a time"
     driver = next((kind for name, kind in MOVING.items() if name in parameters), problem.driver_kind)
     alone = [ONE_AT_A_TIME[kind].format(problem.body.kind) for kind in (problem.body.structure, driver) if kind in ONE_AT_A_TIME]
     yield from (f"{reason} is followed one run at a time" for reason in alone)

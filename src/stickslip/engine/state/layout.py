@@ -30,7 +30,8 @@ STATES = len(expression.STATES)
 class Params(MemoryRecord):
     """Hold the numbers of a problem, in SI.
 
-    They are constant during a run, except `stick_to` under a law of slip and slip rate, and `reflection` of a driver that changes.
+    They are constant during a run, except `stick_to` under a law of slip and slip rate, `reflection` of a driver that changes, and
+    `stiffness` under a play.
     """
 
     round_trip_time: (
@@ -75,14 +76,16 @@ class Params(MemoryRecord):
     damper_share: float  # 1: share of a sharp front that it sends back
     pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
     winding: float  # N/(m s): integral gain of a position loop (`contact.winding`); 0 of any other body
-    first_lag: float  # m: how far slip is behind the reference of a position loop at the start
-    pull_tone: float  # m/s: amplitude of a tone in the rate of that reference
+    first_lag: float  # m: how far slip is behind the reference of a position loop, or the end of a spring with play, at the start
+    pull_tone: float  # m/s: amplitude of a tone in the rate of that reference, or of that end
     pull_phase: float  # rad: phase of that tone at t = 0
     stop_ahead: float  # m: slip where a hard stop bars the way forwards (`contact_step.hard_stop`); inf without one
     stop_behind: float  # m: slip where another bars the way backwards; -inf without one
     restitution: float  # 1: share of the slip rate with which a body bounces off a stop
     least_bounce: float  # m/s: a body that would bounce off at no more than this rate stays at the stop
     least_hop: float  # 1/kg: twice the share of the way to a stop below which a hop off it is rounding, over the inertia
+    play: float  # m: half the backlash between a rigid body and its spring (`contact.play`); 0 without
+    spring: float  # N/m: stiffness of that spring, where `stiffness` is 0 in the play
     slow: float  # m/s: a block whose slip rate stays below this creeps; 0 for a slab
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative
@@ -121,6 +124,7 @@ class State(MemoryRecord):
     roughest: float  # 1: largest error of the slip rate by rounding in the law, relative, in any rough step (`Counts.rough`)
     exit: float  # 1: xi where an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
     hanging: float  # m/s: slip rate below which a contact with bristles hangs in them; 0 under any other law
+    edge: float  # 1: xi where the lag has last met an edge of the play; NaN if not on this piece of load
     driver_rate: float  # m/s: rate of a driver that is a machine, h/c before its wave reaches the end of the present piece of load
     driver_push: float  # Pa: force of its integral gain then
     driver_swing: float  # m/s: bound on how far its rate has been from that of a long rest, in this round trip
@@ -195,6 +199,7 @@ class Counts(MemoryRecord):
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
     given: int  # number of states, the last ones, that follow from time alone (`contact.pressing`)
     driven: int  # 1 if the driver is a machine (`waves.driver`)
+    side: int  # side of the play on which the spring pulls (1) or pushes (-1), 0 inside it or without one
     driver_trip: int  # round trip up to which a machine has been followed
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
     cells: int  # number of cells of a body of layers (`waves.ladder`); 0 for any other body
@@ -300,6 +305,8 @@ class StepEvent(IntEnum):
     """Slip, or the slip rate, reaches a knot of the law."""
     STOP = 3
     """Slip reaches a hard stop."""
+    EDGE = 4
+    """The lag of slip meets an edge of the play."""
 
 
 class EnginePart(IntEnum):
@@ -417,9 +424,9 @@ class LoadingSegment(MemoryRecord):
     offset: float  # s: phase of its arrival
     value: float  # inflow there; of a machine the force that drives it, kp V0 + far stress, minus the reference strength (Pa)
     slope: float  # its growth per second
-    pull: float  # m/s: pull rate V0 of a machine, or of a position loop, there, but for its tone
+    pull: float  # m/s: pull rate V0 of a machine, of a position loop, or of a spring with play, there, but for its tone
     pull_slope: float  # m/s^2: how fast it grows
-    pulled: float  # m: way of a position loop's reference since the start, but for its tone; its rate is `pull`
+    pulled: float  # m: way of that loop's reference, or of that spring's end, since the start, but for its tone; its rate is `pull`
     jump: float  # 1 if the inflow or the normal load jumps there, else 0
     pressing: float  # 1: growth of the normal load since t = 0 there, but for its tone, as a share of that at t = 0
     pressing_rate: float  # 1/s: how fast it grows

@@ -245,6 +245,11 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def has_play(self) -> bool:
+        """True if there is backlash between it and its spring."""
+        ...
+
+    @property
     def inflow_delay(self) -> float:
         """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
         ...
@@ -323,6 +328,7 @@ class WithNormalLoad:
 
     has_belt: ClassVar[bool] = False
     has_stops: bool = False
+    has_play: bool = False
 
     takes_force: ClassVar[bool] = False
     is_free: bool = False

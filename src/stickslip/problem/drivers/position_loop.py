@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import as_on_spring
-from stickslip.problem.drivers.segments import scaled
+from stickslip.problem.drivers.segments import put_way, scaled
 from stickslip.problem.drivers.spring_and_dashpot import SpringAndDashpot
 from stickslip.problem.fields import ProblemFields
 from stickslip.problem.problem import Problem
@@ -30,13 +28,7 @@ class OfPositionLoop(SpringAndDashpot):
     def put(self, problem: Problem, segments: Any, start: Floats, middle: Floats) -> None:
         """Write the way and the rate of the reference, but for its sinusoid."""
         super().put(problem, segments, start, middle)
-        own, value, slope = scaled(problem.pull_rate, 1.0)[0]
-        lasting = np.diff(own)
-        whole = np.append(0.0, np.cumsum(lasting * (value[:-1] + 0.5 * slope[:-1] * lasting)))
-        n = np.searchsorted(own, start, side="right") - 1
-        since = start - own[n]
-        segments.pulled = whole[n] + since * (value[n] + 0.5 * slope[n] * since)
-        segments.pull, segments.pull_slope = value[n] + slope[n] * since, slope[n]
+        put_way(problem.pull_rate, segments, start)
 
     def loading_rate(self, problem: ProblemFields) -> float:
         """Return K V + c dV/dt + ki e at the start (N/s)."""

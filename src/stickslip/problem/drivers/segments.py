@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
@@ -28,6 +30,17 @@ def straight(parts: Floats, start: Floats) -> tuple[Floats, Floats]:
     own, value, slope = parts
     n = np.searchsorted(own, start, side="right") - 1
     return value[n] + slope[n] * (start - own[n]), slope[n]
+
+
+def put_way(history: float | LoadingHistory, segments: Any, start: Floats) -> None:
+    """Write how far (m) what moves at a rate has come, and the rate, without a sinusoid, into segments that begin at times (s)."""
+    own, value, slope = scaled(history, 1.0)[0]
+    lasting = np.diff(own)
+    whole = np.append(0.0, np.cumsum(lasting * (value[:-1] + 0.5 * slope[:-1] * lasting)))
+    n = np.searchsorted(own, start, side="right") - 1
+    since = start - own[n]
+    segments.pulled = whole[n] + since * (value[n] + 0.5 * slope[n] * since)
+    segments.pull, segments.pull_slope = value[n] + slope[n] * since, slope[n]
 
 
 def arriving(parts: Floats, tone: Tone, delay: float, problem: Problem, kind: type[Inflow] = Inflow) -> Inflow:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
 from stickslip.problem.drivers.driver import Driver
 from stickslip.problem.drivers.impedance import DriverImpedance
-from stickslip.problem.drivers.segments import arriving, scaled
+from stickslip.problem.drivers.segments import arriving, put_way, scaled
 from stickslip.problem.force import jumps_of_force, pushed
 from stickslip.problem.inflow import Inflow
 from stickslip.problem.loading import Tone
@@ -63,6 +63,29 @@ class Spring(Driver):
     def jump_at_start(self, problem: Problem) -> float:
         """Return what the step of a reference makes of the load (N); 0 without one."""
         return problem.body.stiffness * as_on_spring(problem.body).reference_step
+
+    def numbers(self, problem: Problem) -> dict[str, Any]:
+        """Return half the play, if there is one, the lag of the start, and the sinusoid of the pull rate."""
+        body = as_on_spring(problem.body)
+        if not problem.body.has_play:
+            return {}
+        tone = scaled(problem.pull_rate, 1.0)[1]
+        tones = {"pull_tone": tone.amplitude, "pull_phase": tone.phase}
+        return {"play": 0.5 * body.backlash, "spring": problem.body.stiffness, "first_lag": self.lag_at_first(problem), **tones}
+
+    def put(self, problem: Problem, segments: Any, start: Floats, middle: Floats) -> None:
+        """Write how far its end has been pulled, if there is a play."""
+        super().put(problem, segments, start, middle)
+        if problem.body.has_play:
+            put_way(problem.pull_rate, segments, start)
+
+    def lag_at_first(self, problem: Problem) -> float:
+        """Return it with the play that the spring's force has taken up; without a force the body is in the middle of the play."""
+        if not problem.body.has_play:
+            return 0.0
+        body, force = as_on_spring(problem.body), problem.load + self.jump_at_start(problem)
+        force -= body.driver_damping * problem.first_pull_rate
+        return float(force / problem.body.stiffness + 0.5 * body.backlash * np.sign(force))
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
         """Return the times (s) when a force on the body jumps, and by how much (N)."""

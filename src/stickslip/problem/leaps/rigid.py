@@ -13,7 +13,9 @@ from stickslip.problem.problem import Problem
 
 def what_stops_or_winds(problem: Problem) -> str:
     """Return what a body would have to be without for leaps, in words; empty if it is."""
-    return "no hard stops" if problem.body.has_stops else "no integral gain" if as_on_spring(problem.body).integral_gain else ""
+    if problem.body.has_stops or problem.body.has_play:
+        return "no hard stops" if problem.body.has_stops else "no backlash"
+    return "no integral gain" if as_on_spring(problem.body).integral_gain else ""
 
 
 class LeapsOfRigid(LeapsOfBody):

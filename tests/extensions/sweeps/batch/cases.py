@@ -112,6 +112,9 @@ CASES = {
         pull_rate=0.01,
     ),
     "exponential": case(BLOCK, _f.ExponentialSlipWeakening(0.7, 0.2, 0.5), 60.0, {"friction.static": (0.3, 0.8)}, pull_rate=0.01),
+    "carlson-langer": case(
+        BLOCK, _f.CarlsonLanger(0.6, 0.05, 0.5), 60.0, {"friction.drop": (0.0, 0.2), "friction.rate": (0.1, 2.0)}, pull_rate=0.01
+    ),
     "coulomb": case(
         SLAB, _f.Coulomb(0.6, 0.5), 60.0, {"friction.static": (0.5, 0.8), "body.wave_speed": (2e3, 4e3)}, pull_rate=0.01
     ),

@@ -93,6 +93,8 @@ def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
         return SliderRange(0.0, max(body.stiffness, SLIDER_REACH * anchor))
     if path in ("body.damping", "body.driver_damping", "body.contact_damping"):
         return SliderRange(0.0, max(2.0 * body.impedance, SLIDER_REACH * anchor))
+    if path == "body.backlash" and body.stiffness > 0.0:
+        return SliderRange(0.0, max(2.0 * size / body.stiffness, SLIDER_REACH * anchor))
     if path == "loading.pull_rate" and anchor <= 0.0:
         return (
             SliderRange(SLIDER_REACH * anchor, -SLIDER_REACH * anchor)

@@ -172,7 +172,14 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
     times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
     dampings = {"body.damping": 1.0, "body.driver_damping": 1.0, "body.contact_damping": 0.1 * problem.body.impedance}
-    return {**times, TREND: 0.1 / reach, DRIFT: 0.1 / part.duration, "initial.slip": 0.1 * reach, **dampings}
+    return {
+        **times,
+        "body.backlash": 0.01 * reach,
+        TREND: 0.1 / reach,
+        DRIFT: 0.1 / part.duration,
+        "initial.slip": 0.1 * reach,
+        **dampings,
+    }
 
 
 def at_rests(part: Part) -> list[Part]:

@@ -12,6 +12,7 @@ from stickslip.foundation.quantities import declare, quantity
 from stickslip.foundation.show import Declared
 from stickslip.problem.bodies.contract import BodyOnCharacteristics
 from stickslip.problem.bodies.rigid.on_spring import OnSpring
+from stickslip.problem.bodies.rigid.play import BACKLASH, check_play
 from stickslip.problem.bodies.rigid.stops import RESTITUTION, STOP_AHEAD, STOP_BEHIND, check_with_stops
 
 
@@ -39,9 +40,11 @@ class SpringBlock(Declared, OnSpring):
     stop_ahead: Number = quantity("m", STOP_AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
     stop_behind: Number = quantity("m", STOP_BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
     restitution: Number = declare(RESTITUTION, 0.0)
+    backlash: Number = quantity("m", BACKLASH, at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
         check_with_stops(self)
+        check_play(self)
 
     @property
     def inertia(self) -> float:
@@ -73,9 +76,11 @@ class RotatingBlock(Declared, OnSpring):
     stop_ahead: Number = quantity("rad", STOP_AHEAD, at_least=0, infinite=True, word="none", default=math.inf)
     stop_behind: Number = quantity("rad", STOP_BEHIND, at_least=0, infinite=True, word="none", default=math.inf)
     restitution: Number = declare(RESTITUTION, 0.0)
+    backlash: Number = quantity("rad", BACKLASH, at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
         check_with_stops(self)
+        check_play(self)
 
 
 def as_block(body: BodyOnCharacteristics) -> SpringBlock:

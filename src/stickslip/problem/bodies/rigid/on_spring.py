@@ -32,6 +32,7 @@ class BodyOnSpring(BodyOnCharacteristics, Protocol):
     stop_ahead: float
     stop_behind: float
     restitution: float
+    backlash: float
     integral_gain: float
     reference_step: float
 
@@ -55,6 +56,8 @@ class OnSpring(WithOneDriver):
     """The kind of this body on a belt."""
     driver_damping: float = 0.0
     """Of a body that has no dashpot beside its spring."""
+    backlash: float = 0.0
+    """Of a body without a play between it and its spring."""
     integral_gain: float = 0.0
     """Of a body that is in no position loop; and the step of its reference."""
     reference_step: float = 0.0
@@ -88,6 +91,11 @@ class OnSpring(WithOneDriver):
     def has_stops(self: BodyOnSpring) -> bool:  # type: ignore[override]
         """True if a hard stop bars its way."""
         return anywhere(self.stop_ahead < math.inf) or anywhere(self.stop_behind < math.inf)
+
+    @property
+    def has_play(self: BodyOnSpring) -> bool:  # type: ignore[override]
+        """True if there is a play between it and its spring."""
+        return anywhere(self.backlash)
 
     @property
     def total_damping(self: BodyOnSpring) -> float:

@@ -10,7 +10,7 @@ from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
 from stickslip.friction import RateAndState
-from stickslip.problem import Problem, loading_rate
+from stickslip.problem import Problem, driver_of, loading_rate
 from stickslip.problem.bodies import BodyOnCharacteristics, as_on_spring
 from stickslip.problem.scenarios import Scenario
 from stickslip.run.check.asked import CHECK_DRIVERS, CheckOfKind, Fact
@@ -34,6 +34,7 @@ class CheckOfRigid(CheckOfKind):
             Fact("sqrt(K m)", size, problem.unit_of("impedance"), f"impedance of the {body.noun}, in place of Z"),
             Fact(loads, rate, unit, f"rate of loading while stuck{first}"),
             *of_driver,
+            *_play(problem),
             *_inertia(problem),
         ]
 
@@ -57,11 +58,14 @@ class CheckOfRigid(CheckOfKind):
             return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
         if growth.real > 0:
             return f"oscillates with growing amplitude: {values}; growth {growth.real:.6g} /s"
-        return f"statically stable: {values}"
+        loose = "; in the play no spring holds it" if body.has_play else ""
+        return f"statically stable: {values}{loose}"
 
     def warnings(self, scenario: Scenario, contact: Uniqueness) -> list[str]:
-        """Return a warning of a force that does not make the body slip, where nothing else can."""
+        """Return a warning of a steady pull, or of a force, that does not make the body slip, where nothing else can."""
         problem = scenario.problem
+        if first_slip(problem) > scenario.duration:
+            return ["the run ends before the play is taken up and the load reaches the static strength: nothing will slip"]
         rests = problem.friction.sticks and not problem.has_initial_rate and problem.ground is None
         if problem.force_in_time is None or not rests or problem.normal_varies or problem.pull_rate != 0.0:
             return []
@@ -74,6 +78,28 @@ class CheckOfRigid(CheckOfKind):
     def critical_stiffness(self, body: BodyOnCharacteristics, sliding: SteadySliding) -> tuple[str, float] | None:
         """Return the stiffness of the spring beside the one that mass and damping ask for."""
         return "stiffness K", sliding.critical_stiffness(body.inertia, body.total_damping)
+
+
+def first_slip(problem: Problem) -> float:
+    """Return when (s) a steady pull has taken up the play and the static strength; 0 without a play, or where more than it acts."""
+    body, rate = as_on_spring(problem.body), problem.first_pull_rate
+    alone = not (problem.loading_varies or problem.ground or problem.force) and problem.friction.sticks
+    if not (problem.body.has_play and alone and rate) or problem.has_initial_rate:
+        return 0.0
+    strength = problem.strength if rate > 0.0 else problem.backward_strength
+    stretch = (strength - body.driver_damping * abs(rate)) / problem.body.stiffness + 0.5 * body.backlash
+    return max(stretch / abs(rate) - driver_of(problem).lag_at_first(problem) / rate, 0.0)
+
+
+def _play(problem: Problem) -> list[Fact]:
+    """Return how far the pulled end moves in vain where the pull turns, and when slip begins under a steady pull."""
+    body, wait = problem.body, first_slip(problem)
+    if not body.has_play:
+        return []
+    lost = as_on_spring(body).backlash + (problem.strength + problem.backward_strength) / body.stiffness
+    meaning = "way of the pulled end from slip one way to slip the other: the backlash, and the stretch that friction holds"
+    begins = Fact("first slip", wait, "s", "when the play is taken up and the load reaches the static strength")
+    return [Fact("lost motion", lost, problem.unit_of("slip"), meaning), *([begins] if wait else [])]
 
 
 LITTLE = 1e-9

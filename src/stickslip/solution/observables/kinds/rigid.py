@@ -219,8 +219,14 @@ def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
     _, _, time, inside = times_in(history, piece, xi)
     slip = history.slipped(Positions.inside(piece, xi))
     _, acceleration = of_ground(problem, time, inside)
-    first = problem.excess + driver_of(problem).jump_at_start(problem)
-    spring = first + problem.body.stiffness * (pulled(problem, time) - slip)
+    moved = pulled(problem, time) - slip
+    if problem.body.has_play:
+        lag, half = driver_of(problem).lag_at_first(problem) + moved, 0.5 * as_on_spring(problem.body).backlash
+        first = as_on_spring(problem.body).driver_damping * problem.first_pull_rate - problem.strength
+        spring = first + problem.body.stiffness * (lag - np.clip(lag, -half, half))
+    else:
+        first = problem.excess + driver_of(problem).jump_at_start(problem)
+        spring = first + problem.body.stiffness * moved
     gained = value_at(problem.pull_rate, time, inside) - problem.first_pull_rate
     pushing = value_at(problem.force_in_time or 0.0, time, inside) - problem.body.inertia * acceleration
     return np.asarray(spring + as_on_spring(problem.body).driver_damping * gained + pushing)
