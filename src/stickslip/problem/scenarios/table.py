@@ -36,6 +36,8 @@ class ScenarioTable:
     """The keys that [run] may have beside the table; None for all."""
     why_no_others = "has no effect with this table"
     """Why [run] may have no other key."""
+    in_place_of: frozenset[str] = frozenset()
+    """The tables of the core that a scenario with this one does not have: `completed` fills them in, and nobody is shown them."""
 
     def __init__(self, kind: type | None = None) -> None:
         self._kind = kind
