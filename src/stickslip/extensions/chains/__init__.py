@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from stickslip.extension import Extension
+
+if TYPE_CHECKING:
+    from stickslip.problem.scenarios import ScenarioTable
+    from stickslip.run import SolverKind
 
 
 class ChainsExtension(Extension):
     """`ss.Chain`, and what is made of it."""
 
     name = "chains"
+
+    def solvers(self) -> Sequence[SolverKind]:
+        """Return the solver of chains."""
+        from stickslip.extensions.chains.kind import CHAIN_SOLVER
+
+        return (CHAIN_SOLVER,)
+
+    def tables(self) -> Mapping[str, ScenarioTable]:
+        """Return the table [chain]."""
+        from stickslip.extensions.chains.table import ChainTable
+
+        return {ChainTable.name: ChainTable()}
 
     def public(self) -> Mapping[str, str]:
         """Return the chain, and numbers that are drawn for its blocks."""

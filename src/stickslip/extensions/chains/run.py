@@ -13,6 +13,7 @@ from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.state import ChainState
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.errors import InputError
+from stickslip.problem import STATUSES, Status, Stop
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -93,6 +94,8 @@ class ChainRun(NamesAttributes):
         What was solved.
     duration : float
         The time that was reached (s).
+    status : Status
+        What ended the run.
     """
 
     chain: Chain
@@ -102,6 +105,8 @@ class ChainRun(NamesAttributes):
     snapshots: list[ChainState]
     state: ChainState
     final: ChainState
+    status: Status = STATUSES[Stop.FINISHED]
+    title: str = ""
 
     @cached_property
     def events(self) -> NDArray[Any]:
