@@ -9,7 +9,7 @@ from stickslip.extension import Extension
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import ScenarioTable
-    from stickslip.run import SolverKind
+    from stickslip.run import Reader, SolverKind
 
 
 class ChainsExtension(Extension):
@@ -28,6 +28,12 @@ class ChainsExtension(Extension):
         from stickslip.extensions.chains.table import ChainTable
 
         return {ChainTable.name: ChainTable()}
+
+    def readers(self) -> Sequence[Reader]:
+        """Return the reader of their folders."""
+        from stickslip.extensions.chains.kind import ChainReader
+
+        return (ChainReader(),)
 
     def public(self) -> Mapping[str, str]:
         """Return the chain, and numbers that are drawn for its blocks."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -121,6 +122,12 @@ class ChainRun(NamesAttributes):
         import pandas as pd
 
         return pd.DataFrame(self.events)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the events as .csv, .parquet or .nc, with a unit in each heading, and return the path. Raises InputError."""
+        from stickslip.extensions.chains.event_files import write_events
+
+        return write_events(self, path)
 
     @cached_property
     def changes(self) -> NDArray[Any]:
