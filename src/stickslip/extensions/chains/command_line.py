@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
@@ -61,7 +61,7 @@ class ChainResults(RunResults):
     def draw(self, pictures: Pictures) -> list[Path]:
         if not pictures.wanted:
             return []
-        plot = self.solution.plot
+        plot: Any = self.solution.plot
         return write_files(
             (pictures.figure, drawing(plot, pictures.look)),
             (pictures.catalogue_figure, drawing(plot.catalogue, pictures.look)),
@@ -89,9 +89,7 @@ class KindOfChain(KindOfRun):
     def check(self, request: Request) -> None:
         check_pictures(request.pictures, "run")
         if request.catalogue is not None:
-            raise InputError(
-                "run: --catalogue has no effect with a [chain]: --csv FILE writes its events, and --out FOLDER keeps them"
-            )
+            raise InputError("run: --catalogue has no effect with a [chain]: --csv writes its events, and --out keeps them")
         if needless := [option for option, value in request.typed.items() if value is not None and option not in TYPED]:
             raise InputError(f"run: {needless[0]} has no effect with a [chain], whose events are located to rounding: leave it out")
         if request.energy:

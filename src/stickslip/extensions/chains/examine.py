@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from stickslip.problem.scenarios import Scenario
 
 STIFF, SOFT = 100.0, 0.01
-"""Springs between blocks beyond these shares of those to the driver make a chain nearly one block, or nearly blocks of their own."""
+"""Springs between blocks beyond these shares of those to the driver make a chain nearly one block, or nearly many of their own."""
 MANY = 1_000_000
 """From so many onsets on a run takes more than seconds."""
 
@@ -112,8 +112,8 @@ class ChainExamination:
         across = coupling * (math.pi / chain.count) ** 2
         if across > STIFF * pull:
             yield (
-                f"the springs between blocks are so stiff that the chain is nearly one block (kc (pi/n)^2 = {number(across, 3)} N/m,"
-                f" kp = {number(pull, 3)} N/m)"
+                f"the springs between blocks are so stiff that the chain is nearly one block (kc (pi/n)^2 ="
+                f" {number(across, 3)} N/m, kp = {number(pull, 3)} N/m)"
             )
         elif 4.0 * coupling < SOFT * pull:
             yield f"the springs between blocks are so soft that these are nearly {chain.count} blocks of their own"

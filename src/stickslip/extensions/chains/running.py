@@ -11,8 +11,8 @@ import numpy as np
 
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
-from stickslip.extensions.chains.run import ChainRun
 from stickslip.extensions.chains.rows import RowsInMemory, Snapshots
+from stickslip.extensions.chains.run import ChainRun
 from stickslip.extensions.chains.solver import ChainSolver
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats

@@ -20,7 +20,7 @@ from zarr.storage import MemoryStore
 import stickslip
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
-from stickslip.extensions.chains.run import CHANGE_TYPE, EVENT_TYPE, EVENT_UNITS, ChainRun
+from stickslip.extensions.chains.run import CHANGE_TYPE, EVENT_UNITS, ChainRun
 from stickslip.extensions.chains.state import ChainState
 from stickslip.extensions.chains.table import CHAIN, UNUSED, given_of
 from stickslip.foundation import netcdf_file, zarr_folder
