@@ -30,7 +30,7 @@ def write_events(run: ChainRun, path: str | Path) -> Path:
     if file.suffix == ".nc":
         from stickslip.foundation.netcdf_file import Variable, write_variables
 
-        columns = {name: Variable(("event",), table[name].to_numpy(), {"units": EVENT_UNITS[name]}) for name in table}
+        columns = {name: Variable(("event",), table[name].to_numpy(), {"units": EVENT_UNITS[name]}) for name in EVENT_UNITS}
         return write_variables(columns, {"title": made}, file)
     if file.suffix != ".parquet":
         raise InputError(f"to_csv: {file}: the name must end in {', '.join(SUFFIXES)}")

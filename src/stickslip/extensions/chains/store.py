@@ -53,10 +53,10 @@ if TYPE_CHECKING:
     from stickslip.extensions.chains.state import ChainState
     from stickslip.problem import Status
 
+DECIDING = ("numbers", "couplings", "drawn", "solver", "state")
+"""Modules whose code decides the result of a run, beside compiled code."""
 BUSY = "another run is writing into it"
-CODE = tuple(
-    f"extensions/chains/{name}" for name in ("compiled", "numbers.py", "couplings.py", "drawn.py", "solver.py", "state.py")
-)
+CODE = tuple(f"extensions/chains/{one}" for one in ("compiled", *(f"{name}.py" for name in DECIDING)))
 """The code that decides the result of a run, beside the engine's."""
 ROOM = "stickslip.resume continues from the last checkpoint when there is room"
 
@@ -112,8 +112,9 @@ class ChainStore(RowsInMemory):
                 f"{path}: cannot be resumed: another version of stickslip made it, and this one would go on in other digits; run it"
                 " again from the start"
             )
-        keywords = {"duration": number(about, "duration", path), "digest": str(about["digest"])}
-        store = cls(chain, str(about["title"]), bool(about["keeps_changes"]), path=path, **keywords)
+        of_run = str(about["title"]), bool(about["keeps_changes"])
+        duration, digest = number(about, "duration", path), str(about["digest"])
+        store = cls(chain, *of_run, path=path, duration=duration, digest=digest)
         store.written |= found.rows
         store.count_of_events, store.count_of_changes = store.written[EVENT], store.written[CHANGE]
         store.snapshots = Snapshots(found.snapshots, found.every, found.calls)

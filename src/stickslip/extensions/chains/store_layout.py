@@ -22,7 +22,7 @@ from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.run import CHANGE_TYPE, EVENT_UNITS, ChainRun
 from stickslip.extensions.chains.state import ChainState
-from stickslip.extensions.chains.table import CHAIN, UNUSED, given_of
+from stickslip.extensions.chains.table import CHAIN, given_of
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, printable
@@ -73,8 +73,7 @@ def scenario_of_chain(chain: Chain, options: CallOptions) -> Scenario:
     law = chain.laws[0][0]
     if len(chain.laws[0]) > 1:
         raise InputError("simulate: a Chain whose blocks have different laws cannot be kept in a folder: leave out checkpoint")
-    body, unused = SpringBlock(*(float(UNUSED["body"][name]) for name in ("mass", "stiffness", "normal_force"))), 0.0
-    problem = Problem(body, law, pull_rate=unused, initial_load=unused)
+    problem = Problem(SpringBlock(1.0, 1.0, 1.0), law, pull_rate=0.0, initial_load=0.0)  # as `table.UNUSED`
     try:
         return Scenario(problem, options.duration, title=options.title).with_table(CHAIN, given_of(chain))
     except InputError as error:
@@ -109,8 +108,8 @@ def attributes(chain: Chain, scenario: Scenario, keeps_changes: bool, title: str
     text = scenario.to_toml()
     if len(text) > LARGEST_TEXT:
         raise InputError(
-            f"simulate: a folder holds chains whose scenario has up to {LARGEST_TEXT} characters, and this one has {len(text)}: draw"
-            " the numbers of its blocks by a seed (Drawn), or leave out checkpoint"
+            f"simulate: a folder holds chains whose scenario has up to {LARGEST_TEXT} characters, and this one has {len(text)}:"
+            " draw the numbers of its blocks by a seed (Drawn), or leave out checkpoint"
         )
     try:
         read_scenario(text, "scenario")

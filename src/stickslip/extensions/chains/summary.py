@@ -30,15 +30,18 @@ def lines_of(run: ChainRun, took: float | None = None, steps_before: int = 0) ->
     if many:
         events = run.events
         largest, alone = events[int(np.argmax(events["moment"]))], int((events["size"] == 1).sum())
-        where = f"first block {int(largest['first_block'])}, {_blocks(int(largest['size']))}, {brief(float(largest['duration']), 's')} long"
-        yield f"largest: {brief(float(largest['moment']), 'm')} of slip in all, at {number(float(largest['time']), 9)} s, {where}"
+        first, size = int(largest["first_block"]), int(largest["size"])
+        lasts, slips = brief(float(largest["duration"]), "s"), brief(float(largest["moment"]), "m")
+        time = number(float(largest["time"]), 9)
+        yield f"largest: {slips} of slip in all, at {time} s, first block {first}, {_blocks(size)}, {lasts} long"
         yield f"fastest: {brief(float(events['largest_rate'].max()), 'm/s')}; {alone} events of one block alone"
     if moving := int(np.count_nonzero(run.slip_rate)):
         yield f"at the end {_blocks(moving)} in motion"
     energy = run.energy()
     shares = {"heat": energy.heat, "dashpots": energy.dashpots, "springs": energy.springs, "motion": energy.kinetic}
     told = ", ".join(f"{name} {brief(one, 'J')}" for name, one in shares.items() if one)
-    yield f"energy: driver {brief(energy.driver, 'J')} + springs at the start {brief(energy.springs_at_start, 'J')} = {told or 'nothing'}"
+    given = f"driver {brief(energy.driver, 'J')} + springs at the start {brief(energy.springs_at_start, 'J')}"
+    yield f"energy: {given} = {told or 'nothing'}"
     yield f"        but for {energy.error:.1e} J of rounding"
     if took is not None and took > 0.0:
         steps = run.moving_steps - steps_before
