@@ -1,0 +1,446 @@
+"""Let a chain go on in time: over rest at once, and through slip step by step, each cut at the first change in it."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.series.polynomial import NONE
+from stickslip.extensions.chains.compiled.accounts import (
+    begin_event,
+    dissipated,
+    end_event,
+    integral_of_slip,
+    note_rate,
+    note_slipping,
+    pull_of_driver,
+)
+from stickslip.extensions.chains.compiled.changes import (
+    ONSET_BACK,
+    arrest,
+    begin_slip,
+    first_place,
+    note_change,
+    pass_knot,
+    set_moving_at_start,
+)
+from stickslip.extensions.chains.compiled.loads import set_due, sliding_strength, time_of
+from stickslip.extensions.chains.compiled.memory import (
+    ARREST,
+    BACKWARD,
+    BLOCK_STEPS,
+    CHANGE_ROWS,
+    COUNTED,
+    DASHPOT,
+    DEFECT,
+    DONE,
+    DUE,
+    EDGE,
+    EVENT_ROWS,
+    FIRST_DUE,
+    FORWARD,
+    FREE,
+    GOES_ON,
+    HANGS,
+    HAVE_SLIPPED,
+    HEAT,
+    IN_EVENT,
+    KNOT,
+    LAST_STEP,
+    MODE,
+    MOVING,
+    NOT_FINITE,
+    ONSET,
+    ORIGIN,
+    PULL,
+    RATE,
+    REST,
+    SAMPLES,
+    SINCE,
+    SLIP,
+    SLIPPED,
+    STEPS,
+    WATCHED,
+    WORK,
+    ChainNumbers,
+    Kept,
+    Limits,
+    Now,
+    Room,
+)
+from stickslip.extensions.chains.compiled.series import (
+    UNIT,
+    length_of_step,
+    moved,
+    remainder_of_step,
+    speed,
+    stretch_series,
+    write_series,
+)
+from stickslip.foundation.kernels.kernels import entry, exact, kernel
+
+MOST_AT_ONCE = 10_000
+"""If so many changes follow each other without any time between them, the solver gives up."""
+SCAN = 16
+"""To look at so many blocks costs about as much as a step of one."""
+
+
+UNKNOWN = -1
+"""In place of the block that is due first: it is to be looked for."""
+
+
+# ---- lists of blocks -------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def find_lists(chain: ChainNumbers, state: Now, room: Room) -> None:
+    """Make the lists of moving blocks, of those beside them, and of those that have slipped; they follow from the modes."""
+    springs, count = chain.springs, len(chain.blocks.mass)
+    room.counts[MOVING] = room.counts[WATCHED] = room.counts[HAVE_SLIPPED] = 0
+    for j in range(count):
+        room.near[j] = 0
+    for j in range(count):
+        if state.whole[SLIPPED, j] == 1:
+            room.slipped[room.counts[HAVE_SLIPPED]] = j
+            room.counts[HAVE_SLIPPED] += 1
+        if state.whole[MODE, j] != REST:
+            room.moving[room.counts[MOVING]] = j
+            room.counts[MOVING] += 1
+            for place in range(springs.starts[j], springs.starts[j + 1]):
+                if springs.springs[place] != 0.0:
+                    room.near[springs.neighbours[place]] += 1
+    for j in range(count):
+        if room.near[j] > 0 and state.whole[MODE, j] == REST:
+            room.watched[room.counts[WATCHED]] = j
+            room.counts[WATCHED] += 1
+    find_first_due(state, room)
+
+
+@kernel
+def find_first_due(state: Now, room: Room) -> None:
+    """Look for the block that is due first."""
+    first, least = 0, state.blocks[DUE, 0]
+    for j in range(1, len(state.blocks[DUE])):
+        if state.blocks[DUE, j] < least:
+            first, least = j, state.blocks[DUE, j]
+    room.counts[FIRST_DUE] = first
+
+
+@kernel
+def drop_due(state: Now, room: Room, j: int) -> None:
+    """Write that a block is not due at a known time any more."""
+    state.blocks[DUE, j] = math.inf
+    if room.counts[FIRST_DUE] == j:
+        room.counts[FIRST_DUE] = UNKNOWN
+
+
+@kernel
+def insert_moving(room: Room, j: int) -> None:
+    """Put a block into the list of moving ones, which is sorted."""
+    n = room.counts[MOVING]
+    while n > 0 and room.moving[n - 1] > j:
+        room.moving[n] = room.moving[n - 1]
+        n -= 1
+    room.moving[n] = j
+    room.counts[MOVING] += 1
+
+
+@kernel
+def moves_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Put a block that has begun to slip into the lists, and its neighbours at rest among those that are watched."""
+    springs = chain.springs
+    insert_moving(room, j)
+    note_slipping(state, room, j)
+    drop_due(state, room, j)
+    if room.near[j] > 0:
+        forget_watched(room, j)
+    for place in range(springs.starts[j], springs.starts[j + 1]):
+        other = springs.neighbours[place]
+        if springs.springs[place] != 0.0:
+            room.near[other] += 1
+            if room.near[other] == 1 and state.whole[MODE, other] == REST:
+                room.watched[room.counts[WATCHED]] = other
+                room.counts[WATCHED] += 1
+                drop_due(state, room, other)
+
+
+@kernel
+def forget_watched(room: Room, j: int) -> None:
+    """Take a block from the list of those that are watched."""
+    last = room.counts[WATCHED] - 1
+    for n in range(last + 1):
+        if room.watched[n] == j:
+            room.watched[n] = room.watched[last]
+            room.counts[WATCHED] = last
+            return
+
+
+@kernel
+def rests_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Take a block that has come to rest from the list of moving ones, and let neighbours be that no moving block is beside."""
+    springs, n = chain.springs, 0
+    while room.moving[n] != j:
+        n += 1
+    for m in range(n + 1, room.counts[MOVING]):
+        room.moving[m - 1] = room.moving[m]
+    room.counts[MOVING] -= 1
+    for place in range(springs.starts[j], springs.starts[j + 1]):
+        other = springs.neighbours[place]
+        if springs.springs[place] != 0.0:
+            room.near[other] -= 1
+            if room.near[other] == 0 and state.whole[MODE, other] == REST:
+                forget_watched(room, other)
+                becomes_quiet(chain, state, room, other)
+    if room.near[j] > 0:
+        room.watched[room.counts[WATCHED]] = j
+        room.counts[WATCHED] += 1
+    else:
+        becomes_quiet(chain, state, room, j)
+
+
+@kernel
+def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Write when a block is due that rests among resting ones."""
+    set_due(chain, state, j)
+    first = room.counts[FIRST_DUE]
+    if first >= 0 and (state.blocks[DUE, j] < state.blocks[DUE, first] or (state.blocks[DUE, j] == state.blocks[DUE, first] and j < first)):
+        room.counts[FIRST_DUE] = j
+
+
+# ---- steps -----------------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def take_samples(state: Now, room: Room, kept: Kept, length: float, end: float) -> None:
+    """Write slip and slip rate at the times that lie in a step up to a place `end`; its length is in s, 0 if all rest."""
+    start = time_of(state)
+    last = start + end * length
+    while room.counts[SAMPLES] < len(kept.sample_times):
+        n = room.counts[SAMPLES]
+        if length == 0.0 and not kept.sample_times[n] <= end:
+            return
+        if length > 0.0 and not kept.sample_times[n] <= last:
+            return
+        for j in range(len(state.blocks[SLIP])):
+            kept.sampled_slip[n, j], kept.sampled_rate[n, j] = state.blocks[SLIP, j], 0.0
+        if length > 0.0:
+            place = min(end, max(0.0, ((kept.sample_times[n] - state.now[ORIGIN]) - state.now[SINCE]) / length))
+            for m in range(room.counts[MOVING]):
+                j = room.moving[m]
+                kept.sampled_slip[n, j] = state.blocks[SLIP, j] + moved(room.series[j], place)
+                kept.sampled_rate[n, j] = speed(room.series[j], place) / length
+        room.counts[SAMPLES] = n + 1
+
+
+@kernel
+def commit(chain: ChainNumbers, state: Now, room: Room, length: float, place: float) -> None:
+    """Move all moving blocks to a place in the step, of a length in s, and count energies."""
+    now, blocks, duration = state.now, state.blocks, length * place
+    lost = given = 0.0
+    for n in range(room.counts[MOVING]):
+        j = room.moving[n]
+        row, mode = room.series[j], state.whole[MODE, j]
+        slip, rate = moved(row, place), speed(row, place) / length
+        stiffness, damping = chain.blocks.stiffness[j], chain.blocks.damping[j]
+        lost += stiffness * integral_of_slip(room, j, place)
+        given += stiffness * slip
+        if damping != 0.0:
+            now[DASHPOT] += damping * dissipated(room, j, place) / length
+        if mode != FREE:
+            note_rate(state, room, j, place, length)
+            slip, rate = (max(slip, 0.0), max(rate, 0.0)) if mode == FORWARD else (min(slip, 0.0), min(rate, 0.0))
+            before = sliding_strength(chain, state, j)
+            counts_net = chain.laws.rules[chain.blocks.law[j], 0] == 1
+            blocks[COUNTED, j] += slip if counts_net else abs(slip)
+            now[HEAT] += 0.5 * (before + sliding_strength(chain, state, j)) * abs(slip)
+        blocks[SLIP, j] += slip
+        blocks[RATE, j] = rate
+        if duration > 0.0:
+            state.whole[EDGE, j] = 0
+    if duration > 0.0:
+        for n in range(room.counts[WATCHED]):
+            state.whole[EDGE, room.watched[n]] = 0
+    gained = chain.all_stiffness * chain.pull_rate * duration
+    now[WORK] += chain.pull_rate * ((now[PULL] + 0.5 * gained) * duration - lost * length)
+    now[PULL] += gained - given
+    now[SINCE] += duration
+    now[STEPS] += 1.0
+    now[BLOCK_STEPS] += room.counts[MOVING]
+
+
+@kernel
+def change_blocks(chain: ChainNumbers, state: Now, room: Room, kept: Kept, place: float) -> int:
+    """Carry out all changes at a place of the step that has been taken; return how many there are."""
+    found = 0
+    for n in range(room.counts[MOVING]):
+        j = room.moving[n]
+        if room.places[j] == place:
+            room.changed[found] = j
+            found += 1
+    for n in range(room.counts[WATCHED]):
+        j = room.watched[n]
+        if room.places[j] == place:
+            room.changed[found] = j
+            found += 1
+    for n in range(found):
+        j = room.changed[n]
+        kind = room.kinds[j]
+        if kind == KNOT:
+            pass_knot(chain, state, j)
+            note_change(state, room, kept, j, KNOT)
+        elif kind == ARREST:
+            note_change(state, room, kept, j, arrest(chain, state, j))
+        else:
+            begin_slip(chain, state, room, kept, j, BACKWARD if kind == ONSET_BACK else FORWARD)
+    for n in range(found):
+        j = room.changed[n]
+        if room.kinds[j] == ARREST and state.whole[MODE, j] == REST:
+            rests_from_now(chain, state, room, j)
+        elif room.kinds[j] == ONSET or room.kinds[j] == ONSET_BACK:
+            moves_from_now(chain, state, room, j)
+    return found
+
+
+@kernel
+def start_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: float) -> int:
+    """Let all blocks slip that are due at a time (s), which is now; return how many there are."""
+    found = 0
+    for j in range(len(state.blocks[DUE])):
+        if state.blocks[DUE, j] <= time:
+            room.changed[found] = j
+            found += 1
+    for n in range(found):
+        begin_slip(chain, state, room, kept, room.changed[n], FORWARD if chain.pull_rate > 0.0 else BACKWARD)
+    for n in range(found):
+        moves_from_now(chain, state, room, room.changed[n])
+    return found
+
+
+@kernel
+def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+    """Take a step of the moving blocks, and the changes at its end; return DONE if it would lead beyond the time to reach."""
+    now = state.now
+    unit = UNIT / chain.fastest
+    write_series(chain, state, room, unit)
+    length = length_of_step(room)
+    if not length < math.inf:
+        return NOT_FINITE
+    stretch_series(room, length)
+    length *= unit
+    left = (limits.until - now[ORIGIN]) - now[SINCE]
+    place = first_place(chain, state, room, length)
+    if room.counts[FIRST_DUE] == UNKNOWN:
+        find_first_due(state, room)
+    due = state.blocks[DUE, room.counts[FIRST_DUE]]
+    due_place = max(0.0, ((due - now[ORIGIN]) - now[SINCE]) / length) if due < math.inf else NONE
+    end = min(1.0, min(place, due_place))
+    if end * length > left:
+        take_samples(state, room, kept, length, left / length)
+        if limits.is_cut == 1:
+            commit(chain, state, room, length, left / length)
+        return DONE
+    take_samples(state, room, kept, length, end)
+    now[DEFECT] = max(now[DEFECT], remainder_of_step(room, length * chain.fastest))
+    was_resting = rubbing(chain, state, room) == 0
+    commit(chain, state, room, length, end)
+    now[LAST_STEP] = length
+    found = 0
+    if due_place == end and was_resting:
+        now[ORIGIN], now[SINCE] = due, 0.0
+        begin_event(chain, state, room.counts[FIRST_DUE])
+    if place == end:
+        found += change_blocks(chain, state, room, kept, end)
+    if due_place == end:
+        found += start_due(chain, state, room, kept, due)
+    if now[IN_EVENT] == 1.0 and rubbing(chain, state, room) == 0:
+        finish_event(chain, state, room, kept)
+    return GOES_ON
+
+
+@kernel
+def finish_event(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
+    """Write the row of the event that ends, and count time from here on as one number."""
+    end_event(chain, state, room, kept)
+    state.now[ORIGIN], state.now[SINCE] = time_of(state), 0.0
+
+
+@kernel
+def rubbing(chain: ChainNumbers, state: Now, room: Room) -> int:
+    """Return how many blocks slip against friction."""
+    found = 0
+    for n in range(room.counts[MOVING]):
+        if state.whole[MODE, room.moving[n]] != FREE:
+            found += 1
+    return found
+
+
+@kernel
+def pass_rest(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+    """Pass over rest of all blocks at once, to the next onset; return DONE if it lies beyond the time to reach."""
+    now = state.now
+    if room.counts[FIRST_DUE] == UNKNOWN:
+        find_first_due(state, room)
+    due, here = state.blocks[DUE, room.counts[FIRST_DUE]], time_of(state)
+    beyond = not due <= limits.until
+    to = limits.until if beyond else due
+    take_samples(state, room, kept, 0.0, to)
+    if beyond and limits.is_cut == 0:
+        return DONE
+    wait = max(0.0, to - here)
+    gained = chain.all_stiffness * chain.pull_rate * wait
+    now[WORK] += chain.pull_rate * (now[PULL] + 0.5 * gained) * wait
+    now[PULL] += gained
+    now[ORIGIN], now[SINCE] = to, 0.0
+    if beyond:
+        return DONE
+    begin_event(chain, state, room.counts[FIRST_DUE])
+    start_due(chain, state, room, kept, due)
+    return GOES_ON
+
+
+@entry
+def begin(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
+    """Set up the state at t = 0, from the slip of all blocks."""
+    count = len(chain.blocks.mass)
+    state.now[PULL] = pull_of_driver(chain, state)
+    for j in range(count):
+        set_moving_at_start(chain, state, j)
+        state.blocks[DUE, j] = math.inf
+    find_lists(chain, state, room)
+    first = -1
+    for j in range(count):
+        if state.whole[MODE, j] == REST and room.near[j] == 0:
+            set_due(chain, state, j)
+        elif state.whole[MODE, j] == FORWARD or state.whole[MODE, j] == BACKWARD:
+            first = j if first < 0 else first
+    if first >= 0:
+        begin_event(chain, state, first)
+    for j in range(count):
+        if state.whole[MODE, j] == FORWARD or state.whole[MODE, j] == BACKWARD:
+            note_change(state, room, kept, j, ONSET)
+            note_slipping(state, room, j)
+
+
+@entry
+def advance(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+    """Let a chain go on until a time, or until the budget or the room for rows is used up."""
+    find_lists(chain, state, room)
+    room.counts[CHANGE_ROWS] = room.counts[EVENT_ROWS] = 0
+    spent, count, repeated = 0, len(chain.blocks.mass), 0
+    while spent < limits.budget:
+        if room.counts[EVENT_ROWS] >= len(kept.events) or (
+            len(kept.changes) > 0 and room.counts[CHANGE_ROWS] + 2 * count > len(kept.changes)
+        ):
+            return GOES_ON
+        before = state.now[SINCE]
+        if room.counts[MOVING] == 0:
+            answer = pass_rest(chain, state, room, kept, limits)
+            spent += 1 + count // SCAN
+        else:
+            answer = step(chain, state, room, kept, limits)
+            spent += room.counts[MOVING] + 1
+        if answer != GOES_ON:
+            return answer
+        repeated = repeated + 1 if state.now[SINCE] == before else 0
+        if repeated > MOST_AT_ONCE:
+            return HANGS
+    return GOES_ON

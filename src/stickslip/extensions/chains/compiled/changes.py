@@ -1,0 +1,182 @@
+"""Changes of blocks: where in a step the first one is, and what it does.
+
+All changes at the bit-equal first place of a step happen together: loads and strengths are those before any of them, and lists are
+worked through from the first block to the last.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.series.polynomial import NONE, TERMS, first_descent
+from stickslip.extensions.chains.compiled.loads import load_on, piece_of, put_to_rest, sliding_strength, static_step, time_of
+from stickslip.extensions.chains.compiled.memory import (
+    ARREST,
+    BACKWARD,
+    CHANGE_BLOCK,
+    CHANGE_KIND,
+    CHANGE_ROWS,
+    CHANGE_SINCE,
+    CHANGE_SLIP,
+    CHANGE_TIME,
+    CHANGES,
+    COUNTED,
+    EDGE,
+    FORWARD,
+    FREE,
+    KNOT,
+    MODE,
+    MOVING,
+    ONSET,
+    PIECE,
+    RATE,
+    REST,
+    SINCE,
+    SLIP,
+    STRENGTH,
+    TURN,
+    WATCHED,
+    ChainNumbers,
+    Kept,
+    Now,
+    Room,
+)
+from stickslip.extensions.chains.compiled.series import write_load
+from stickslip.foundation.kernels.kernels import exact, kernel
+from stickslip.foundation.kernels.memory.addresses import room_for
+
+ONSET_BACK = 4
+"""Kind of change inside a step, besides those that are kept: a block at rest begins to slip backward."""
+
+
+@kernel
+def note_change(state: Now, room: Room, kept: Kept, j: int, kind: int) -> None:
+    """Count a change, and keep it if there is room."""
+    state.now[CHANGES] += 1.0
+    n = room.counts[CHANGE_ROWS]
+    if n < len(kept.changes):
+        row = kept.changes[n]
+        row[CHANGE_TIME], row[CHANGE_SINCE] = time_of(state), state.now[SINCE]
+        row[CHANGE_BLOCK], row[CHANGE_KIND], row[CHANGE_SLIP] = j, kind, state.blocks[SLIP, j]
+        room.counts[CHANGE_ROWS] = n + 1
+
+
+@kernel
+def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Write where in the step a moving block first comes to rest or passes a knot of its law."""
+    mode, row, line, spare = state.whole[MODE, j], room.series[j], room_for(TERMS), room_for(TERMS)
+    room.places[j] = NONE
+    if mode == FREE:
+        return
+    for k in range(TERMS - 1):
+        line[k] = mode * (k + 1.0) * row[k + 1]
+    line[TERMS - 1] = 0.0
+    room.places[j], room.kinds[j] = first_descent(line, spare), ARREST
+    law, piece, counted = chain.blocks.law[j], state.whole[PIECE, j], state.blocks[COUNTED, j]
+    knots = chain.laws.knots[law]
+    grows = mode if chain.laws.rules[law, 0] == 1 else 1
+    ahead = math.inf
+    if grows == 1 and piece + 1 < len(knots):
+        ahead = knots[piece + 1] - counted
+    elif grows == -1:
+        ahead = counted - knots[piece]
+    if ahead < math.inf:
+        line[0] = ahead
+        for k in range(1, TERMS):
+            line[k] = -mode * row[k]
+        place = first_descent(line, spare)
+        if place < room.places[j]:
+            room.places[j], room.kinds[j] = place, KNOT
+
+
+@kernel
+def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int, length: float) -> None:
+    """Write where in the step (of a length in s) a block at rest beside moving ones first reaches its strength."""
+    load, margin, spare = room_for(TERMS), room_for(TERMS), room_for(TERMS)
+    strength, edge = state.blocks[STRENGTH, j], state.whole[EDGE, j]
+    write_load(chain, state, room, j, length, load)
+    for k in range(1, TERMS):
+        margin[k] = -load[k]
+    margin[0] = 0.0 if edge == 1 else strength - load[0]
+    room.places[j], room.kinds[j] = first_descent(margin, spare), ONSET
+    if chain.forward_only == 0:
+        margin[0] = 0.0 if edge == -1 else strength + load[0]
+        for k in range(1, TERMS):
+            margin[k] = load[k]
+        place = first_descent(margin, spare)
+        if place < room.places[j]:
+            room.places[j], room.kinds[j] = place, ONSET_BACK
+
+
+@kernel
+def first_place(chain: ChainNumbers, state: Now, room: Room, length: float) -> float:
+    """Look for changes of moving blocks and those beside them in a step, and return the first place of one in [0, 1]; NONE."""
+    first = NONE
+    for n in range(room.counts[MOVING]):
+        find_in_moving(chain, state, room, room.moving[n])
+        first = min(first, room.places[room.moving[n]])
+    for n in range(room.counts[WATCHED]):
+        find_at_rest(chain, state, room, room.watched[n], length)
+        first = min(first, room.places[room.watched[n]])
+    return first
+
+
+@kernel
+def begin_slip(chain: ChainNumbers, state: Now, room: Room, kept: Kept, j: int, mode: int) -> None:
+    """Let a block leave rest exactly at its strength."""
+    state.whole[MODE, j], state.whole[EDGE, j] = mode, mode
+    state.blocks[RATE, j] = 0.0
+    note_change(state, room, kept, j, ONSET)
+
+
+@kernel
+def pass_knot(chain: ChainNumbers, state: Now, j: int) -> None:
+    """Let the law of a block go on with its next piece."""
+    law, piece = chain.blocks.law[j], state.whole[PIECE, j]
+    grows = state.whole[MODE, j] if chain.laws.rules[law, 0] == 1 else 1
+    state.blocks[COUNTED, j] = chain.laws.knots[law, piece + 1 if grows == 1 else piece]
+    state.whole[PIECE, j] = piece + 1 if grows == 1 else piece - 1
+
+
+@exact
+def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
+    """Bring a block to rest, or let it go on in the other direction; return the kind of change."""
+    mode = state.whole[MODE, j]
+    state.blocks[RATE, j], state.whole[EDGE, j] = 0.0, 0
+    ahead = mode * load_on(chain, state, j)
+    before_rest = sliding_strength(chain, state, j) + static_step(chain, j)
+    if ahead < -before_rest and chain.forward_only == 0:
+        state.whole[MODE, j] = -mode
+        law = chain.blocks.law[j]
+        if chain.laws.rules[law, 0] == 1:
+            state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
+        return TURN
+    put_to_rest(chain, state, j)
+    if ahead >= state.blocks[STRENGTH, j]:
+        if chain.laws.rules[chain.blocks.law[j], 1] == 0:
+            state.whole[EDGE, j] = mode  # beyond its strength by rounding only: exactly at it
+        else:
+            state.whole[MODE, j] = mode  # it heals to less than its load, and slips again at once
+            return TURN
+    return ARREST
+
+
+@kernel
+def set_moving_at_start(chain: ChainNumbers, state: Now, j: int) -> int:
+    """Let a block slip at t = 0 if its load is beyond its strength; return its mode."""
+    if chain.blocks.normal[j] == 0.0:
+        state.whole[MODE, j] = FREE
+        return FREE
+    put_to_rest(chain, state, j)
+    load, strength = load_on(chain, state, j), state.blocks[STRENGTH, j]
+    if load > strength:
+        state.whole[MODE, j] = FORWARD
+    elif load < -strength and chain.forward_only == 0:
+        state.whole[MODE, j] = BACKWARD
+    return state.whole[MODE, j]
+
+
+@kernel
+def is_at_rest(state: Now, j: int) -> bool:
+    """Return True if a block rests."""
+    return state.whole[MODE, j] == REST

@@ -1,0 +1,171 @@
+"""Taylor series of all moving blocks together, order by order, under friction that is linear in slip.
+
+Each row holds the coefficients of a block's slip since the start of the step (m) in powers of x, the time in units of a step. Rows
+of blocks at rest are not used: their slip is constant. Because the system is linear, the remainder of the series has a bound: the
+terms left out act as a force, under which no block moves further than force / mass times x^2 / 2 cosh(fastest x).
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.series.polynomial import TERMS
+from stickslip.engine.series.step_size import quick_exp2, quick_log2
+from stickslip.extensions.chains.compiled.loads import driver_place, load_on, sliding_strength, static_step
+from stickslip.extensions.chains.compiled.memory import (
+    BACKWARD,
+    EDGE,
+    FREE,
+    MODE,
+    MOVING,
+    PIECE,
+    RATE,
+    REST,
+    ChainNumbers,
+    Now,
+    Room,
+)
+from stickslip.foundation.kernels.kernels import exact, inlined, kernel
+
+UNIT = 2.0
+"""The unit of series, times the bound of frequencies (1): next to the length of a step if the shortest wave is there."""
+TOLERANCE = 2.0**-55
+"""The last terms of a step as a share of its motion (1)."""
+LONGEST = 1.5
+"""A step has at most so many units (1): the bound of its remainder grows with cosh."""
+SHORT = 0.5
+"""For a step shorter than this (1) the size of the motion is determined again."""
+
+
+@exact
+def load_term(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> float:
+    """Return the k-th coefficient (N), k > 0, of the force of the springs to other blocks and to walls."""
+    springs, series, modes = chain.springs, room.series, state.whole[MODE]
+    own, found = 0.0 if modes[j] == REST else series[j, k], 0.0
+    first, last = springs.starts[j], springs.starts[j + 1]
+    for place in range(first, last - 1, 2):
+        a, b = springs.neighbours[place], springs.neighbours[place + 1]
+        one = springs.springs[place] * ((0.0 if modes[a] == REST else series[a, k]) - own)
+        other = springs.springs[place + 1] * ((0.0 if modes[b] == REST else series[b, k]) - own)
+        found += one + other
+    if (last - first) % 2 == 1:
+        a = springs.neighbours[last - 1]
+        found += springs.springs[last - 1] * ((0.0 if modes[a] == REST else series[a, k]) - own)
+    return found - (springs.walls[j] + chain.blocks.stiffness[j]) * own
+
+
+@exact
+def first_force(chain: ChainNumbers, state: Now, j: int) -> float:
+    """Return the net force (N) on a moving block now; where it leaves rest at its strength, the step of its friction."""
+    mode, edge = state.whole[MODE, j], state.whole[EDGE, j]
+    if edge != 0:
+        return edge * static_step(chain, j)
+    force = load_on(chain, state, j) - chain.blocks.damping[j] * state.blocks[RATE, j]
+    if mode == FREE:
+        return force
+    friction = sliding_strength(chain, state, j)
+    return force + friction if mode == BACKWARD else force - friction
+
+
+@exact
+def weakening_of(chain: ChainNumbers, state: Now, j: int) -> float:
+    """Return how friction (N) on a moving block, with its sign, changes with its slip (N/m)."""
+    mode, law = state.whole[MODE, j], chain.blocks.law[j]
+    if mode == FREE:
+        return 0.0
+    slope = chain.blocks.normal[j] * chain.laws.slopes[law, state.whole[PIECE, j]]
+    return -slope if mode == BACKWARD and chain.laws.rules[law, 0] == 1 else slope
+
+
+@exact
+def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> None:
+    """Write the series of all moving blocks, in powers of the time in units (s)."""
+    series, count, blocks = room.series, room.counts[MOVING], chain.blocks
+    square = unit * unit
+    for n in range(count):
+        j = room.moving[n]
+        series[j, 0] = 0.0
+        series[j, 1] = state.blocks[RATE, j] * unit
+        series[j, 2] = 0.5 * first_force(chain, state, j) / blocks.mass[j] * square
+    for k in range(1, TERMS - 2):
+        scale = square / ((k + 1.0) * (k + 2.0))
+        for n in range(count):
+            j = room.moving[n]
+            force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * series[j, k]
+            if k == 1:
+                force += blocks.stiffness[j] * chain.pull_rate * unit
+            if blocks.damping[j] != 0.0:
+                force -= blocks.damping[j] * (k + 1.0) * series[j, k + 1] / unit
+            series[j, k + 2] = force / blocks.mass[j] * scale
+
+
+@kernel
+def length_of_step(room: Room) -> float:
+    """Return the length of a step (in units) after which the last terms of all series are below the tolerance."""
+    last = before = first = second = third = 0.0
+    for n in range(room.counts[MOVING]):
+        j = room.moving[n]
+        first, second, third = max(first, abs(room.series[j, 1])), max(second, abs(room.series[j, 2])), max(third, abs(room.series[j, 3]))
+        last, before = max(last, abs(room.series[j, TERMS - 1])), max(before, abs(room.series[j, TERMS - 2]))
+    length = 1.0
+    for _ in range(4):
+        size = length * max(first, length * max(second, length * third))
+        allowed = quick_log2(TOLERANCE * size)
+        longest = LONGEST
+        if last > 0.0:
+            longest = min(longest, quick_exp2((allowed - quick_log2(last)) / (TERMS - 1)))
+        if before > 0.0:
+            longest = min(longest, quick_exp2((allowed - quick_log2(before)) / (TERMS - 2)))
+        length = longest
+        if length > SHORT:
+            break
+    return length
+
+
+@exact
+def stretch_series(room: Room, length: float) -> None:
+    """Make [0, 1] the step: replace x by `length` times x in all series."""
+    for n in range(room.counts[MOVING]):
+        row = room.series[room.moving[n]]
+        power = length
+        for k in range(1, TERMS):
+            row[k] *= power
+            power *= length
+
+
+@kernel
+def remainder_of_step(room: Room, phase: float) -> float:
+    """Return a bound of the remainder of the series over a step, as a share of the motion in it; `phase` is fastest times length."""
+    motion = left_out = 0.0
+    for n in range(room.counts[MOVING]):
+        row = room.series[room.moving[n]]
+        motion = max(motion, abs(row[1]) + abs(row[2]) + abs(row[3]))
+        left_out = max(left_out, abs(row[TERMS - 2]) + abs(row[TERMS - 1]))
+    return 0.5 * phase * phase * math.cosh(phase) * left_out / motion if motion > 0.0 else 0.0
+
+
+@inlined
+def moved(row: object, x: float) -> float:
+    """Return the slip (m) since the start of the step at x."""
+    value = row[TERMS - 1]
+    for k in range(TERMS - 2, 0, -1):
+        value = value * x + row[k]
+    return value * x
+
+
+@inlined
+def speed(row: object, x: float) -> float:
+    """Return d slip/dx (m) at x."""
+    value = (TERMS - 1.0) * row[TERMS - 1]
+    for k in range(TERMS - 2, 0, -1):
+        value = value * x + k * row[k]
+    return value
+
+
+@exact
+def write_load(chain: ChainNumbers, state: Now, room: Room, j: int, length: float, out: object) -> None:
+    """Write the series of the load (N) on a block at rest over a step of a length (s)."""
+    out[0] = load_on(chain, state, j)
+    for k in range(1, TERMS):
+        out[k] = load_term(chain, state, room, j, k)
+    out[1] += chain.blocks.stiffness[j] * chain.pull_rate * length

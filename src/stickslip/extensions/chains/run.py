@@ -1,0 +1,190 @@
+"""A run of a chain: its catalogue of events, its changes, its energies, and its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.extensions.chains.compiled import memory as at
+from stickslip.extensions.chains.state import ChainState
+from stickslip.foundation.arguments import NamesAttributes
+from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from stickslip.extensions.chains.chain import Chain
+
+Floats = NDArray[np.float64]
+EVENT_TYPE = np.dtype(
+    [
+        ("time", float),
+        ("first_block", np.int64),
+        ("size", np.int64),
+        ("moment", float),
+        ("duration", float),
+        ("largest_rate", float),
+        ("heat", float),
+        ("dashpot", float),
+        ("work", float),
+        ("springs_before", float),
+        ("springs_after", float),
+    ]
+)
+"""Columns of the catalogue, in the order of rows of compiled code."""
+EVENT_UNITS = dict(zip(EVENT_TYPE.names or (), ("s", "1", "1", "m", "s", "m/s", "J", "J", "J", "J", "J"), strict=True))
+"""Units of these columns."""
+CHANGE_TYPE = np.dtype([("time", float), ("since", float), ("block", np.int64), ("kind", np.int64), ("slip", float)])
+"""Columns of changes: time (s), time since the first onset of its event (s), block, kind, slip (m)."""
+CHANGE_NAMES = ("onset", "arrest", "turn", "knot")
+"""Kinds of changes by their number."""
+
+
+class Motion(NamedTuple):
+    """The motion of all blocks: times (s), and for each time the slip (m) and the slip rate (m/s) of each block."""
+
+    times: Floats
+    slip: Floats
+    slip_rate: Floats
+
+
+class ChainEnergy(NamedTuple):
+    """Energies at the end of a run (J): in springs, of motion, heat of friction, heat of dashpots, and the work of the driver.
+
+    `springs_at_start` is that in springs at t = 0. `error` is springs + kinetic + heat + dashpots - driver - springs_at_start,
+    which is 0 but for rounding.
+    """
+
+    springs: float
+    kinetic: float
+    heat: float
+    dashpots: float
+    driver: float
+    springs_at_start: float
+
+    @property
+    def error(self) -> float:
+        """What the balance lacks (J)."""
+        return self.springs + self.kinetic + self.heat + self.dashpots - self.driver - self.springs_at_start
+
+
+def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
+    """Return rows of compiled code as an array with named columns."""
+    found = np.empty(len(rows), kind)
+    for n, name in enumerate(kind.names or ()):
+        found[name] = rows[:, n]
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class ChainRun(NamesAttributes):
+    """A chain that was solved from t = 0 to a time, by `stickslip.simulate`.
+
+    An event lasts from the first onset after rest of all blocks to their next rest. Blocks that change at the same instant change
+    together; the first block of an event is then the one with the lowest number.
+
+    Attributes
+    ----------
+    chain : Chain
+        What was solved.
+    duration : float
+        The time that was reached (s).
+    """
+
+    chain: Chain
+    duration: float
+    event_rows: Floats
+    change_rows: Floats | None
+    snapshots: list[ChainState]
+    state: ChainState
+    final: ChainState
+
+    @cached_property
+    def events(self) -> NDArray[Any]:
+        """The finished events, a structured array: time of the first onset (s), first_block, size (number of blocks that slipped),
+        moment (sum of their slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work
+        of the driver, springs before and after.
+        """
+        return structured(self.event_rows, EVENT_TYPE)
+
+    def events_table(self) -> pd.DataFrame:
+        """Return the events as a table of pandas, with the columns of `events`."""
+        import pandas as pd
+
+        return pd.DataFrame(self.events)
+
+    @cached_property
+    def changes(self) -> NDArray[Any]:
+        """The changes of blocks, a structured array: time (s), since (time since the first onset of the event, s), block, kind (0
+        onset, 1 arrest, 2 turn, 3 knot: `CHANGE_NAMES`), slip (m). Raises InputError if the run did not keep them.
+        """
+        if self.change_rows is None:
+            raise InputError('ChainRun: changes were not kept: simulate(chain, duration, keep="changes") keeps them')
+        return structured(self.change_rows, CHANGE_TYPE)
+
+    @property
+    def count_of_changes(self) -> int:
+        """The number of changes of blocks, whether they are kept or not."""
+        return int(self.state.now[at.CHANGES])
+
+    @property
+    def count_of_events(self) -> int:
+        """The number of finished events."""
+        return int(self.state.now[at.EVENTS])
+
+    @property
+    def moving_steps(self) -> int:
+        """The sum of the numbers of moving blocks over all steps."""
+        return int(self.state.now[at.BLOCK_STEPS])
+
+    @property
+    def slip(self) -> Floats:
+        """The slip of each block at the end (m)."""
+        return self.final.blocks[at.SLIP].copy()
+
+    @property
+    def slip_rate(self) -> Floats:
+        """The slip rate of each block at the end (m/s)."""
+        return self.final.blocks[at.RATE].copy()
+
+    def energy(self) -> ChainEnergy:
+        """Return the energies at the end (J) and their balance."""
+        from stickslip.extensions.chains.numbers import numbers_of
+        from stickslip.extensions.chains.solver import energies_of
+
+        numbers, first, now = numbers_of(self.chain), ChainState.empty(self.chain.count), self.final.now
+        first.blocks[at.SLIP] = self.chain.values("initial_slip")
+        kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE] ** 2)
+        springs = energies_of(numbers, self.final), energies_of(numbers, first)
+        return ChainEnergy(springs[0], kinetic, float(now[at.HEAT]), float(now[at.DASHPOT]), float(now[at.WORK]), springs[1])
+
+    def motion(self, start: float, end: float, count: int = 1001) -> Motion:
+        """Return the motion at so many even times (s) from `start` to `end`: see `at`."""
+        return self.at(np.linspace(start, end, count))
+
+    def at(self, times: ArrayLike) -> Motion:
+        """Return slip (m) and slip rate (m/s) of all blocks at times (s), calculated again from the snapshot before the first."""
+        from stickslip.extensions.chains.solver import motion_from
+
+        wanted = np.atleast_1d(np.asarray(times, float))
+        if not (wanted.size and np.all(wanted >= 0.0) and np.all(wanted <= self.duration)):
+            raise InputError(f"ChainRun: times must lie from 0 to {self.duration:g} s")
+        order = np.argsort(wanted, kind="stable")
+        known = [one for one in self.snapshots if one.time <= wanted.min()] or self.snapshots[:1]
+        found = motion_from(self.chain, known[-1], np.ascontiguousarray(wanted[order]))
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        return Motion(wanted, found.slip[back], found.slip_rate[back])
+
+    def proof(self) -> str:
+        """Return in a sentence what is proven of the run."""
+        left_out = float(self.state.now[at.DEFECT])
+        return (
+            f"In each of {int(self.state.now[at.STEPS])} steps the terms left out of the series move no block further than "
+            f"{left_out:.1e} of the largest motion in the step (proven, but for rounding), and no change lies before the one at "
+            "which a step ends (proven by bounds of its polynomials)."
+        )
