@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from stickslip.extensions.chains.run import ChainRun
 
 
-
-
 class Slips(NamedTuple):
     """Blocks that slipped: which, from when to when (s), and by how much (m); ends are NaN where slip goes on."""
 

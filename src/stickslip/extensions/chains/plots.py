@@ -44,7 +44,9 @@ class ChainPlots(NamesAttributes):
 
         return known_to_pyplot(draw_rupture(self._run, event, start, end, **place), place)
 
-    def frequency(self, completeness: float | None = None, *, largest: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
+    def frequency(
+        self, completeness: float | None = None, *, largest: float | None = None, **place: Unpack[Place]
+    ) -> Figure | Axes:
         """Draw how many events have a magnitude mu = ln M or a larger one, with the slope of `stickslip.studies.gutenberg_richter`."""
         from stickslip.extensions.chains.figures.frequency import draw_frequency
 
