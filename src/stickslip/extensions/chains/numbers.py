@@ -82,13 +82,6 @@ def room_of(count: int) -> Room:
 
     lists = [whole() for _ in range(4)]
     return Room(
-        np.empty((count, TERMS)),
-        np.zeros(count),
-        whole(),
-        whole(),
-        lists[0],
-        lists[1],
-        lists[2],
-        lists[3],
+        np.empty((count, TERMS)), np.zeros(count), whole(), whole(), lists[0], lists[1], lists[2], lists[3],
         np.zeros(at.NUMBER_OF_COUNTS, np.int64),
     )

@@ -76,7 +76,7 @@ from stickslip.extensions.chains.compiled.series import (
     stretch_series,
     write_series,
 )
-from stickslip.foundation.kernels.kernels import entry, kernel
+from stickslip.foundation.kernels.kernels import entry, exact, kernel
 
 MOST_AT_ONCE = 10_000
 """If so many changes follow each other without any time between them, the solver gives up."""
@@ -202,9 +202,7 @@ def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
     """Write when a block is due that rests among resting ones."""
     set_due(chain, state, j)
     first = room.counts[FIRST_DUE]
-    if first >= 0 and (
-        state.blocks[DUE, j] < state.blocks[DUE, first] or (state.blocks[DUE, j] == state.blocks[DUE, first] and j < first)
-    ):
+    if first >= 0 and (state.blocks[DUE, j] < state.blocks[DUE, first] or (state.blocks[DUE, j] == state.blocks[DUE, first] and j < first)):
         room.counts[FIRST_DUE] = j
 
 

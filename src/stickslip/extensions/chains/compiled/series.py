@@ -11,7 +11,7 @@ import math
 
 from stickslip.engine.series.polynomial import TERMS
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
-from stickslip.extensions.chains.compiled.loads import load_on, sliding_strength, static_step
+from stickslip.extensions.chains.compiled.loads import driver_place, load_on, sliding_strength, static_step
 from stickslip.extensions.chains.compiled.memory import (
     BACKWARD,
     EDGE,
@@ -105,11 +105,7 @@ def length_of_step(room: Room) -> float:
     last = before = first = second = third = 0.0
     for n in range(room.counts[MOVING]):
         j = room.moving[n]
-        first, second, third = (
-            max(first, abs(room.series[j, 1])),
-            max(second, abs(room.series[j, 2])),
-            max(third, abs(room.series[j, 3])),
-        )
+        first, second, third = max(first, abs(room.series[j, 1])), max(second, abs(room.series[j, 2])), max(third, abs(room.series[j, 3]))
         last, before = max(last, abs(room.series[j, TERMS - 1])), max(before, abs(room.series[j, TERMS - 2]))
     length = 1.0
     for _ in range(4):
