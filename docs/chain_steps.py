@@ -2,8 +2,8 @@
 
 python docs/chain_steps.py
 
-The usual program for chains takes steps of one size by the classic Runge-Kutta method of order 4, and a block rests where its rate falls
-below a small one. Blocks do not slip back. It is written here as such programs are, compiled by numba.
+The usual program for chains takes steps of one size by the classic Runge-Kutta method of order 4, and a block rests where its rate
+falls below a small one. Blocks do not slip back. It is written here as such programs are, compiled by numba.
 """
 
 from __future__ import annotations
@@ -106,9 +106,8 @@ def draw() -> None:
         runs = [by_fixed_steps(START, step, small) for step in STEPS]
         found = [(len(run), run[1:, 1].max(), agree(run[:, 0], events["time"])) for run in runs]
         for step, (count, largest, until) in zip(STEPS, found, strict=True):
-            print(
-                f"small rate {small:g} m/s, step {step:.3g} s: {count} events, the largest {largest:.6g} m, exact up to {until:.6g} s"
-            )
+            said = f"{count} events, the largest {largest:.6g} m, exact up to {until:.6g} s"
+            print(f"small rate {small:g} m/s, step {step:.3g} s: {said}")
         for panel, values in zip(panels, zip(*found, strict=True), strict=True):
             panel.plot(STEPS, values, "o-", color=colour, markersize=size, linewidth=0.8, label=f"rests below {small:g} m/s")
     print(f"exact: {len(events)} events, the largest {events['moment'][1:].max():.9g} m")

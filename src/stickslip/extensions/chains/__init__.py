@@ -18,7 +18,9 @@ class ChainsExtension(Extension):
         return {
             "Chain": f"{home}.chain:Chain",
             "Drawn": f"{home}.drawn:Drawn",
+            "studies.ChainBesideSlab": f"{home}.beside_slab:ChainBesideSlab",
             "studies.GutenbergRichter": f"{home}.statistics:GutenbergRichter",
+            "studies.chain_beside_slab": f"{home}.beside_slab:chain_beside_slab",
             "studies.gutenberg_richter": f"{home}.statistics:gutenberg_richter",
             "studies.magnitudes": f"{home}.magnitudes:magnitudes",
         }

@@ -32,7 +32,8 @@ def changes_between(run: ChainRun, start: float, end: float) -> Any:
         from stickslip.extensions.chains.solver import solve_chain
 
         before = [one for one in run.snapshots if one.time <= start] or run.snapshots[:1]
-        found = solve_chain(run.chain, end, before[-1], keep="changes").changes
+        known = before[-1] if before[-1].time > 0.0 else None  # the start has changes of its own
+        found = solve_chain(run.chain, end, known, keep="changes").changes
     return found[(found["time"] >= start) & (found["time"] <= end)]
 
 

@@ -39,7 +39,7 @@ class ChainPlots(NamesAttributes):
     def rupture(
         self, event: int | None = None, start: float | None = None, end: float | None = None, **place: Unpack[Place]
     ) -> Figure:
-        """Draw when each block slips in an event (its number, by default the one of the largest moment) or between two times (s)."""
+        """Draw when each block slips in an event (its number; the default is that of the largest moment), or between times (s)."""
         from stickslip.extensions.chains.figures.rupture import draw_rupture
 
         return known_to_pyplot(draw_rupture(self._run, event, start, end, **place), place)
@@ -47,7 +47,7 @@ class ChainPlots(NamesAttributes):
     def frequency(
         self, completeness: float | None = None, *, largest: float | None = None, **place: Unpack[Place]
     ) -> Figure | Axes:
-        """Draw how many events have a magnitude mu = ln M or a larger one, with the slope of `stickslip.studies.gutenberg_richter`."""
+        """Draw how many events have a magnitude mu = ln M or a larger one, with the slope that `gutenberg_richter` finds."""
         from stickslip.extensions.chains.figures.frequency import draw_frequency
 
         found: Any = gutenberg_richter(magnitudes(self._run), completeness, largest=largest)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 def energies_at_events(run: ChainRun) -> dict[str, Floats]:
     """Return time (s) and energies (J) at the start, before and after each event, and at the end.
 
-    Keys: time; springs; heat of friction; dashpots; driver, its work since the start. Between events the driver loads springs alone.
+    Keys: time; springs; heat of friction; dashpots; driver, its work since the start. Between events the driver loads springs.
     """
     events, found = run.events, run.energy()
     time = np.stack([events["time"], events["time"] + events["duration"]], axis=1).ravel()
