@@ -210,20 +210,17 @@ def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def take_samples(state: Now, room: Room, kept: Kept, length: float, end: float) -> None:
-    """Write slip and slip rate at the times that lie in a step up to a place `end`; its length is in s, 0 if all rest."""
-    start = time_of(state)
-    last = start + end * length
+def take_samples(state: Now, room: Room, kept: Kept, length: float, reach: float) -> None:
+    """Write slip and slip rate at the times that lie within a reach (s) from now, of a step of a length (s), or of rest: 0."""
     while room.counts[SAMPLES] < len(kept.sample_times):
         n = room.counts[SAMPLES]
-        if length == 0.0 and not kept.sample_times[n] <= end:
-            return
-        if length > 0.0 and not kept.sample_times[n] <= last:
+        after = (kept.sample_times[n] - state.now[ORIGIN]) - state.now[SINCE]
+        if not after <= reach:
             return
         for j in range(len(state.blocks[SLIP])):
             kept.sampled_slip[n, j], kept.sampled_rate[n, j] = state.blocks[SLIP, j], 0.0
         if length > 0.0:
-            place = min(end, max(0.0, ((kept.sample_times[n] - state.now[ORIGIN]) - state.now[SINCE]) / length))
+            place = min(1.0, max(0.0, after / length))
             for m in range(room.counts[MOVING]):
                 j = room.moving[m]
                 kept.sampled_slip[n, j] = state.blocks[SLIP, j] + moved(room.series[j], place)
@@ -334,11 +331,11 @@ def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits
     due_place = max(0.0, ((due - now[ORIGIN]) - now[SINCE]) / length) if due < math.inf else NONE
     end = min(1.0, min(place, due_place))
     if end * length > left:
-        take_samples(state, room, kept, length, left / length)
+        take_samples(state, room, kept, length, left)
         if limits.is_cut == 1:
             commit(chain, state, room, length, left / length)
         return DONE
-    take_samples(state, room, kept, length, end)
+    take_samples(state, room, kept, length, end * length)
     now[DEFECT] = max(now[DEFECT], remainder_of_step(room, length * chain.fastest))
     was_resting = rubbing(chain, state, room) == 0
     commit(chain, state, room, length, end)
@@ -382,7 +379,7 @@ def pass_rest(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: L
     due, here = state.blocks[DUE, room.counts[FIRST_DUE]], time_of(state)
     beyond = not due <= limits.until
     to = limits.until if beyond else due
-    take_samples(state, room, kept, 0.0, to)
+    take_samples(state, room, kept, 0.0, (to - now[ORIGIN]) - now[SINCE])
     if beyond and limits.is_cut == 0:
         return DONE
     wait = max(0.0, to - here)
