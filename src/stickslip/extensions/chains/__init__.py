@@ -36,9 +36,17 @@ class ChainsExtension(Extension):
         return (ChainReader(),)
 
     def public(self) -> Mapping[str, str]:
-        """Return the chain, and numbers that are drawn for its blocks."""
+        """Return the chain, numbers that are drawn for its blocks, and the statistics of catalogues."""
         home = "stickslip.extensions.chains"
-        return {"Chain": f"{home}.chain:Chain", "Drawn": f"{home}.drawn:Drawn"}
+        return {
+            "Chain": f"{home}.chain:Chain",
+            "Drawn": f"{home}.drawn:Drawn",
+            "studies.ChainBesideSlab": f"{home}.beside_slab:ChainBesideSlab",
+            "studies.GutenbergRichter": f"{home}.statistics:GutenbergRichter",
+            "studies.chain_beside_slab": f"{home}.beside_slab:chain_beside_slab",
+            "studies.gutenberg_richter": f"{home}.statistics:gutenberg_richter",
+            "studies.magnitudes": f"{home}.magnitudes:magnitudes",
+        }
 
 
 EXTENSION = ChainsExtension()

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.extensions.chains.chain import Chain
+    from stickslip.extensions.chains.plots import ChainPlots
 
 Floats = NDArray[np.float64]
 EVENT_TYPE = np.dtype(
@@ -191,6 +192,13 @@ class ChainRun(NamesAttributes):
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         return Motion(wanted, found.slip[back], found.slip_rate[back])
+
+    @property
+    def plot(self) -> ChainPlots:
+        """The figures: `plot()` draws the catalogue, `plot.rupture()` which blocks slip when."""
+        from stickslip.extensions.chains.plots import ChainPlots
+
+        return ChainPlots(self)
 
     def proof(self) -> str:
         """Return in a sentence what is proven of the run."""
