@@ -1,4 +1,5 @@
 from stickslip.contact import critical_value
+from stickslip.extensions.chains.beside_slab import ChainBesideSlab, chain_beside_slab
 from stickslip.extensions.chains.magnitudes import magnitudes
 from stickslip.extensions.chains.statistics import GutenbergRichter, gutenberg_richter
 from stickslip.extensions.given_motion.identification import Identification
@@ -21,6 +22,7 @@ from stickslip.solution.observables.severity import severity
 
 __all__ = [
     "Analogy",
+    "ChainBesideSlab",
     "Comparison",
     "Edge",
     "Ensemble",
@@ -32,6 +34,7 @@ __all__ = [
     "SlidingDisplacements",
     "analogy",
     "catalogue_statistics",
+    "chain_beside_slab",
     "compare",
     "critical_value",
     "ensemble",

@@ -52,14 +52,14 @@ def magnitudes(moments: Any, scale: Scale = "ln") -> Floats:
     if scale not in get_args(Scale):
         raise InputError(f"magnitudes: scale must be 'ln' or 'moment', got {shown(scale)}{nearest(scale, FACTORS)}")
     given = moments_of(moments)
-    return np.log(np.abs(given)) * FACTORS[scale]
+    return np.asarray(np.log(np.abs(given)) * FACTORS[scale])
 
 
 def moments_of(source: Any) -> Floats:
     """Return moments from a run (of its events those with a moment), or as they are given. Raises InputError."""
     if (events := getattr(source, "events", None)) is not None:
         found = np.asarray(events["moment"], dtype=float)
-        return found[found != 0.0]
+        return np.asarray(found[found != 0.0])
     given = numbers_of("magnitudes", "moments", source)
     if not given.all():
         where = int(np.flatnonzero(given == 0.0)[0])
