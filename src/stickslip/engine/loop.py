@@ -43,7 +43,6 @@ import math
 
 from stickslip.engine.contact.contact_equation import needs_branches
 from stickslip.engine.contact.pieces import xi_at
-from stickslip.engine.contact.play import change_side, edge_at_rest, is_past_edge, set_stiffness
 from stickslip.engine.contact.pressing import before_turn, own_states
 from stickslip.engine.contact.stiffness import is_implicit
 from stickslip.engine.contact_step.stick_or_slip import arrive, stick
@@ -84,8 +83,9 @@ def run_until(table: Integers1, last_trip: int, last_phase: float, passes: int) 
     """
     run = borrow(table)
     run.k.damping, run.k.normal = run.params.damping, run.params.normal
-    run.k.inertia = run.params.inertia
-    set_stiffness(run)
+    if run.params.play > 0.0:
+        run.params.stiffness = run.params.spring if run.counts.side != 0 else 0.0
+    run.k.inertia, run.k.stiffness = run.params.inertia, run.params.stiffness
     if run.counts.disc == NO_DISC:
         run.counts.disc = int(run.params.first_disc)
     run.missing = missing_part(run)
@@ -143,6 +143,8 @@ def missing_part(run: Run) -> int:
         return EnginePart.FOLDS
     if run.negative_friction == 0 and run.params.can_be_negative != 0.0 and own_states(run) == 0:
         return EnginePart.NEGATIVE_FRICTION
+    if run.play == 0 and run.params.play > 0.0:
+        return EnginePart.PLAY
     return EnginePart.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else EnginePart.NONE
 
 
@@ -183,10 +185,13 @@ def take_step(run: Run, xi_to: float) -> int:
     if run.implicit_steps == 0 and is_implicit(run):
         run.missing = EnginePart.IMPLICIT_STEPS
         return Stop.NEED_PART
-    if is_past_edge(run):
-        change_side(run)
+    if run.params.play > 0.0:
+        xi_to = call_part(run.play, run, Task.LEAD_TO_EDGE, xi_to)
+    if xi_to == xi:
+        pass  # it has changed its side of a play
     elif run.counts.mode == 0:
-        rest(run, xi_to)
+        if own_states(run) == 0 or call_part(run.implicit_steps, run, Task.STICK_WITH_STATE, xi_to) == 0.0:
+            stick(run, before_turn(run, xi_to))
     elif is_implicit(run):
         call_part(run.implicit_steps, run, Task.SLIP_IMPLICITLY, xi_to)
     elif run.counts.waits == 1:
@@ -200,17 +205,6 @@ def take_step(run: Run, xi_to: float) -> int:
         return Stop.NONE
     take_back(run, length, xi)
     return run.counts.breach if run.counts.breach != 0 else Stop.FAILED
-
-
-@kernel
-def rest(run: Run, xi_to: float) -> None:
-    """Stay at rest for one step, up to the place xi_to or the edge of a play at most."""
-    edge = edge_at_rest(run, xi_to)
-    target = min(xi_to, edge)
-    if target > run.state.xi and (own_states(run) == 0 or call_part(run.implicit_steps, run, Task.STICK_WITH_STATE, target) == 0.0):
-        stick(run, before_turn(run, target))
-    if run.state.xi >= edge and run.counts.breach == 0:
-        change_side(run)
 
 
 @kernel

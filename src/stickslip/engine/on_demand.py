@@ -25,6 +25,7 @@ PART_MODULES = {
     EnginePart.LADDER: "waves.ladder",
     EnginePart.FOLDS: "folds.fold",
     EnginePart.NEGATIVE_FRICTION: "contact_step.negative_friction",
+    EnginePart.PLAY: "contact.play",
 }
 """The module of each part, below `stickslip.engine`, where its function has the name of the part; its address is the field of that
 name in `workspace.Run`."""

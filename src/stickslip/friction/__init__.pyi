@@ -8,8 +8,8 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.both_ways import BothWays, SelfEnergising
 from stickslip.friction.laws.bristles import Dahl, LuGre
 from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
+from stickslip.friction.laws.of_chains import CarlsonLanger
 from stickslip.friction.laws.of_rate import (
-    CarlsonLanger,
     Coulomb,
     ExponentialStribeck,
     HyperbolicRate,

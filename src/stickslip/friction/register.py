@@ -15,7 +15,7 @@ LAWS: ClassesByKind[FrictionLaw] = ClassesByKind(
         "sinusoidal-slip": "laws.of_slip.SinusoidalSlip",
         "hyperbolic-rate": "laws.of_rate.HyperbolicRate",
         "coulomb": "laws.of_rate.Coulomb",
-        "carlson-langer": "laws.of_rate.CarlsonLanger",
+        "carlson-langer": "laws.of_chains.CarlsonLanger",
         "linear-slip-weakening": "laws.of_slip.LinearSlipWeakening",
         "exponential-slip-weakening": "laws.of_slip.ExponentialSlipWeakening",
         "power-slip-weakening": "laws.of_slip.PowerSlipWeakening",

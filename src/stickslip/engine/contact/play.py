@@ -2,31 +2,27 @@
 
 The end of the spring has been pulled as far as D. With the lag e = D - u behind it and half the play b, the spring gives K (e - b)
 where e > b, K (e + b) where e < -b, and nothing in between. `Counts.side` is 1, -1 and 0 there; `Params.stiffness` is K or 0, and
-the load of the engine grows with D or does not. The lag meets an edge of the play where a polynomial has a root.
+the load of the engine grows with D or does not. The lag meets an edge of the play where a polynomial has a root. This is a part of
+the engine that is compiled when a run first needs it (`on_demand`).
 """
 
 from __future__ import annotations
 
 import math
 
+from stickslip.engine.contact.contact_equation import TIE
 from stickslip.engine.contact.pieces import note_degree
 from stickslip.engine.contact.pressing import tone_along
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, evaluate, fill, first_descent, restrict
-from stickslip.engine.state.layout import TERMS, Floats
-from stickslip.engine.state.workspace import Run
-from stickslip.foundation.kernels.kernels import kernel
+from stickslip.engine.state.layout import TERMS, Floats, Task
+from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
+ROUNDING = 2.0**-48
+"""The lag is at an edge if it is nearer to it than this share (1) of the ways from which it follows."""
 LEAST_SHARE = 2.0**-60
 """A step ends no nearer to its start than at this share (1) of it: an edge there is met at once."""
-
-
-@kernel
-def set_stiffness(run: Run) -> None:
-    """Let the spring resist slip outside the play, and not inside."""
-    if run.params.play > 0.0:
-        run.params.stiffness = run.params.spring if run.counts.side != 0 else 0.0
-    run.k.stiffness = run.params.stiffness
 
 
 @kernel
@@ -54,8 +50,9 @@ def lag_at_rest(run: Run, width: float, lag: Floats) -> None:
     way = room_for(TERMS)
     way_pulled(run, way)
     restrict(way, run.state.xi, width, lag)
+    size = abs(lag[0]) + abs(run.params.first_lag) + abs(run.state.slip_now)
     lag[0] += run.params.first_lag - run.state.slip_now
-    if run.state.edge == run.state.xi:  # it is there to the bit, and its slope says where it goes
+    if abs(abs(lag[0]) - run.params.play) <= ROUNDING * size:  # it is at the edge, and its slope says where it goes
         lag[0] = math.copysign(run.params.play, lag[0])
 
 
@@ -75,36 +72,32 @@ def place_of_edge(run: Run, lag: Floats) -> float:
 
 
 @kernel
-def edge_at_rest(run: Run, xi_to: float) -> float:
-    """Return the place (in xi) before xi_to where a body that rests meets an edge of the play; NONE if it does not."""
-    if run.params.play == 0.0:
-        return NONE
-    lag, width = room_for(TERMS), xi_to - run.state.xi
+def lead_to_edge(run: Run, xi_to: float) -> float:
+    """Return the place (in xi) up to which a step may go: xi_to, or that where a body at rest meets an edge of the play.
+
+    Where it is at an edge already, it changes its side, and the step goes nowhere. So does a body that slips and was brought beyond
+    an edge by rounding as the piece of load before ended.
+    """
+    lag, width = room_for(TERMS), xi_to - run.state.xi if run.counts.mode == 0 else 0.0
     lag_at_rest(run, width, lag)
     place = place_of_edge(run, lag)
-    return run.state.xi + place * width if place < 1.0 else NONE
+    if place * width <= TIE:
+        change_side(run)
+        return run.state.xi
+    return run.state.xi + place * width if place < 1.0 else xi_to
 
 
 @kernel
-def edge_in_slip(run: Run, rate: Floats, length: float) -> float:
-    """Return where on [0, 1] a step of slip of the given length (in units) meets an edge of the play, or NONE."""
-    if run.params.play == 0.0:
-        return NONE
-    lag, lasting = room_for(TERMS), run.k.speed * length
+def edge_in_slip(run: Run, length: float) -> float:
+    """Return where on [0, 1] a step of slip of the given length (in units) meets an edge of the play, or NONE.
+
+    The magnitude of its slip rate is in the next free row of the history.
+    """
+    lag, lasting, rate = room_for(TERMS), run.k.speed * length, run.history[run.counts.length].rate
     lag_at_rest(run, lasting / run.state.speed, lag)
     for k in range(1, TERMS):
         lag[k] -= run.counts.mode * lasting * RECIPROCAL[k] * rate[k - 1]
     return max(place_of_edge(run, lag), LEAST_SHARE)
-
-
-@kernel
-def is_past_edge(run: Run) -> bool:
-    """Return True if the lag is not on its side of the play: it has met an edge where the piece of load before ended."""
-    if run.params.play == 0.0:
-        return False
-    lag = room_for(TERMS)
-    lag_at_rest(run, 0.0, lag)
-    return abs(lag[0]) > run.params.play if run.counts.side == 0 else run.counts.side * lag[0] < run.params.play
 
 
 @kernel
@@ -118,10 +111,9 @@ def change_side(run: Run) -> None:
     run.counts.side = 0 if not taken_up else 1 if lag[0] > 0.0 else -1
     for k in range(TERMS):
         run.load[k] += (run.params.spring if taken_up else -run.params.spring) * way[k]
-    run.state.edge = run.state.xi
     run.counts.stalled += 1
     run.counts.moved = 1  # the period that ends is none like which others follow
-    set_stiffness(run)
+    run.params.stiffness = run.k.stiffness = run.params.spring if taken_up else 0.0
     note_degree(run)
 
 
@@ -138,6 +130,21 @@ def let_go(run: Run) -> None:
 def keeps_side(run: Run) -> bool:
     """Return True if a body at rest stays on its side of the play while this segment of the loading holds."""
     one = run.loading[run.counts.segment]
-    if run.params.play == 0.0:
-        return True
     return one.pull_slope == 0.0 and run.params.pull_tone == 0.0 and (one.pull == 0.0 or run.counts.side * one.pull > 0.0)
+
+
+@entry
+def play(memory: int, task: int, number: float) -> float:
+    """Serve a run with a play: see `Task`. `number` is the place (in xi) up to which a body rests, or the length of a step."""
+    run = borrow(memory)
+    if task == Task.LEAD_TO_EDGE:
+        return lead_to_edge(run, number)
+    if task == Task.EDGE_IN_SLIP:
+        return edge_in_slip(run, number)
+    if task == Task.KEEPS_SIDE:
+        return 1.0 if keeps_side(run) else 0.0
+    if task == Task.CHANGE_SIDE:
+        change_side(run)
+    else:
+        let_go(run)
+    return 0.0

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.contact.contact_equation import onset_of_slip
+from stickslip.engine.contact.contact_equation import TIE, onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import keep_state, record
 from stickslip.engine.contact.pressing import is_pressing, own_states
@@ -15,7 +15,7 @@ from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_long
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE_FRICTION
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
-from stickslip.engine.contact_step.step_events import Cut, cut_at_edge, cut_at_first_event, resolve, stretch
+from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.radau.step import collocate, prove_anyway
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
@@ -24,7 +24,7 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.foundation.kernels.kernels import entry, kernel
-from stickslip.foundation.kernels.memory.addresses import ahead
+from stickslip.foundation.kernels.memory.addresses import ahead, call_part
 from stickslip.problem import Stop
 
 STILL_BRISTLES = 1e-3
@@ -72,6 +72,16 @@ def hangs(run: Run) -> bool:
             run.state_jet[at.TERMS * n] = run.state.state_now[n]
         prove_anyway(run, 1.0)
     return fastest <= run.state.hanging
+
+
+@kernel
+def cut_at_edge(run: Run, rate: Floats) -> Cut:
+    """Cut a step in which nothing but the end of a spring moves where that meets an edge of the play beside it."""
+    end = call_part(run.play, run, Task.EDGE_IN_SLIP, 1.0) if run.params.play > 0.0 else NONE
+    if end > 1.0 - TIE:
+        return Cut(StepEvent.NONE, 0, 1.0)
+    stretch(run, end, rate)
+    return Cut(StepEvent.EDGE, 0, end)
 
 
 @kernel

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 from stickslip.engine.contact.contact_equation import TIE, first_piece, last_piece
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
-from stickslip.engine.contact.play import change_side, edge_in_slip
 from stickslip.engine.contact_step.hard_stop import meet_stop, way_to_stop
 from stickslip.engine.contact_step.stick_or_slip import come_to_rest
 from stickslip.engine.folds.fold import reach_end
 from stickslip.engine.series.polynomial import NONE, first_descent, integral, magnitude, multiply, powers_of
-from stickslip.engine.state.layout import Floats, StepEvent
+from stickslip.engine.state.layout import Floats, StepEvent, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.kernels.kernels import inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import call_part
 
 
 class Cut(NamedTuple):
@@ -101,7 +101,7 @@ def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
     knot, turn = next_knot(run, rate, length, min(arrest, 1.0)) if run.pieces > 1 else (NONE, 0)
     way = way_to_stop(run)
     stop = place_of_slip(run, rate, length, min(arrest, 1.0), way) if way < math.inf else NONE
-    edge = edge_in_slip(run, rate, length)
+    edge = call_part(run.play, run, Task.EDGE_IN_SLIP, length) if run.params.play > 0.0 else NONE
     end = min(arrest, knot, stop, edge)
     if end > 1.0 - TIE:
         return Cut(StepEvent.NONE, 0, 1.0)
@@ -109,16 +109,6 @@ def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
         stretch(run, length * end, rate)
     other = StepEvent.STOP if stop == end else StepEvent.EDGE
     return Cut(StepEvent.ARREST if arrest == end else StepEvent.KNOT if knot == end else other, turn, end)
-
-
-@kernel
-def cut_at_edge(run: Run, rate: Floats) -> Cut:
-    """Cut a step in which nothing but the end of the spring moves where that meets an edge of the play."""
-    end = edge_in_slip(run, rate, 1.0)
-    if end > 1.0 - TIE:
-        return Cut(StepEvent.NONE, 0, 1.0)
-    stretch(run, end, rate)
-    return Cut(StepEvent.EDGE, 0, end)
 
 
 @kernel
@@ -131,4 +121,4 @@ def resolve(run: Run, cut: Cut) -> None:
     elif cut.event == StepEvent.STOP:
         meet_stop(run)
     elif cut.event == StepEvent.EDGE:
-        change_side(run)
+        call_part(run.play, run, Task.CHANGE_SIDE, 0.0)

@@ -58,7 +58,7 @@ NOT_NEGATIVE = (
     "merge_at",
 )
 """Counts of round trips or steps, from 0 to NEVER."""
-FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "missed", "exit", "edge")
+FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "missed", "exit")
 """Numbers of the state that may be infinite or NaN."""
 Fault = tuple[str, Any]
 """The name of a check, and whether it fails."""

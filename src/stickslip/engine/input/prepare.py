@@ -85,7 +85,6 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
         shared.flags.writeable = False
     state, counts = start_of(problem)
     counts.side = int(np.sign(params.first_lag)) if params.play > 0.0 else 0
-    state.edge = math.nan
     if counts.is_algebraic and counts.mode != 0:
         turn = int(params.backward_branch) or len(branches)
         begin, end = (turn, len(branches)) if counts.mode < 0 and turn < len(branches) else (0, turn)

@@ -124,7 +124,6 @@ class State(MemoryRecord):
     roughest: float  # 1: largest error of the slip rate by rounding in the law, relative, in any rough step (`Counts.rough`)
     exit: float  # 1: xi where an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
     hanging: float  # m/s: slip rate below which a contact with bristles hangs in them; 0 under any other law
-    edge: float  # 1: xi where the lag has last met an edge of the play; NaN if not on this piece of load
     driver_rate: float  # m/s: rate of a driver that is a machine, h/c before its wave reaches the end of the present piece of load
     driver_push: float  # Pa: force of its integral gain then
     driver_swing: float  # m/s: bound on how far its rate has been from that of a long rest, in this round trip
@@ -321,6 +320,7 @@ class EnginePart(IntEnum):
     LADDER = 6
     FOLDS = 7
     NEGATIVE_FRICTION = 8
+    PLAY = 9
 
 
 class Task(IntEnum):
@@ -376,6 +376,12 @@ class Task(IntEnum):
     """Decide whether pieces of waves are merged in the round trip that begins."""
     GATHER_WAVES = 27
     """Bring the wave that left a uniform body with a piece of the history, and with those behind it that merge with it."""
+    LEAD_TO_EDGE = 28
+    EDGE_IN_SLIP = 29
+    CHANGE_SIDE = 30
+    LET_GO = 31
+    KEEPS_SIDE = 32
+    """Find edges of a play and pass them, take the spring from a piece of load, find whether rest lasts (`contact.play`)."""
 
 
 # ---- records in tables ------------------------------------------------------------------------------------------------------

@@ -74,6 +74,7 @@ class Run(MemoryRecord):
     ladder: int
     folds: int
     negative_friction: int
+    play: int
     wave_rows: int  # number of rows of waves that fit, besides those of the piece of load
     missing: int  # the part that the engine has asked for, as a code of `Part`
 

@@ -146,7 +146,7 @@ def next_piece(run: Run) -> bool:
         call_part(run.loading_history, run, Task.TAKE_LOADING, 0.0)
     else:
         run.counts.source += max(run.counts.merged, 1)
-    run.state.xi, run.state.exit, run.state.edge = 0.0, math.nan, math.nan
+    run.state.xi, run.state.exit = 0.0, math.nan
     note_degree(run)
     run.counts.jump = 1 if run.counts.arriving != Cause.NO_CAUSE else run.counts.jump
     run.counts.ready = Incoming.BROUGHT

@@ -13,7 +13,6 @@ import math
 from stickslip.engine.contact.contact_equation import is_barred, limit_towards
 from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import phase_at, span_of_load, xi_at
-from stickslip.engine.contact.play import keeps_side, let_go
 from stickslip.engine.contact.pressing import couple, is_pressing, press, press_ahead, pressing_at, tone_series
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
@@ -182,8 +181,8 @@ def pull_block(run: Run) -> None:
     run.load[2] += 0.5 * pace * pace * slope
     if run.params.winding != 0.0:
         wind_up(run, since)
-    if run.params.play != 0.0 and run.counts.side == 0:
-        let_go(run)
+    if run.params.play > 0.0 and run.counts.side == 0:
+        call_part(run.play, run, Task.LET_GO, 0.0)
     if run.loading[segment].tone != 0.0:
         time = run.counts.trip * run.params.round_trip_time + run.state.phase_from
         tone_series(run, run.loading[segment].tone, run.loading[segment].tone_phase, time)
@@ -233,7 +232,7 @@ def trips_withstood(run: Run, limit: float) -> int:
         return 0  # the round trip just past does not predict the next one
     if run.params.winding != 0.0:
         return 0  # no two periods are alike
-    if not keeps_side(run):
+    if run.params.play > 0.0 and call_part(run.play, run, Task.KEEPS_SIDE, 0.0) == 0.0:
         return 0
     if run.loading[segment].shakes == 1.0:
         return 0  # the work of moving ground is added up over recorded pieces, so that no round trip may be left out

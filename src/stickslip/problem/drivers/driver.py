@@ -86,10 +86,6 @@ class Driver(ABC):
         """Return by how much (N) the load on a rigid body jumps from the initial load as the run begins."""
         return 0.0
 
-    def lag_at_first(self, problem: Problem) -> float:
-        """Return how far (m) a body is behind the end of its spring at the start; 0 if there is no play between them."""
-        return 0.0
-
     def at_first(self, problem: Problem) -> tuple[float, float]:
         """Return the rate (m/s) of a driver that moves when the first wave of the run leaves it, and the force of its gain (Pa)."""
         return 0.0, 0.0

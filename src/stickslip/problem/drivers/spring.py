@@ -65,27 +65,23 @@ class Spring(Driver):
         return problem.body.stiffness * as_on_spring(problem.body).reference_step
 
     def numbers(self, problem: Problem) -> dict[str, Any]:
-        """Return half the play, if there is one, the lag of the start, and the sinusoid of the pull rate."""
-        body = as_on_spring(problem.body)
+        """Return half the play, if there is one, the lag of the start, and the sinusoid of the pull rate.
+
+        The force of the start has taken up the play; without a force the body is in the middle of it.
+        """
+        body, stiffness = as_on_spring(problem.body), problem.body.stiffness
         if not problem.body.has_play:
             return {}
-        tone = scaled(problem.pull_rate, 1.0)[1]
+        force = problem.load + self.jump_at_start(problem) - body.driver_damping * problem.first_pull_rate
+        tone, half = scaled(problem.pull_rate, 1.0)[1], 0.5 * body.backlash
         tones = {"pull_tone": tone.amplitude, "pull_phase": tone.phase}
-        return {"play": 0.5 * body.backlash, "spring": problem.body.stiffness, "first_lag": self.lag_at_first(problem), **tones}
+        return {"play": half, "spring": stiffness, "first_lag": force / stiffness + half * float(np.sign(force)), **tones}
 
     def put(self, problem: Problem, segments: Any, start: Floats, middle: Floats) -> None:
         """Write how far its end has been pulled, if there is a play."""
         super().put(problem, segments, start, middle)
         if problem.body.has_play:
             put_way(problem.pull_rate, segments, start)
-
-    def lag_at_first(self, problem: Problem) -> float:
-        """Return it with the play that the spring's force has taken up; without a force the body is in the middle of the play."""
-        if not problem.body.has_play:
-            return 0.0
-        body, force = as_on_spring(problem.body), problem.load + self.jump_at_start(problem)
-        force -= body.driver_damping * problem.first_pull_rate
-        return float(force / problem.body.stiffness + 0.5 * body.backlash * np.sign(force))
 
     def steps(self, problem: Problem) -> list[tuple[float, float]]:
         """Return the times (s) when a force on the body jumps, and by how much (N)."""

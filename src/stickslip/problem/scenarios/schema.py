@@ -23,7 +23,6 @@ from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.problem.bodies import BODIES
 from stickslip.problem.bodies.on_bit import WEIGHT_ON_BIT
-from stickslip.problem.bodies.soft_torque import MEANING as SOFT_TORQUE_MEANS
 from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.loading import HISTORIES, VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
@@ -138,7 +137,9 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
     for name, (declared, default) in entries_in(table, kind, states).items():
         keys[name] = Key(partial(_read_entry, declared), default, describe(declared))
     if table == "body" and hasattr(kind, WITH_SOFT_TORQUE):
-        keys[SOFT_TORQUE] = Key(lambda value, _: value, None, SOFT_TORQUE_MEANS)
+        from stickslip.problem.bodies.soft_torque import MEANING  # here, because few bodies have a drive
+
+        keys[SOFT_TORQUE] = Key(lambda value, _: value, None, MEANING)
     if table == "run":
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
     if table == "loading":

@@ -7,7 +7,7 @@ from typing import Any
 from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
 
-BACKLASH = "width of the play between the spring and the body, in which it gives no force"
+BACKLASH = "width of the play between spring and body, in which the spring gives no force"
 """What the field for it means."""
 
 

@@ -22,7 +22,10 @@ class CheckOfRigid(CheckOfKind):
 
     def numbers(self, problem: Problem) -> list[Fact]:
         """Return period, impedance and rate of loading, as far as there is a spring, and the largest force."""
-        body, first = problem.body, ", at first" if problem.loading_varies else ""
+        body, first = (
+            problem.body,
+            ", at first" if problem.loading_varies else ", outside the play" if problem.body.has_play else "",
+        )
         size = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
         loads = "K V + c dV/dt" if problem.loading_varies and as_on_spring(body).driver_damping else "K V"
         rate, unit = loading_rate(problem), problem.unit_of("load_rate")
@@ -88,7 +91,7 @@ def first_slip(problem: Problem) -> float:
         return 0.0
     strength = problem.strength if rate > 0.0 else problem.backward_strength
     stretch = (strength - body.driver_damping * abs(rate)) / problem.body.stiffness + 0.5 * body.backlash
-    return max(stretch / abs(rate) - driver_of(problem).lag_at_first(problem) / rate, 0.0)
+    return max(stretch / abs(rate) - driver_of(problem).numbers(problem)["first_lag"] / rate, 0.0)
 
 
 def _play(problem: Problem) -> list[Fact]:

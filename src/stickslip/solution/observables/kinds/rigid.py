@@ -221,7 +221,8 @@ def _of_spring(history: History, piece: Places, xi: Floats) -> Floats:
     _, acceleration = of_ground(problem, time, inside)
     moved = pulled(problem, time) - slip
     if problem.body.has_play:
-        lag, half = driver_of(problem).lag_at_first(problem) + moved, 0.5 * as_on_spring(problem.body).backlash
+        numbers = driver_of(problem).numbers(problem)
+        lag, half = numbers["first_lag"] + moved, numbers["play"]
         first = as_on_spring(problem.body).driver_damping * problem.first_pull_rate - problem.strength
         spring = first + problem.body.stiffness * (lag - np.clip(lag, -half, half))
     else:
