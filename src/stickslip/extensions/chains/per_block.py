@@ -101,7 +101,12 @@ def _read_drawn(declared: Quantity, table: Mapping[str, Any], place: DocumentPla
     seed = table[SEED_KEY]
     if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST_SEED:
         raise InputError(f"{where} {SEED_KEY} must be a whole number from 0 to {LARGEST_SEED}, got {shown(seed)}")
-    return Drawn(kind, *given, seed=seed)
+    drawn = Drawn(kind, *given, seed=seed)
+    try:
+        _ = drawn.in_unit(declared.unit)
+    except InputError as error:
+        raise InputError(f"{where} {str(error).removeprefix('Drawn: ')}") from None
+    return drawn
 
 
 def _numbers_of(kind: str, declared: Quantity) -> dict[str, Quantity]:
