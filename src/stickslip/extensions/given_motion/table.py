@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 MOTION = "motion"
 """The name of the table."""
+MARK = "stickslip_motion_format"
+"""The attribute of files of runs along given motions."""
 UNUSED_BODIES: dict[str, dict[str, Any]] = {
     "N": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
     "Pa": {"kind": "elastic-slab", "density": 1e3, "wave_speed": 1e3, "thickness": 1.0, "normal_stress": 1e6},
