@@ -13,9 +13,9 @@ from stickslip.engine import engine_key
 from stickslip.extensions.given_motion.along import FrictionAlongMotion, in_intervals
 from stickslip.extensions.given_motion.compiled import along_motion as at
 from stickslip.extensions.given_motion.compiled.nodes import PLACES_IN_STEP
-from stickslip.extensions.given_motion.moved import MovedContact
+from stickslip.extensions.given_motion.moved import MARK, MovedContact
 from stickslip.extensions.given_motion.solve import StepsOfStates
-from stickslip.extensions.given_motion.table import MARK, MOTION, GivenMotion, MotionTable
+from stickslip.extensions.given_motion.table import MOTION, GivenMotion, MotionTable
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import FullDiskError, Tables, Variable

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
-from stickslip.extensions.given_motion.table import MARK
+from stickslip.extensions.given_motion.moved import MARK
 from stickslip.foundation.errors import InputError
 from stickslip.run import Reader
 
