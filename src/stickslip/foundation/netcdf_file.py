@@ -253,8 +253,8 @@ def attributes(path: Path) -> dict[str, Any]:
 
     try:
         check(path)
-        _check_sizes(path)
         with h5py.File(path, "r") as opened:
+            _check_number("attributes", len(opened.attrs), MOST_ATTRIBUTES, path)
             return _about(opened)
     except Exception:
         return {}

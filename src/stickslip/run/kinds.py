@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from stickslip.extension import members
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.netcdf_file import attributes
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import Scenario
 
@@ -112,6 +111,8 @@ def reader_of(path: Path) -> Reader | None:
     """Return the reader of the extension whose results a path holds; None if it holds none that an extension reads."""
     if path.suffix.lower() not in FILES_OF_CORE or path.is_dir():
         return next((one for one in members("readers", Reader) if one.is_in(path)), None)
+    from stickslip.foundation.netcdf_file import attributes  # no run needs it
+
     marks = attributes(path) if path.suffix.lower() == ".nc" else {}
     return next((one for one in members("readers", Reader) if one.mark in marks), None) if marks else None
 

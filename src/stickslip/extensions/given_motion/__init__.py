@@ -25,7 +25,7 @@ class GivenMotionExtension(Extension):
 
     def readers(self) -> Sequence[Reader]:
         """Return the reader of files of runs along given motions."""
-        from stickslip.extensions.given_motion.kind import MotionReader
+        from stickslip.extensions.given_motion.reader import MotionReader
 
         return (MotionReader(),)
 

@@ -13,8 +13,7 @@ from stickslip.engine import engine_key
 from stickslip.extensions.given_motion.along import FrictionAlongMotion, in_intervals
 from stickslip.extensions.given_motion.compiled import along_motion as at
 from stickslip.extensions.given_motion.compiled.nodes import PLACES_IN_STEP
-from stickslip.extensions.given_motion.kind import MARK
-from stickslip.extensions.given_motion.moved import MovedContact
+from stickslip.extensions.given_motion.moved import MARK, MovedContact
 from stickslip.extensions.given_motion.solve import StepsOfStates
 from stickslip.extensions.given_motion.table import MOTION, GivenMotion, MotionTable
 from stickslip.foundation import netcdf_file
@@ -31,7 +30,7 @@ VERSION = 1
 CODE = ("extensions/given_motion/compiled", "extensions/given_motion/solve.py", "extensions/given_motion/intervals.py")
 """What decides the digits of a run, beside the engine."""
 STEPS = {
-    "interval": (("step",), "1", "interval of the motion in which a step lies"),
+    "interval": (("step",), "1", "the interval of the motion that holds a step"),
     "since": (("step",), "s", "start of a step since the start of its interval"),
     "length": (("step",), "s", "length of a step"),
     "tried": (("step",), "s", "length with which the next step was begun"),
@@ -138,7 +137,12 @@ def check_same_code(path: Path) -> None:
 
 def read_motion(path: Path) -> FrictionAlongMotion:
     """Read a run that `write_motion` wrote. Raises InputError for any other file, and for numbers that no run can have."""
-    return motion_in(netcdf_file.read_tables(path, "a run of a MovedContact"), path)
+    return motion_in(tables_in(path), path)
+
+
+def tables_in(path: Path) -> Tables:
+    """Return the tables of a file whose checksum is right. Raises InputError."""
+    return netcdf_file.read_tables(path, "a run of a MovedContact")
 
 
 def motion_in(tables: Tables, path: Path) -> FrictionAlongMotion:

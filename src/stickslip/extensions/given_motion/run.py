@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -138,7 +139,7 @@ def resume_motion(path: Path, duration: Any = None, **given: Any) -> FrictionAlo
     return _run(lambda checked: MotionRun.behind(stopped, checked), options, "resume")
 
 
-def _run(make: Any, options: CallOptions, who: str) -> FrictionAlongMotion:
+def _run(make: Callable[[CallOptions], MotionRun], options: CallOptions, who: str) -> FrictionAlongMotion:
     """Run to the end, in a file of its own if there is one. Raises InputError."""
     file = options.checkpoint
     if file is not None:
@@ -146,7 +147,7 @@ def _run(make: Any, options: CallOptions, who: str) -> FrictionAlongMotion:
             raise InputError(f"{who}: the run of a MovedContact is kept in a file NAME.nc, got {str(file)!r}")
         check_replaceable(file, f"{who}: {file}")
     with options.alone():
-        run: MotionRun = make(options)
+        run = make(options)
         if file is not None:
             from stickslip.extensions.given_motion.kept import text_of
 

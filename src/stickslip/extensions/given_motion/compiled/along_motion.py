@@ -55,7 +55,7 @@ ROUNDING_OF_STATE = 1e-15
 SHORTEST_STEP = 1e-13
 """A step shorter than this share (1) of its interval cannot be told from nothing: the run ends."""
 OF_REST = 0.7
-"""A step that is longer than this share (1) of what is left of its interval is all of it, or half."""
+"""A step that is longer than this share (1) of the rest of its interval is all of it, or half."""
 SMALL_BESIDE_LARGEST = 1e-3
 """A state smaller than this share (1) of its largest size so far has an absolute error."""
 STEPS_PER_PERIOD = 6.0
