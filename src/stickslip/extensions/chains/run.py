@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from stickslip.extensions.chains.chain import Chain
     from stickslip.extensions.chains.plots import ChainPlots
+    from stickslip.friction import FrictionLaw
 
 Floats = NDArray[np.float64]
 EVENT_TYPE = np.dtype(
@@ -73,6 +74,13 @@ class ChainEnergy(NamedTuple):
     def error(self) -> float:
         """What the balance lacks (J)."""
         return self.springs + self.kinetic + self.heat + self.dashpots - self.driver - self.springs_at_start
+
+
+def is_straight(law: FrictionLaw) -> bool:
+    """Return True for a law under which the moving blocks are a linear system."""
+    from stickslip.extensions.chains.numbers import is_line
+
+    return all(is_line(law, i) for i in range(len(law.pieces)))
 
 
 def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
@@ -169,7 +177,7 @@ class ChainRun(NamesAttributes):
         from stickslip.extensions.chains.numbers import numbers_of
         from stickslip.extensions.chains.solver import energies_of
 
-        numbers, first, now = numbers_of(self.chain), ChainState.empty(self.chain.count), self.final.now
+        numbers, first, now = numbers_of(self.chain).chain, ChainState.empty(self.chain.count), self.final.now
         first.blocks[at.SLIP] = self.chain.values("initial_slip")
         kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE] ** 2)
         springs = energies_of(numbers, self.final), energies_of(numbers, first)
@@ -202,9 +210,15 @@ class ChainRun(NamesAttributes):
 
     def proof(self) -> str:
         """Return in a sentence what is proven of the run."""
-        left_out = float(self.state.now[at.DEFECT])
+        now = self.state.now
+        steps, left_out, lacks = int(now[at.STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
+        placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"
+        if all(is_straight(law) for law in self.chain.laws[0]):
+            return (
+                f"In each of {steps} steps the terms left out of the series move no block further than {left_out:.1e} of the largest "
+                f"motion in the step (proven, but for rounding), and {placed}."
+            )
         return (
-            f"In each of {int(self.state.now[at.STEPS])} steps the terms left out of the series move no block further than "
-            f"{left_out:.1e} of the largest motion in the step (proven, but for rounding), and no change lies before the one at "
-            "which a step ends (proven by bounds of its polynomials)."
+            f"At the end of each of {steps} steps the equation of every block holds to {lacks:.1e} of its strength (measured, not "
+            f"proven), and {placed}."
         )

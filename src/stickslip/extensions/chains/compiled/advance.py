@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.polynomial import NONE
+from stickslip.engine.series.polynomial import NONE, TERMS
 from stickslip.extensions.chains.compiled.accounts import (
     begin_event,
     dissipated,
     end_event,
+    heat_of_step,
     integral_of_slip,
     note_rate,
     note_slipping,
@@ -23,13 +24,14 @@ from stickslip.extensions.chains.compiled.changes import (
     pass_knot,
     set_moving_at_start,
 )
-from stickslip.extensions.chains.compiled.loads import set_due, sliding_strength, time_of
+from stickslip.extensions.chains.compiled.loads import set_due, time_of
 from stickslip.extensions.chains.compiled.memory import (
     ARREST,
     BACKWARD,
     BLOCK_STEPS,
     CHANGE_ROWS,
     COUNTED,
+    COUNTS_NET,
     DASHPOT,
     DEFECT,
     DONE,
@@ -53,12 +55,14 @@ from stickslip.extensions.chains.compiled.memory import (
     ORIGIN,
     PULL,
     RATE,
+    RESIDUAL,
     REST,
     SAMPLES,
     SINCE,
     SLIP,
     SLIPPED,
     STEPS,
+    STRENGTH,
     WATCHED,
     WORK,
     ChainNumbers,
@@ -69,6 +73,7 @@ from stickslip.extensions.chains.compiled.memory import (
 )
 from stickslip.extensions.chains.compiled.series import (
     UNIT,
+    first_force,
     length_of_step,
     moved,
     remainder_of_step,
@@ -76,10 +81,13 @@ from stickslip.extensions.chains.compiled.series import (
     stretch_series,
     write_series,
 )
-from stickslip.foundation.kernels.kernels import entry, exact, kernel
+from stickslip.foundation.kernels.kernels import entry, kernel
 
 MOST_AT_ONCE = 10_000
 """If so many changes follow each other without any time between them, the solver gives up."""
+LONGER, SHORTER, SHORTEST = 2.0, 1e-3, 1e-300
+"""Under laws that are not straight in slip: the unit of a series over the length of the last step (1), by what it is made shorter if
+a term overflows (1), and the shortest unit (s)."""
 SCAN = 16
 """To look at so many blocks costs about as much as a step of one."""
 
@@ -202,7 +210,9 @@ def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
     """Write when a block is due that rests among resting ones."""
     set_due(chain, state, j)
     first = room.counts[FIRST_DUE]
-    if first >= 0 and (state.blocks[DUE, j] < state.blocks[DUE, first] or (state.blocks[DUE, j] == state.blocks[DUE, first] and j < first)):
+    if first >= 0 and (
+        state.blocks[DUE, j] < state.blocks[DUE, first] or (state.blocks[DUE, j] == state.blocks[DUE, first] and j < first)
+    ):
         room.counts[FIRST_DUE] = j
 
 
@@ -245,10 +255,9 @@ def commit(chain: ChainNumbers, state: Now, room: Room, length: float, place: fl
         if mode != FREE:
             note_rate(state, room, j, place, length)
             slip, rate = (max(slip, 0.0), max(rate, 0.0)) if mode == FORWARD else (min(slip, 0.0), min(rate, 0.0))
-            before = sliding_strength(chain, state, j)
-            counts_net = chain.laws.rules[chain.blocks.law[j], 0] == 1
-            blocks[COUNTED, j] += slip if counts_net else abs(slip)
-            now[HEAT] += 0.5 * (before + sliding_strength(chain, state, j)) * abs(slip)
+            way = mode if chain.laws.rules[chain.blocks.law[j], COUNTS_NET] == 1 else 1
+            now[HEAT] += heat_of_step(chain, state, room, j, (length, place))
+            blocks[COUNTED, j] += way * abs(slip)
         blocks[SLIP, j] += slip
         blocks[RATE, j] = rate
         if duration > 0.0:
@@ -317,9 +326,14 @@ def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits
     """Take a step of the moving blocks, and the changes at its end; return DONE if it would lead beyond the time to reach."""
     now = state.now
     unit = UNIT / chain.fastest
+    if chain.all_straight == 0 and now[LAST_STEP] > 0.0:
+        unit = min(unit, LONGER * now[LAST_STEP])
     write_series(chain, state, room, unit)
+    while not is_finite(room) and unit > SHORTEST:
+        unit *= SHORTER
+        write_series(chain, state, room, unit)
     length = length_of_step(room)
-    if not length < math.inf:
+    if not (is_finite(room) and length > 0.0):
         return NOT_FINITE
     stretch_series(room, length)
     length *= unit
@@ -340,6 +354,8 @@ def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits
     was_resting = rubbing(chain, state, room) == 0
     commit(chain, state, room, length, end)
     now[LAST_STEP] = length
+    if chain.all_straight == 0:
+        measure_end(chain, state, room, length, end)
     found = 0
     if due_place == end and was_resting:
         now[ORIGIN], now[SINCE] = due, 0.0
@@ -351,6 +367,28 @@ def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits
     if now[IN_EVENT] == 1.0 and rubbing(chain, state, room) == 0:
         finish_event(chain, state, room, kept)
     return GOES_ON
+
+
+@kernel
+def is_finite(room: Room) -> bool:
+    """Return True if the last terms of all series are numbers."""
+    total = 0.0
+    for n in range(room.counts[MOVING]):
+        total += abs(room.series[room.moving[n], TERMS - 1])
+    return total < math.inf
+
+
+@kernel
+def measure_end(chain: ChainNumbers, state: Now, room: Room, length: float, place: float) -> None:
+    """Keep how far the acceleration at the end of a step is from that of the force there, as a share of the strength."""
+    for n in range(room.counts[MOVING]):
+        j = room.moving[n]
+        if state.whole[MODE, j] != FREE and state.whole[EDGE, j] == 0:
+            row, bend = room.series[j], 0.0
+            for k in range(TERMS - 1, 1, -1):
+                bend = bend * place + k * (k - 1.0) * row[k]
+            lacks = abs(chain.blocks.mass[j] * bend / (length * length) - first_force(chain, state, j))
+            state.now[RESIDUAL] = max(state.now[RESIDUAL], lacks / (lacks + state.blocks[STRENGTH, j]))
 
 
 @kernel

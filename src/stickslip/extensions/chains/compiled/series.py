@@ -11,9 +11,11 @@ import math
 
 from stickslip.engine.series.polynomial import TERMS
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
-from stickslip.extensions.chains.compiled.loads import driver_place, load_on, sliding_strength, static_step
+from stickslip.extensions.chains.compiled.loads import load_on, sliding_strength, static_step
 from stickslip.extensions.chains.compiled.memory import (
     BACKWARD,
+    COUNTED,
+    COUNTS_NET,
     EDGE,
     FREE,
     MODE,
@@ -21,11 +23,13 @@ from stickslip.extensions.chains.compiled.memory import (
     PIECE,
     RATE,
     REST,
+    STRAIGHT,
     ChainNumbers,
     Now,
     Room,
 )
 from stickslip.foundation.kernels.kernels import exact, inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import call_jet, floats, room_for
 
 UNIT = 2.0
 """The unit of series, times the bound of frequencies (1): next to the length of a step if the shortest wave is there."""
@@ -33,6 +37,10 @@ TOLERANCE = 2.0**-55
 """The last terms of a step as a share of its motion (1)."""
 LONGEST = 1.5
 """A step has at most so many units (1): the bound of its remainder grows with cosh."""
+PASSES = (TERMS - 1) // 2
+"""Passes over all moving blocks until their series have all their terms: each makes two more orders right."""
+ROOM_OF_INPUT, ROOM_OF_JET = 12, 2 * TERMS
+"""Room for the input of a compiled series (`SeriesInput`), and for its answer (numbers)."""
 SHORT = 0.5
 """For a step shorter than this (1) the size of the motion is determined again."""
 
@@ -74,29 +82,71 @@ def weakening_of(chain: ChainNumbers, state: Now, j: int) -> float:
     if mode == FREE:
         return 0.0
     slope = chain.blocks.normal[j] * chain.laws.slopes[law, state.whole[PIECE, j]]
-    return -slope if mode == BACKWARD and chain.laws.rules[law, 0] == 1 else slope
+    return -slope if mode == BACKWARD and chain.laws.rules[law, COUNTS_NET] == 1 else slope
+
+
+@exact
+def begin_series(chain: ChainNumbers, state: Now, room: Room, j: int, unit: float) -> None:
+    """Write the orders of the series of a moving block that its state gives: slip, slip rate, and acceleration."""
+    row = room.series[j]
+    row[0] = 0.0
+    row[1] = state.blocks[RATE, j] * unit
+    row[2] = 0.5 * first_force(chain, state, j) / chain.blocks.mass[j] * (unit * unit)
+
+
+@exact
+def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int, unit: float) -> None:
+    """Write order k + 2 of the series of a block whose friction is straight in slip."""
+    blocks, row = chain.blocks, room.series[j]
+    force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * row[k]
+    if k == 1:
+        force += blocks.stiffness[j] * chain.pull_rate * unit
+    if blocks.damping[j] != 0.0:
+        force -= blocks.damping[j] * (k + 1.0) * row[k + 1] / unit
+    row[k + 2] = force / blocks.mass[j] * (unit * unit / ((k + 1.0) * (k + 2.0)))
 
 
 @exact
 def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> None:
     """Write the series of all moving blocks, in powers of the time in units (s)."""
-    series, count, blocks = room.series, room.counts[MOVING], chain.blocks
-    square = unit * unit
+    count = room.counts[MOVING]
     for n in range(count):
-        j = room.moving[n]
-        series[j, 0] = 0.0
-        series[j, 1] = state.blocks[RATE, j] * unit
-        series[j, 2] = 0.5 * first_force(chain, state, j) / blocks.mass[j] * square
-    for k in range(1, TERMS - 2):
-        scale = square / ((k + 1.0) * (k + 2.0))
+        begin_series(chain, state, room, room.moving[n], unit)
+    if chain.all_straight == 1:
+        for k in range(1, TERMS - 2):
+            for n in range(count):
+                next_order(chain, state, room, room.moving[n], k, unit)
+        return
+    for n in range(count):
+        for k in range(3, TERMS):
+            room.series[room.moving[n], k] = 0.0
+    for _ in range(PASSES):
         for n in range(count):
             j = room.moving[n]
-            force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * series[j, k]
-            if k == 1:
-                force += blocks.stiffness[j] * chain.pull_rate * unit
-            if blocks.damping[j] != 0.0:
-                force -= blocks.damping[j] * (k + 1.0) * series[j, k + 1] / unit
-            series[j, k + 2] = force / blocks.mass[j] * scale
+            if state.whole[MODE, j] == FREE or chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 1:
+                for k in range(1, TERMS - 2):
+                    next_order(chain, state, room, j, k, unit)
+            else:
+                series_of_formula(chain, state, room, j, unit)
+
+
+@exact
+def series_of_formula(chain: ChainNumbers, state: Now, room: Room, j: int, unit: float) -> None:
+    """Write the series of a moving block from the loads that the series of the last pass give, by its law's own formula."""
+    given, load, rate = room_for(ROOM_OF_INPUT), room_for(TERMS), room_for(ROOM_OF_JET)
+    blocks, laws, row = chain.blocks, chain.laws, room.series[j]
+    law, piece, mode, edge = blocks.law[j], state.whole[PIECE, j], state.whole[MODE, j], state.whole[EDGE, j]
+    load[0] = mode * load_on(chain, state, j)
+    for k in range(1, TERMS):
+        load[k] = mode * load_term(chain, state, room, j, k)
+    load[1] += mode * (blocks.stiffness[j] * chain.pull_rate * unit)
+    given[0], given[1], given[2] = blocks.damping[j], blocks.normal[j], mode if laws.rules[law, COUNTS_NET] == 1 else 1.0
+    given[3], given[4], given[5] = unit, 0.0, state.blocks[COUNTED, j] - laws.references[law, piece]
+    given[6], given[7], given[8], given[9] = laws.levels[law, piece], blocks.mass[j], 0.0, abs(state.blocks[RATE, j])
+    given[10], given[11] = 0.0 if edge != 0 else 1.0, static_step(chain, j) if edge != 0 else 0.0
+    call_jet(laws.jets_at[law, piece], floats(laws.constants_at[law, piece]), given, load, rate)
+    for k in range(1, TERMS):
+        row[k] = mode * (rate[k - 1] * unit / k)
 
 
 @kernel
@@ -105,7 +155,11 @@ def length_of_step(room: Room) -> float:
     last = before = first = second = third = 0.0
     for n in range(room.counts[MOVING]):
         j = room.moving[n]
-        first, second, third = max(first, abs(room.series[j, 1])), max(second, abs(room.series[j, 2])), max(third, abs(room.series[j, 3]))
+        first, second, third = (
+            max(first, abs(room.series[j, 1])),
+            max(second, abs(room.series[j, 2])),
+            max(third, abs(room.series[j, 3])),
+        )
         last, before = max(last, abs(room.series[j, TERMS - 1])), max(before, abs(room.series[j, TERMS - 2]))
     length = 1.0
     for _ in range(4):
