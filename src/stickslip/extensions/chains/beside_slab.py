@@ -264,8 +264,8 @@ def front_of(run: ChainRun, slab: Solution, problem: Problem) -> dict[str, float
     times = times[times >= 0.0]
     rate = run.at(times).slip_rate[:, middle]
     share = (rate - rate[0]) / jump
-    low, high = (float(times[np.argmax(share >= level)]) for level in TENTHS)
-    return {"front": high - low, "airy_front": AIRY_WIDTH * length / body.wave_speed, "peak": float(share.max())}
+    reached = [float(times[np.argmax(share >= level)]) if share.max() >= level else math.nan for level in TENTHS]
+    return {"front": reached[1] - reached[0], "airy_front": AIRY_WIDTH * length / body.wave_speed, "peak": float(share.max())}
 
 
 def with_orders(table: pd.DataFrame) -> pd.DataFrame:
