@@ -40,6 +40,7 @@ class _Blocks:
         )
         laws, which = chain.laws
         self.laws = [laws[i] for i in which]
+        self.quick = [_straight(law) for law in self.laws]
         self.mode = np.zeros(self.n, int)
         self.correction = np.zeros(self.n)
 
@@ -47,11 +48,10 @@ class _Blocks:
         return -self.matrix @ u + self.pull * (self.chain.pull_rate * t - u)
 
     def strength(self, counted: np.ndarray) -> np.ndarray:
-        found = [float(law.static_coefficient(float(c))) for law, c in zip(self.laws, counted, strict=True)]
-        return self.normal * np.array(found)
+        return self.sliding(counted, np.zeros(self.n)) + self.normal * np.array([law.static_excess for law in self.laws])
 
     def sliding(self, counted: np.ndarray, v: np.ndarray) -> np.ndarray:
-        found = [float(law.coefficient(float(c), abs(float(s)))) for law, c, s in zip(self.laws, counted, v, strict=True)]
+        found = [quick(float(c), abs(float(s))) for quick, c, s in zip(self.quick, counted, v, strict=True)]
         return self.normal * np.array(found)
 
     def slope(self, t: float, y: np.ndarray) -> np.ndarray:
@@ -128,6 +128,16 @@ def solve(chain: ss.Chain, duration: float, rtol: float = 1e-12, step: float = 0
             if kind != 9:
                 rows.append((t, j, blocks.mode[j]))
     return Reference(np.array(rows, float).reshape(-1, 3), y[:n])
+
+
+def _straight(law: Any) -> Any:
+    """Return friction as a function of slip and slip rate: for laws that are straight between knots a quick one."""
+    if isinstance(law, ss.friction.LinearSlipWeakening | ss.friction.PiecewiseLinearSlip):
+        levels = law.coefficient(np.array(law.knots))
+        return lambda c, v: float(np.interp(c, (0.0, *law.knots), (float(law.coefficient(0.0)), *levels)))
+    if isinstance(law, ss.friction.Coulomb):
+        return lambda c, v: law.dynamic
+    return lambda c, v: float(law.coefficient(c, v))
 
 
 def _heals(law: Any) -> bool:

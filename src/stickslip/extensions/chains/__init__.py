@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.extension import Extension
+from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import ScenarioTable
@@ -35,6 +35,12 @@ class ChainsExtension(Extension):
         from stickslip.extensions.chains.kind import ChainReader
 
         return (ChainReader(),)
+
+    def commands(self) -> Mapping[str, Sequence[Command]]:
+        """Return the command `magnitudes`."""
+        from stickslip.extensions.chains.commands.magnitudes import magnitudes
+
+        return {"Catalogues of events": (magnitudes,)}
 
     def public(self) -> Mapping[str, str]:
         """Return the chain, numbers that are drawn for its blocks, and the statistics of catalogues."""

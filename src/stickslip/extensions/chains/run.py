@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from stickslip.extensions.chains.chain import Chain
     from stickslip.extensions.chains.plots import ChainPlots
+    from stickslip.friction import FrictionLaw
 
 Floats = NDArray[np.float64]
 EVENT_TYPE = np.dtype(
@@ -75,6 +76,13 @@ class ChainEnergy(NamedTuple):
         return self.springs + self.kinetic + self.heat + self.dashpots - self.driver - self.springs_at_start
 
 
+def is_straight(law: FrictionLaw) -> bool:
+    """Return True for a law under which the moving blocks are a linear system."""
+    from stickslip.extensions.chains.numbers import is_line
+
+    return all(is_line(law, i) for i in range(len(law.pieces)))
+
+
 def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
     """Return rows of compiled code as an array with named columns."""
     found = np.empty(len(rows), kind)
@@ -112,8 +120,9 @@ class ChainRun(NamesAttributes):
 
     @cached_property
     def events(self) -> NDArray[Any]:
-        """The finished events, a structured array: time of the first onset (s), first_block, size (number of blocks that slipped),
-        moment (sum of their slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work
+        """The finished events, as a structured array.
+
+        Its columns are the time of the first onset (s), first_block, size (number of blocks that slipped), moment (sum of their slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work
         of the driver, springs before and after.
         """
         return structured(self.event_rows, EVENT_TYPE)
@@ -132,8 +141,10 @@ class ChainRun(NamesAttributes):
 
     @cached_property
     def changes(self) -> NDArray[Any]:
-        """The changes of blocks, a structured array: time (s), since (time since the first onset of the event, s), block, kind (0
-        onset, 1 arrest, 2 turn, 3 knot: `CHANGE_NAMES`), slip (m). Raises InputError if the run did not keep them.
+        """The changes of blocks, as a structured array. Raises InputError if the run did not keep them.
+
+        Its columns are time (s), since (time since the first onset of the event, s), block, kind (0
+        onset, 1 arrest, 2 turn, 3 knot: `CHANGE_NAMES`), slip (m).
         """
         if self.change_rows is None:
             raise InputError('ChainRun: changes were not kept: simulate(chain, duration, keep="changes") keeps them')
@@ -157,19 +168,19 @@ class ChainRun(NamesAttributes):
     @property
     def slip(self) -> Floats:
         """The slip of each block at the end (m)."""
-        return self.final.blocks[at.SLIP].copy()
+        return np.array(self.final.blocks[at.SLIP])
 
     @property
     def slip_rate(self) -> Floats:
         """The slip rate of each block at the end (m/s)."""
-        return self.final.blocks[at.RATE].copy()
+        return np.array(self.final.blocks[at.RATE])
 
     def energy(self) -> ChainEnergy:
         """Return the energies at the end (J) and their balance."""
         from stickslip.extensions.chains.numbers import numbers_of
         from stickslip.extensions.chains.solver import energies_of
 
-        numbers, first, now = numbers_of(self.chain), ChainState.empty(self.chain.count), self.final.now
+        numbers, first, now = numbers_of(self.chain).chain, ChainState.empty(self.chain.count), self.final.now
         first.blocks[at.SLIP] = self.chain.values("initial_slip")
         kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE] ** 2)
         springs = energies_of(numbers, self.final), energies_of(numbers, first)
@@ -202,9 +213,15 @@ class ChainRun(NamesAttributes):
 
     def proof(self) -> str:
         """Return in a sentence what is proven of the run."""
-        left_out = float(self.state.now[at.DEFECT])
+        now = self.state.now
+        steps, left_out, lacks = int(now[at.STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
+        placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"
+        if all(is_straight(law) for law in self.chain.laws[0]):
+            return (
+                f"In each of {steps} steps the terms left out of the series move no block further than {left_out:.1e} of the largest "
+                f"motion in the step (proven, but for rounding), and {placed}."
+            )
         return (
-            f"In each of {int(self.state.now[at.STEPS])} steps the terms left out of the series move no block further than "
-            f"{left_out:.1e} of the largest motion in the step (proven, but for rounding), and no change lies before the one at "
-            "which a step ends (proven by bounds of its polynomials)."
+            f"At the end of each of {steps} steps the equation of every block holds to {lacks:.1e} of its strength (measured, not "
+            f"proven), and {placed}."
         )

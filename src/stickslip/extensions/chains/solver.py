@@ -38,7 +38,8 @@ class ChainSolver:
     """A chain that is being solved: `go_on` leads it further, and `rows` of it may be taken after each call."""
 
     def __init__(self, chain: Chain, start: ChainState | None = None, keeps_changes: bool = False) -> None:
-        self.chain, self.numbers = chain, numbers_of(chain)
+        self.chain, self._owned = chain, numbers_of(chain)
+        self.numbers = self._owned.chain
         self.room = room_of(chain.count)
         self._events = np.empty((ROOM_FOR_EVENTS, at.EVENT_COLUMNS))
         rows = ROOM_FOR_CHANGES + 2 * chain.count if keeps_changes else 0

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.polynomial import NONE, TERMS, first_descent
+from stickslip.engine.series.polynomial import NONE, first_descent
+from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import load_on, piece_of, put_to_rest, sliding_strength, static_step, time_of
 from stickslip.extensions.chains.compiled.memory import (
     ARREST,
@@ -21,16 +22,17 @@ from stickslip.extensions.chains.compiled.memory import (
     CHANGE_TIME,
     CHANGES,
     COUNTED,
+    COUNTS_NET,
     EDGE,
     FORWARD,
     FREE,
+    HEALS,
     KNOT,
     MODE,
     MOVING,
     ONSET,
     PIECE,
     RATE,
-    REST,
     SINCE,
     SLIP,
     STRENGTH,
@@ -46,7 +48,11 @@ from stickslip.foundation.kernels.kernels import exact, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
 ONSET_BACK = 4
-"""Kind of change inside a step, besides those that are kept: a block at rest begins to slip backward."""
+"""Kind of change inside a step, besides those that are kept: a block at rest begins to slip back."""
+
+TOUCH, ROUNDED_FORCE = 1e-13, 4e-15
+"""A slip rate that falls below 0 by no more than this share (1) of its size in the step, and of what a force of this share (1) of the
+strength makes of it, touches 0 but for rounding: that is no arrest."""
 
 
 @kernel
@@ -72,9 +78,17 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
         line[k] = mode * (k + 1.0) * row[k + 1]
     line[TERMS - 1] = 0.0
     room.places[j], room.kinds[j] = first_descent(line, spare), ARREST
+    if room.places[j] < NONE:
+        size = 0.0
+        for k in range(TERMS):
+            size += abs(line[k])
+        length = room.span[0]
+        line[0] += TOUCH * size + ROUNDED_FORCE * state.blocks[STRENGTH, j] / chain.blocks.mass[j] * length * length
+        if first_descent(line, spare) == NONE:
+            room.places[j] = NONE
     law, piece, counted = chain.blocks.law[j], state.whole[PIECE, j], state.blocks[COUNTED, j]
     knots = chain.laws.knots[law]
-    grows = mode if chain.laws.rules[law, 0] == 1 else 1
+    grows = mode if chain.laws.rules[law, COUNTS_NET] == 1 else 1
     ahead = math.inf
     if grows == 1 and piece + 1 < len(knots):
         ahead = knots[piece + 1] - counted
@@ -90,11 +104,11 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int, length: float) -> None:
-    """Write where in the step (of a length in s) a block at rest beside moving ones first reaches its strength."""
+def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Write where in the step a block at rest beside moving ones first reaches its strength."""
     load, margin, spare = room_for(TERMS), room_for(TERMS), room_for(TERMS)
     strength, edge = state.blocks[STRENGTH, j], state.whole[EDGE, j]
-    write_load(chain, state, room, j, length, load)
+    write_load(chain, state, room, j, load)
     for k in range(1, TERMS):
         margin[k] = -load[k]
     margin[0] = 0.0 if edge == 1 else strength - load[0]
@@ -109,20 +123,20 @@ def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int, length: fl
 
 
 @kernel
-def first_place(chain: ChainNumbers, state: Now, room: Room, length: float) -> float:
+def first_place(chain: ChainNumbers, state: Now, room: Room) -> float:
     """Look for changes of moving blocks and those beside them in a step, and return the first place of one in [0, 1]; NONE."""
     first = NONE
     for n in range(room.counts[MOVING]):
         find_in_moving(chain, state, room, room.moving[n])
         first = min(first, room.places[room.moving[n]])
     for n in range(room.counts[WATCHED]):
-        find_at_rest(chain, state, room, room.watched[n], length)
+        find_at_rest(chain, state, room, room.watched[n])
         first = min(first, room.places[room.watched[n]])
     return first
 
 
 @kernel
-def begin_slip(chain: ChainNumbers, state: Now, room: Room, kept: Kept, j: int, mode: int) -> None:
+def begin_slip(state: Now, room: Room, kept: Kept, j: int, mode: int) -> None:
     """Let a block leave rest exactly at its strength."""
     state.whole[MODE, j], state.whole[EDGE, j] = mode, mode
     state.blocks[RATE, j] = 0.0
@@ -133,7 +147,7 @@ def begin_slip(chain: ChainNumbers, state: Now, room: Room, kept: Kept, j: int, 
 def pass_knot(chain: ChainNumbers, state: Now, j: int) -> None:
     """Let the law of a block go on with its next piece."""
     law, piece = chain.blocks.law[j], state.whole[PIECE, j]
-    grows = state.whole[MODE, j] if chain.laws.rules[law, 0] == 1 else 1
+    grows = state.whole[MODE, j] if chain.laws.rules[law, COUNTS_NET] == 1 else 1
     state.blocks[COUNTED, j] = chain.laws.knots[law, piece + 1 if grows == 1 else piece]
     state.whole[PIECE, j] = piece + 1 if grows == 1 else piece - 1
 
@@ -148,12 +162,12 @@ def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
     if ahead < -before_rest and chain.forward_only == 0:
         state.whole[MODE, j] = -mode
         law = chain.blocks.law[j]
-        if chain.laws.rules[law, 0] == 1:
+        if chain.laws.rules[law, COUNTS_NET] == 1:
             state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
         return TURN
     put_to_rest(chain, state, j)
     if ahead >= state.blocks[STRENGTH, j]:
-        if chain.laws.rules[chain.blocks.law[j], 1] == 0:
+        if chain.laws.rules[chain.blocks.law[j], HEALS] == 0:
             state.whole[EDGE, j] = mode  # beyond its strength by rounding only: exactly at it
         else:
             state.whole[MODE, j] = mode  # it heals to less than its load, and slips again at once
@@ -173,10 +187,4 @@ def set_moving_at_start(chain: ChainNumbers, state: Now, j: int) -> int:
         state.whole[MODE, j] = FORWARD
     elif load < -strength and chain.forward_only == 0:
         state.whole[MODE, j] = BACKWARD
-    return state.whole[MODE, j]
-
-
-@kernel
-def is_at_rest(state: Now, j: int) -> bool:
-    """Return True if a block rests."""
-    return state.whole[MODE, j] == REST
+    return int(state.whole[MODE, j])

@@ -11,29 +11,36 @@ from stickslip.extensions.chains.compiled.memory import (
     COUNTED,
     DUE,
     EDGE,
+    HEALS,
     MODE,
     ORIGIN,
     PIECE,
+    RATE,
     REST,
     SINCE,
     SLIP,
+    STRAIGHT,
     STRENGTH,
     ChainNumbers,
     Now,
 )
 from stickslip.foundation.kernels.kernels import exact
+from stickslip.foundation.kernels.memory.addresses import call_value, floats, room_for
+
+ROOM_OF_VALUE = 4
+"""Room for the answer of a formula (numbers): mu and its derivatives."""
 
 
 @exact
 def time_of(state: Now) -> float:
     """Return the time (s)."""
-    return state.now[ORIGIN] + state.now[SINCE]
+    return float(state.now[ORIGIN] + state.now[SINCE])
 
 
 @exact
 def driver_place(chain: ChainNumbers, state: Now) -> float:
     """Return the place of the driver (m)."""
-    return chain.pull_rate * state.now[ORIGIN] + chain.pull_rate * state.now[SINCE]
+    return float(chain.pull_rate * state.now[ORIGIN] + chain.pull_rate * state.now[SINCE])
 
 
 @exact
@@ -48,20 +55,31 @@ def load_on(chain: ChainNumbers, state: Now, j: int) -> float:
         found += one + other
     if (last - first) % 2 == 1:
         found += springs.springs[last - 1] * (slips[springs.neighbours[last - 1]] - own)
-    return found - springs.walls[j] * own + chain.blocks.stiffness[j] * (driver_place(chain, state) - own)
+    return float(found - springs.walls[j] * own + chain.blocks.stiffness[j] * (driver_place(chain, state) - own))
+
+
+@exact
+def friction_at(chain: ChainNumbers, state: Now, j: int, counted: float, rate: float) -> float:
+    """Return the magnitude of friction (N) on a block at a slip that its law counts (m) and a slip rate (m/s), by its piece."""
+    law, piece, laws = chain.blocks.law[j], state.whole[PIECE, j], chain.laws
+    along = counted - laws.references[law, piece]
+    if laws.rules[law, STRAIGHT] == 1:
+        return float(chain.blocks.normal[j] * (laws.levels[law, piece] + laws.slopes[law, piece] * along))
+    out = room_for(ROOM_OF_VALUE)
+    call_value(laws.values_at[law, piece], floats(laws.constants_at[law, piece]), along, rate, out)
+    return float(chain.blocks.normal[j] * (laws.levels[law, piece] + out[0]))
 
 
 @exact
 def sliding_strength(chain: ChainNumbers, state: Now, j: int) -> float:
-    """Return the magnitude of friction (N) on a block that slips, by the piece of its law."""
-    law, piece = chain.blocks.law[j], state.whole[PIECE, j]
-    return chain.blocks.normal[j] * (chain.laws.levels[law, piece] + chain.laws.slopes[law, piece] * state.blocks[COUNTED, j])
+    """Return the magnitude of friction (N) on a block that slips, at its slip and slip rate."""
+    return float(friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE, j])))
 
 
 @exact
 def static_step(chain: ChainNumbers, j: int) -> float:
     """Return the step (N) from static to sliding friction."""
-    return chain.blocks.normal[j] * chain.laws.excess[chain.blocks.law[j]]
+    return float(chain.blocks.normal[j] * chain.laws.excess[chain.blocks.law[j]])
 
 
 @exact
@@ -93,7 +111,8 @@ def put_to_rest(chain: ChainNumbers, state: Now, j: int) -> None:
     """Write that a block rests, with its strength."""
     law = chain.blocks.law[j]
     state.whole[MODE, j] = REST
-    if chain.laws.rules[law, 1] == 1:
+    if chain.laws.rules[law, HEALS] == 1:
         state.blocks[COUNTED, j] = 0.0
     state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
+    state.blocks[RATE, j] = 0.0
     state.blocks[STRENGTH, j] = sliding_strength(chain, state, j) + static_step(chain, j)

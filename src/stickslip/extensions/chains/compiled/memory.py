@@ -19,10 +19,11 @@ PULL, HEAT, DASHPOT, WORK = range(2, 6)
 """The force of the driver (N), and energies since t = 0 (J): heat of friction, heat of dashpots, work of the driver."""
 LARGEST_RATE, FIRST_BLOCK, HEAT_BEFORE, DASHPOT_BEFORE, WORK_BEFORE, SPRINGS_BEFORE, EVENT_START, IN_EVENT = range(6, 14)
 """Of the event in progress: the largest slip rate (m/s), its first block, the energies (J) and the time (s) at its start, and 1."""
-CHANGES, STEPS, BLOCK_STEPS, EVENTS, LAST_STEP, DEFECT = range(14, 20)
-"""Counts of changes, steps, blocks that moved in them, and events; the length of the last step (s), and the largest remainder of a
-series as a share of the motion in its step (1)."""
-NUMBERS_NOW = 20
+CHANGES, STEPS, BLOCK_STEPS, EVENTS, LAST_STEP, DEFECT, RESIDUAL = range(14, 21)
+"""Counts of changes, steps, blocks that moved in them, and events; the length of the last step (s); the largest remainder of a
+series as a share of the motion in its step (1), and the largest force that the equation of a block lacks at the end of a step, as a
+share of its strength (1)."""
+NUMBERS_NOW = 21
 
 SLIP, RATE, COUNTED, DUE, STRENGTH, SLIP_BEFORE = range(6)
 """Rows of numbers of blocks: slip (m), slip rate (m/s), slip that the law counts (m), the time (s) at which a block that nothing
@@ -40,6 +41,8 @@ EVENT_TIME, EVENT_BLOCK, EVENT_SIZE, EVENT_MOMENT, EVENT_DURATION, EVENT_RATE = 
 EVENT_HEAT, EVENT_DASHPOT, EVENT_WORK, EVENT_SPRINGS_BEFORE, EVENT_SPRINGS_AFTER = range(6, 11)
 """Its energies (J)."""
 CHANGE_COLUMNS, EVENT_COLUMNS = 5, 11
+COUNTS_NET, HEALS, STRAIGHT = range(3)
+"""Columns of `Laws.rules`."""
 
 
 class Springs(NamedTuple):
@@ -62,21 +65,28 @@ class Blocks(NamedTuple):
 
 
 class Laws(NamedTuple):
-    """The laws, piece by piece of slip: mu = level + slope times the counted slip, from one knot (m) to the next.
+    """The laws, piece by piece of slip, from one knot (m) to the next.
 
-    `rules` has for each law 1 if it counts net slip, and 1 if it forgets slip at an arrest; `excess` is the step (1) from sliding to
-    static friction.
+    Where a law is straight in slip, mu = level + slope times the counted slip, less the reference (m). Any other law has functions
+    of its formula at addresses, and mu is the level plus what they return. `rules` has for each law 1 if it counts net slip, 1 if it
+    forgets slip at an arrest, and 1 if it is straight; `excess` is the step (1) from sliding to static friction.
     """
 
     knots: Floats2
     levels: Floats2
     slopes: Floats2
+    references: Floats2
     excess: Floats1
     rules: Integers2
+    values_at: Integers2
+    jets_at: Integers2
+    constants_at: Integers2
 
 
 class ChainNumbers(NamedTuple):
-    """A chain as numbers. `fastest` (1/s) bounds the frequency of any of its motions; `all_stiffness` (N/m) is that of all springs to the driver."""
+    """A chain as numbers. `fastest` (1/s) bounds the frequency of any of its motions, `all_stiffness` (N/m) is
+    that of all springs to the driver, and `all_straight` is 1 if all laws are straight in slip.
+    """
 
     springs: Springs
     blocks: Blocks
@@ -85,6 +95,7 @@ class ChainNumbers(NamedTuple):
     forward_only: int
     fastest: float
     all_stiffness: float
+    all_straight: int
 
 
 class Now(NamedTuple):
@@ -107,6 +118,8 @@ class Room(NamedTuple):
     slipped: Integers1
     changed: Integers1
     counts: Integers1
+    span: Floats1
+    """One number: the unit of time (s) of the series, first a guess, and then the length of the step."""
 
 
 MOVING, WATCHED, HAVE_SLIPPED, FIRST_DUE, CHANGE_ROWS, EVENT_ROWS, SAMPLES = range(7)

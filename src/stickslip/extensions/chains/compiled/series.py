@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.polynomial import TERMS
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
-from stickslip.extensions.chains.compiled.loads import driver_place, load_on, sliding_strength, static_step
+from stickslip.engine.state.layout import TERMS
+from stickslip.extensions.chains.compiled.loads import load_on, sliding_strength, static_step
 from stickslip.extensions.chains.compiled.memory import (
     BACKWARD,
+    COUNTED,
+    COUNTS_NET,
     EDGE,
     FREE,
     MODE,
@@ -21,11 +23,14 @@ from stickslip.extensions.chains.compiled.memory import (
     PIECE,
     RATE,
     REST,
+    STRAIGHT,
     ChainNumbers,
     Now,
     Room,
 )
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact, inlined, kernel
+from stickslip.foundation.kernels.memory.addresses import call_jet, floats, room_for
 
 UNIT = 2.0
 """The unit of series, times the bound of frequencies (1): next to the length of a step if the shortest wave is there."""
@@ -33,6 +38,10 @@ TOLERANCE = 2.0**-55
 """The last terms of a step as a share of its motion (1)."""
 LONGEST = 1.5
 """A step has at most so many units (1): the bound of its remainder grows with cosh."""
+PASSES = (TERMS - 1) // 2
+"""Passes over all moving blocks until their series have all their terms: each makes two more orders right."""
+ROOM_OF_INPUT, ROOM_OF_JET = 12, 2 * TERMS
+"""Room for the input of a compiled series (`SeriesInput`), and for its answer (numbers)."""
 SHORT = 0.5
 """For a step shorter than this (1) the size of the motion is determined again."""
 
@@ -51,7 +60,7 @@ def load_term(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> fl
     if (last - first) % 2 == 1:
         a = springs.neighbours[last - 1]
         found += springs.springs[last - 1] * ((0.0 if modes[a] == REST else series[a, k]) - own)
-    return found - (springs.walls[j] + chain.blocks.stiffness[j]) * own
+    return float(found - (springs.walls[j] + chain.blocks.stiffness[j]) * own)
 
 
 @exact
@@ -59,12 +68,12 @@ def first_force(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return the net force (N) on a moving block now; where it leaves rest at its strength, the step of its friction."""
     mode, edge = state.whole[MODE, j], state.whole[EDGE, j]
     if edge != 0:
-        return edge * static_step(chain, j)
+        return float(edge * static_step(chain, j))
     force = load_on(chain, state, j) - chain.blocks.damping[j] * state.blocks[RATE, j]
     if mode == FREE:
-        return force
+        return float(force)
     friction = sliding_strength(chain, state, j)
-    return force + friction if mode == BACKWARD else force - friction
+    return float(force + friction if mode == BACKWARD else force - friction)
 
 
 @exact
@@ -74,29 +83,71 @@ def weakening_of(chain: ChainNumbers, state: Now, j: int) -> float:
     if mode == FREE:
         return 0.0
     slope = chain.blocks.normal[j] * chain.laws.slopes[law, state.whole[PIECE, j]]
-    return -slope if mode == BACKWARD and chain.laws.rules[law, 0] == 1 else slope
+    return float(-slope if mode == BACKWARD and chain.laws.rules[law, COUNTS_NET] == 1 else slope)
+
+
+@exact
+def begin_series(chain: ChainNumbers, state: Now, room: Room, j: int, unit: float) -> None:
+    """Write the orders of the series of a moving block that its state gives: slip, slip rate, and acceleration."""
+    row = room.series[j]
+    row[0] = 0.0
+    row[1] = state.blocks[RATE, j] * unit
+    row[2] = 0.5 * first_force(chain, state, j) / chain.blocks.mass[j] * (unit * unit)
+
+
+@exact
+def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> None:
+    """Write order k + 2 of the series of a block whose friction is straight in slip."""
+    blocks, row, unit = chain.blocks, room.series[j], room.span[0]
+    force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * row[k]
+    if k == 1:
+        force += blocks.stiffness[j] * chain.pull_rate * unit
+    if blocks.damping[j] != 0.0:
+        force -= blocks.damping[j] * (k + 1.0) * row[k + 1] / unit
+    row[k + 2] = force / blocks.mass[j] * (unit * unit / ((k + 1.0) * (k + 2.0)))
 
 
 @exact
 def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> None:
     """Write the series of all moving blocks, in powers of the time in units (s)."""
-    series, count, blocks = room.series, room.counts[MOVING], chain.blocks
-    square = unit * unit
+    count, room.span[0] = room.counts[MOVING], unit
     for n in range(count):
-        j = room.moving[n]
-        series[j, 0] = 0.0
-        series[j, 1] = state.blocks[RATE, j] * unit
-        series[j, 2] = 0.5 * first_force(chain, state, j) / blocks.mass[j] * square
-    for k in range(1, TERMS - 2):
-        scale = square / ((k + 1.0) * (k + 2.0))
+        begin_series(chain, state, room, room.moving[n], unit)
+    if chain.all_straight == 1:
+        for k in range(1, TERMS - 2):
+            for n in range(count):
+                next_order(chain, state, room, room.moving[n], k)
+        return
+    for n in range(count):
+        for k in range(3, TERMS):
+            room.series[room.moving[n], k] = 0.0
+    for _ in range(PASSES):
         for n in range(count):
             j = room.moving[n]
-            force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * series[j, k]
-            if k == 1:
-                force += blocks.stiffness[j] * chain.pull_rate * unit
-            if blocks.damping[j] != 0.0:
-                force -= blocks.damping[j] * (k + 1.0) * series[j, k + 1] / unit
-            series[j, k + 2] = force / blocks.mass[j] * scale
+            if state.whole[MODE, j] == FREE or chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 1:
+                for k in range(1, TERMS - 2):
+                    next_order(chain, state, room, j, k)
+            else:
+                series_of_formula(chain, state, room, j, unit)
+
+
+@exact
+def series_of_formula(chain: ChainNumbers, state: Now, room: Room, j: int, unit: float) -> None:
+    """Write the series of a moving block from the loads that the series of the last pass give, by its law's own formula."""
+    given, load, rate = room_for(ROOM_OF_INPUT), room_for(TERMS), room_for(ROOM_OF_JET)
+    blocks, laws, row = chain.blocks, chain.laws, room.series[j]
+    law, piece, mode, edge = blocks.law[j], state.whole[PIECE, j], state.whole[MODE, j], state.whole[EDGE, j]
+    load[0] = mode * load_on(chain, state, j)
+    for k in range(1, TERMS):
+        load[k] = mode * load_term(chain, state, room, j, k)
+    load[1] += mode * (blocks.stiffness[j] * chain.pull_rate * unit)
+    given[0], given[1], given[2] = blocks.damping[j], blocks.normal[j], mode if laws.rules[law, COUNTS_NET] == 1 else 1.0
+    given[3], given[4], given[5] = unit, 0.0, state.blocks[COUNTED, j] - laws.references[law, piece]
+    given[6], given[7], given[8], given[9] = laws.levels[law, piece], blocks.mass[j], 0.0, abs(state.blocks[RATE, j])
+    given[10], given[11] = 0.0 if edge != 0 else 1.0, static_step(chain, j) if edge != 0 else 0.0
+    call_jet(laws.jets_at[law, piece], floats(laws.constants_at[law, piece]), given, load, rate)
+    for k in range(1, TERMS):
+        row[k] = mode * (rate[k - 1] * unit / k)
 
 
 @kernel
@@ -105,7 +156,11 @@ def length_of_step(room: Room) -> float:
     last = before = first = second = third = 0.0
     for n in range(room.counts[MOVING]):
         j = room.moving[n]
-        first, second, third = max(first, abs(room.series[j, 1])), max(second, abs(room.series[j, 2])), max(third, abs(room.series[j, 3]))
+        first, second, third = (
+            max(first, abs(room.series[j, 1])),
+            max(second, abs(room.series[j, 2])),
+            max(third, abs(room.series[j, 3])),
+        )
         last, before = max(last, abs(room.series[j, TERMS - 1])), max(before, abs(room.series[j, TERMS - 2]))
     length = 1.0
     for _ in range(4):
@@ -119,7 +174,7 @@ def length_of_step(room: Room) -> float:
         length = longest
         if length > SHORT:
             break
-    return length
+    return float(length)
 
 
 @exact
@@ -141,31 +196,31 @@ def remainder_of_step(room: Room, phase: float) -> float:
         row = room.series[room.moving[n]]
         motion = max(motion, abs(row[1]) + abs(row[2]) + abs(row[3]))
         left_out = max(left_out, abs(row[TERMS - 2]) + abs(row[TERMS - 1]))
-    return 0.5 * phase * phase * math.cosh(phase) * left_out / motion if motion > 0.0 else 0.0
+    return float(0.5 * phase * phase * math.cosh(phase) * left_out / motion if motion > 0.0 else 0.0)
 
 
 @inlined
-def moved(row: object, x: float) -> float:
+def moved(row: Floats, x: float) -> float:
     """Return the slip (m) since the start of the step at x."""
     value = row[TERMS - 1]
     for k in range(TERMS - 2, 0, -1):
         value = value * x + row[k]
-    return value * x
+    return float(value * x)
 
 
 @inlined
-def speed(row: object, x: float) -> float:
+def speed(row: Floats, x: float) -> float:
     """Return d slip/dx (m) at x."""
     value = (TERMS - 1.0) * row[TERMS - 1]
     for k in range(TERMS - 2, 0, -1):
         value = value * x + k * row[k]
-    return value
+    return float(value)
 
 
 @exact
-def write_load(chain: ChainNumbers, state: Now, room: Room, j: int, length: float, out: object) -> None:
-    """Write the series of the load (N) on a block at rest over a step of a length (s)."""
+def write_load(chain: ChainNumbers, state: Now, room: Room, j: int, out: Floats) -> None:
+    """Write the series of the load (N) on a block at rest over the step."""
     out[0] = load_on(chain, state, j)
     for k in range(1, TERMS):
         out[k] = load_term(chain, state, room, j, k)
-    out[1] += chain.blocks.stiffness[j] * chain.pull_rate * length
+    out[1] += chain.blocks.stiffness[j] * chain.pull_rate * room.span[0]
