@@ -67,6 +67,26 @@ def test_a_shock_becomes_the_front_of_airy() -> None:
     assert smooth().front_text == ""
 
 
+def test_under_the_rate_law_a_shock_is_as_wide_and_slip_is_approached() -> None:
+    """Law (15) with twice its critical alpha: the contact jumps when slip begins. A front that stays below 0.9 has no width."""
+    rate_law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=4.0)
+    table = ss.studies.chain_beside_slab(problem(rate_law), 1.9, (16, 32, 64)).table
+    half, whole = (table[table.first_block == one] for one in ("half", "whole"))
+    assert half.front.to_numpy() == pytest.approx(half.airy_front.to_numpy(), rel=0.02, abs=0.0)
+    assert whole.peak.iloc[0] < 0.9
+    assert math.isnan(whole.front.iloc[0])
+    assert (half.order.iloc[1:] > 0.5).all()
+    assert (whole.order.iloc[1:] > 0.8).all()
+
+
+def test_a_smooth_law_of_slip_is_approached_at_the_same_orders() -> None:
+    """Law (14), from a slip where it weakens."""
+    law = ss.friction.SinusoidalSlip(0.6, 0.2, 10.0)
+    found = ss.studies.chain_beside_slab(problem(law, initial_slip=0.157), 1.9, (32, 64))
+    assert found.last_order("half") == pytest.approx(2.0, rel=0.0, abs=0.4)
+    assert found.last_order("whole") == pytest.approx(1.0, rel=0.0, abs=0.02)
+
+
 def test_the_numbers_of_airys_front() -> None:
     from mpmath import airyai, findroot, mp, quad
 

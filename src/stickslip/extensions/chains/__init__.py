@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.extension import Extension
+from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import ScenarioTable
@@ -25,15 +26,21 @@ class ChainsExtension(Extension):
 
     def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [chain]."""
-        from stickslip.extensions.chains.table import ChainTable
+        from stickslip.problem.scenarios import LateTable
 
-        return {ChainTable.name: ChainTable()}
+        return {"chain": LateTable("stickslip.extensions.chains.table:ChainTable", Path(__file__).with_name("scenarios"))}
 
     def readers(self) -> Sequence[Reader]:
         """Return the reader of their folders."""
         from stickslip.extensions.chains.kind import ChainReader
 
         return (ChainReader(),)
+
+    def commands(self) -> Mapping[str, Sequence[Command]]:
+        """Return the command `magnitudes`."""
+        from stickslip.extensions.chains.commands.magnitudes import magnitudes
+
+        return {"Catalogues of events": (magnitudes,)}
 
     def public(self) -> Mapping[str, str]:
         """Return the chain, numbers that are drawn for its blocks, and the statistics of catalogues."""

@@ -86,15 +86,18 @@ class ChainBesideSlab(Study):
         return float(self.table[self.table.first_block == first_block][column].iloc[-1])
 
     @property
-    def text(self) -> str:
-        """How the chains approach the slab."""
+    def texts(self) -> tuple[str, ...]:
+        """How the chains approach the slab, with half a mass at the contact, with equal masses, and beside the slab with a mass."""
         most = int(self.table.blocks.max())
-        last = self.table[self.table.blocks == most].set_index("first_block").difference
+        last = self.table[self.table.blocks == most].set_index("first_block")
+
+        def said(first: str, column: str, order: str) -> str:
+            return f"{number(last[column][first], 3)} m, falling as 1/n to the power {self.last_order(first, order):.2f}"
+
         return (
-            f"the slip of {most} blocks differs from the slab's by {number(last[HALF], 3)} m with half a mass at the contact, at "
-            f"order {self.last_order(HALF):.2f} of 1/n, and by {number(last[WHOLE], 3)} m with equal masses, at order "
-            f"{self.last_order(WHOLE):.2f}; equal masses beside the slab with a contact mass of half a block: order "
-            f"{self.last_order(WHOLE, 'order_with_mass'):.2f}"
+            f"slip of {most} blocks against the slab's, half a mass at the contact: {said(HALF, 'difference', 'order')}",
+            f"equal masses: {said(WHOLE, 'difference', 'order')}",
+            f"equal masses, and a slab with half a block on its contact: {said(WHOLE, 'difference_with_mass', 'order_with_mass')}",
         )
 
     @property
@@ -104,9 +107,8 @@ class ChainBesideSlab(Study):
         if math.isnan(last.front):
             return ""
         return (
-            f"in place of the slab's shock the slip rate in the middle of {int(last.blocks)} blocks rises in "
-            f"{number(last.front, 3)} s (Airy's front: {number(last.airy_front, 3)} s, as n^(-2/3)) and "
-            f"overshoots to {last.peak:.3f} of the jump"
+            f"in place of the shock the rate in the middle of {int(last.blocks)} blocks rises in {number(last.front, 3)} s "
+            f"(Airy's front: {number(last.airy_front, 3)} s) and overshoots to {last.peak:.3f} of the jump"
         )
 
     def _figure(self) -> Callable[..., Any]:
@@ -115,7 +117,7 @@ class ChainBesideSlab(Study):
         return draw_beside_slab
 
     def _sentences(self) -> tuple[str, ...]:
-        return self.text, self.front_text
+        return *self.texts, self.front_text
 
 
 @for_users
@@ -262,8 +264,8 @@ def front_of(run: ChainRun, slab: Solution, problem: Problem) -> dict[str, float
     times = times[times >= 0.0]
     rate = run.at(times).slip_rate[:, middle]
     share = (rate - rate[0]) / jump
-    low, high = (float(times[np.argmax(share >= level)]) for level in TENTHS)
-    return {"front": high - low, "airy_front": AIRY_WIDTH * length / body.wave_speed, "peak": float(share.max())}
+    reached = [float(times[np.argmax(share >= level)]) if share.max() >= level else math.nan for level in TENTHS]
+    return {"front": reached[1] - reached[0], "airy_front": AIRY_WIDTH * length / body.wave_speed, "peak": float(share.max())}
 
 
 def with_orders(table: pd.DataFrame) -> pd.DataFrame:

@@ -196,8 +196,13 @@ class GutenbergRichter(Study):
         said = ((self.events < FEW, few), (not self.bin and len(different) < ROUNDED * self.events, rounded))
         return tuple(text for true, text in said if true)
 
-    def _sentences(self) -> tuple[str, ...]:
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """All that is said of the result."""
         return self.text, self.completeness_text, self.fit_text, *self.notes
+
+    def _sentences(self) -> tuple[str, ...]:
+        return self.sentences
 
 
 @for_users

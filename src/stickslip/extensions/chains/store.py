@@ -19,7 +19,7 @@ from typing_extensions import override
 
 from stickslip.engine import engine_key
 from stickslip.extensions.chains.chain import Chain
-from stickslip.extensions.chains.rows import RowsInMemory, Snapshots
+from stickslip.extensions.chains.rows import ChainRows, Snapshots
 from stickslip.extensions.chains.store_layout import (
     CHAIN_FORMAT,
     CHANGE,
@@ -61,7 +61,7 @@ ROOM = "stickslip.resume continues from the last checkpoint when there is room"
 
 
 @dataclass(eq=False)
-class ChainStore(RowsInMemory):
+class ChainStore(ChainRows):
     """The rows of a run in a folder, with what the run needs to be continued."""
 
     path: Path = field(kw_only=True)

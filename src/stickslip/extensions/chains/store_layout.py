@@ -134,7 +134,7 @@ def in_attributes(status: Status) -> dict[str, Any]:
 # ---- reading what somebody else may have written -----------------------------------------------------------------------------
 
 
-class Checkpoint(NamedTuple):
+class ChainCheckpoint(NamedTuple):
     """What the checkpoint of a run says: the engine that made it, numbers of rows, states, and the time that is reached (s)."""
 
     engine: str
@@ -211,7 +211,7 @@ def open_chain(path: Path) -> ChainRun:
         return ChainRun(chain, found.reached, rows[EVENT], rows.get(CHANGE), *states, status=status, title=title)
 
 
-def checkpoint_in(path: Path, chain: Chain) -> Checkpoint:
+def checkpoint_in(path: Path, chain: Chain) -> ChainCheckpoint:
     """Return the checkpoint in a folder. Raises InputError if it is missing, damaged, or that of another run."""
     group, file = opened(path, use_consolidated=False), path / STATE_FILE
     if not file.exists():
@@ -231,7 +231,7 @@ def checkpoint_in(path: Path, chain: Chain) -> Checkpoint:
     snapshots = [checked_state({name: arrays[SNAPSHOT + name][i] for name in empty.arrays}, chain) for i in range(many)]
     state, final = (checked_state({name: arrays[of + name] for name in empty.arrays}, chain) for of in ("", FINAL))
     counts = whole_number(about, "every", path, 1), whole_number(about, "calls", path, 0)
-    return Checkpoint(str(about["engine"]), rows, state, final, snapshots, number(about, "reached", path), *counts)
+    return ChainCheckpoint(str(about["engine"]), rows, state, final, snapshots, number(about, "reached", path), *counts)
 
 
 def _check_rows(path: Path, group: Any, rows: Mapping[str, int]) -> None:

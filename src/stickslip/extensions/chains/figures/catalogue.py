@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter_panels, panels
+from stickslip.figures.panels import letter_panels, panels, set_title
 from stickslip.figures.style import BLUE, VERMILLION, Numbers, axis_text, label, shown, spans_decades, styled, time_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.place import Place
@@ -40,4 +40,5 @@ def draw_catalogue(run: ChainRun, **place: Unpack[Place]) -> Figure:
     sizes.set(ylabel="blocks that slipped", xlim=(0.0, run.duration / second))
     sizes.set_xlabel(axis_text("time", "t", clock))
     letter_panels(grid[:, 0], ["moment of events", "size of events"])
+    set_title(figure, run.title)
     return figure

@@ -61,4 +61,4 @@ def draw_chain_energy(run: ChainRun, **place: Unpack[Place]) -> Figure | Axes:
     axes.set_xlabel(axis_text("time", "t", clock))
     axes.set_ylabel(axis_text("energy", "E", unit))
     add_legend(axes, axes.get_legend_handles_labels()[0], own=place.get("ax") is not None)
-    return finish(axes, "", **place)
+    return finish(axes, run.title, **place)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from stickslip.extensions.chains.changes_between import Slips, changes_between, slips_of, window_of
-from stickslip.figures.panels import letter_panels
+from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, Numbers, axis_text, label, shown, styled, time_unit, unit_shown
 from stickslip.foundation.arrays import Floats
@@ -49,6 +49,7 @@ def draw_rupture(
     figure.colorbar(bars, ax=axes[1], label=label(_slip(slips.slip), unit_shown(_slip(slips.slip))))
     word = f"event {one} at {run.events['time'][one]:.6g} s" if one is not None else "slip of blocks"
     letter_panels(axes, [word, "slip"])
+    set_title(figure, run.title)
     return figure
 
 
