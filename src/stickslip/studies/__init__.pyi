@@ -1,4 +1,6 @@
 from stickslip.contact import critical_value
+from stickslip.extensions.cycles.find_cycle import cycle
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
 from stickslip.extensions.inference.infer import infer
@@ -24,6 +26,7 @@ __all__ = [
     "Ensemble",
     "Identification",
     "Inference",
+    "LimitCycle",
     "Record",
     "Schemes",
     "SlidingDisplacements",
@@ -31,6 +34,7 @@ __all__ = [
     "catalogue_statistics",
     "compare",
     "critical_value",
+    "cycle",
     "ensemble",
     "find",
     "identify",
