@@ -2,6 +2,8 @@ from stickslip.contact import critical_value
 from stickslip.extensions.chains.beside_slab import ChainBesideSlab, chain_beside_slab
 from stickslip.extensions.chains.magnitudes import magnitudes
 from stickslip.extensions.chains.statistics import GutenbergRichter, gutenberg_richter
+from stickslip.extensions.cycles.find_cycle import cycle
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
 from stickslip.extensions.inference.infer import infer
@@ -29,6 +31,7 @@ __all__ = [
     "GutenbergRichter",
     "Identification",
     "Inference",
+    "LimitCycle",
     "Record",
     "Schemes",
     "SlidingDisplacements",
@@ -37,6 +40,7 @@ __all__ = [
     "chain_beside_slab",
     "compare",
     "critical_value",
+    "cycle",
     "ensemble",
     "find",
     "gutenberg_richter",

@@ -1,0 +1,24 @@
+"""Cycles: periodic motion of a rigid body, its multipliers, and how it changes along a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from stickslip.extension import Extension
+
+
+class CyclesExtension(Extension):
+    """The studies `cycle` and `follow`."""
+
+    name = "cycles"
+
+    def public(self) -> Mapping[str, str]:
+        """Return the studies and the classes of their results."""
+        home = "stickslip.extensions.cycles"
+        return {
+            "studies.LimitCycle": f"{home}.limit_cycle:LimitCycle",
+            "studies.cycle": f"{home}.find_cycle:cycle",
+        }
+
+
+EXTENSION = CyclesExtension()

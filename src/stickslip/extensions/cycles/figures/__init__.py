@@ -1,0 +1,1 @@
+"""Figures of cycles and of their branches."""

@@ -1,0 +1,137 @@
+"""Find the periodic motion near a run: `ss.studies.cycle`."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
+from stickslip.extensions.cycles.orbit import Orbit, near_end
+from stickslip.foundation.arguments import for_users
+from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem.bodies import as_on_spring
+from stickslip.problem.run_options import DURATION, RUN_RTOL
+from stickslip.problem.scenarios import Scenario, read_source
+from stickslip.run import TextProgress, telling, uninterrupted
+from stickslip.run.find import unsettled
+from stickslip.run.simulate import simulate
+from stickslip.run.study import MAX_PIECES
+
+RTOL = 1e-12
+"""Default tolerance of the runs (1)."""
+FIRST_NEAR, LONGER, ATTEMPTS = 4.0, 8.0, 4
+"""Without a duration: the first run lasts so many times what a cycle may take, the next longer by a factor, up to so many runs."""
+INSTEAD = "a run and its events say how it moves, and find where that changes"
+"""What can be done where no cycle is looked for."""
+
+
+@for_users
+def cycle(
+    problem: Problem | Scenario | str | Path,
+    near: float | str | WithUnit | None = None,
+    *,
+    rtol: float = RTOL,
+    progress: TextProgress | bool | None = None,
+) -> LimitCycle:
+    """Find the periodic motion of a rigid body near the end of a run, with its multipliers.
+
+    Parameters
+    ----------
+    problem : Problem, Scenario, str or Path
+        A rigid body on a spring under a steady pull, its scenario, the name of a bundled scenario, or a scenario file. Where it
+        starts decides which cycle is found. If it starts in steady sliding, the run starts without load instead.
+    near : float or str, optional
+        Duration (s) of the run at whose end the cycle is looked for. By default it is long enough for some cycles, and is made
+        longer up to three times if no cycle is found. To find an unstable cycle start near it, and give about two periods.
+    rtol : float
+        Tolerance of the runs, relative.
+    progress : bool or callable, optional
+        True shows the progress in one line; a function is called with a line of text after each run.
+
+    Returns
+    -------
+    LimitCycle
+        The cycle: its period, multipliers, greatest and least slip rate and traction, and a run of one period.
+
+    Raises
+    ------
+    InputError
+        If the body is not rigid or what moves it varies, or if Newton's iteration finds no cycle.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
+
+    Notes
+    -----
+    The motion is cut where slip begins after a rest, or, if the contact never rests, where the slip rate passes the pull rate
+    upwards. Newton's iteration moves the start of a run until it comes back to it. The multipliers are the eigenvalues of the
+    derivative of this return, from the linear equation of disturbances along the run.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> block = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0)
+    >>> found = ss.studies.cycle(ss.Problem(block, ss.friction.Coulomb(0.6, 0.4), pull_rate=0.1, initial_load=0.0))
+    >>> print(f"{found.period:.6f} s, {found.slip:.6f} m, multiplier {found.multipliers[0]:.1f}")
+    0.203025 s, 0.020302 m, multiplier 0.0
+    """
+    scenario = Scenario(problem, 1.0) if isinstance(problem, Problem) else read_source("cycle", problem)
+    check_can_be_followed(scenario.problem, "cycle")
+    RUN_RTOL.check("cycle", "rtol", rtol)
+    first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
+    with telling(progress, "cycle") as tell:
+        return LimitCycle(_searched(unsettled(scenario.problem), first, attempts, rtol, tell), scenario)
+
+
+def _first_run(scenario: Scenario, near: float | str | WithUnit | None, *, given: bool) -> float:
+    """Return the duration (s) of the first run."""
+    if near is not None:
+        return float(DURATION.check("cycle", "near", near))
+    return scenario.duration if given else FIRST_NEAR * time_of_cycle(scenario.problem)
+
+
+def time_of_cycle(problem: Problem) -> float:
+    """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
+    falls = problem.normal * problem.friction.variation
+    return problem.body.round_trip_time + 2.0 * falls / (problem.body.stiffness * problem.first_pull_rate)
+
+
+def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> Orbit:
+    """Return the cycle near the end of a run, which is made longer where none is found. Raises InputError."""
+    for attempt in range(attempts):
+        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
+        tell(f"run of {brief(lasts, 's')}")
+        if not run.status.ok:
+            raise InputError(f"cycle: the run at whose end a cycle is looked for did not reach it: {run.status}")
+        try:
+            return near_end(run.history, problem, rtol)
+        except InputError:
+            if attempt == attempts - 1:
+                raise
+        lasts *= LONGER
+    raise AssertionError("there is at least one attempt")
+
+
+def check_can_be_followed(problem: Problem, who: str) -> None:
+    """Refuse a problem whose cycles are not looked for. Raises InputError, which begins with `who`."""
+    body, law = problem.body, problem.friction
+    name = type(law).__name__
+    why = ""
+    if body.structure != "rigid":
+        why = f"cycles are found of rigid bodies on a spring, and this is a {body.noun}"
+    elif body.is_free:
+        why = "without a spring nothing brings the body back"
+    elif as_on_spring(body).has_stops:
+        why = "cycles against hard stops are not found"
+    elif problem.ground is not None or problem.force is not None or problem.normal_varies:
+        why = "what pulls and presses must be steady: there is moving ground, a force, or a normal load that varies"
+    elif isinstance(problem.pull_rate, LoadingHistory):
+        why = "the pull rate must be a number, and it varies in time"
+    elif law.depends_on_slip and (law.memory == "all" or law.states):
+        why = f"under {name} friction changes with slip, so that no motion with a net slip repeats itself"
+    if why:
+        raise InputError(f"{who}: {why}; {INSTEAD}")
+    if not problem.first_pull_rate > 0.0 or not math.isfinite(problem.first_pull_rate):
+        raise InputError(f"{who}: pull_rate must be above 0, got {problem.first_pull_rate:g} {problem.unit_of('pull_rate')}")

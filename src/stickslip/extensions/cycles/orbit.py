@@ -1,0 +1,166 @@
+"""Newton's iteration on the return to a section: from a run to the cycle near it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.engine import History, Positions
+from stickslip.extensions.cycles.section import Crossings, Return, Section, coordinates, crossings, onsets
+from stickslip.extensions.cycles.tangent import values_at
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem
+
+MOST_ITERATIONS, MOST_HALVINGS = 20, 6
+"""Newton's iterations (1), and how often a step is halved that leads away."""
+SETTLED = 1e-11
+"""Newton's iteration ends where the return misses the start by less than this share (1) of the cycle's extent."""
+GOOD_ENOUGH = 1e-7
+"""A cycle is found if at last it misses by no more than this share (1)."""
+MOST_MEETINGS = 16
+"""Largest number of meetings with the section in one period (1) that is looked for."""
+CLOSES = 1e-2
+"""A run that comes back this close (1, share of its extent) is taken to close there."""
+NOTHING = 1e-9
+"""A slip rate that varies by less than this share (1) of the pull rate is steady sliding."""
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A cycle: a run from a section that comes back to where it started."""
+
+    closed: Return
+    extent: Floats
+    """How far load and states go in a period."""
+    iterations: int
+    change: float
+    """The last change of the period (s) in Newton's iteration."""
+
+    @property
+    def section(self) -> Section:
+        """The section."""
+        return self.closed.section
+
+    @property
+    def place(self) -> Floats:
+        """Where the cycle meets the section: load and states, or the states alone."""
+        return self.closed.start
+
+    @property
+    def period(self) -> float:
+        """The period (s)."""
+        return self.closed.time
+
+    @property
+    def sticks(self) -> bool:
+        """True if the contact rests once in a period."""
+        return self.closed.sticks
+
+    @cached_property
+    def multipliers(self) -> NDArray[Any]:
+        """What a return multiplies disturbances by, the largest first: one less than there are load, slip rate and states."""
+        found = np.linalg.eigvals(self.closed.slopes())
+        if self.section.at_onset:
+            found = np.append(found, 0.0)
+        return found[np.argsort(-np.abs(found), kind="stable")]
+
+
+def extent_of(history: History, at_onset: bool, last: int) -> Floats:
+    """Return how far load and states go in a history up to a piece."""
+    pieces = np.arange(last + 1)
+    values = coordinates(values_at(history, Positions.inside(np.tile(pieces, 2), np.repeat([0.0, 1.0], len(pieces)))), at_onset)
+    return np.asarray(np.ptp(values, axis=1) + 1e-300)
+
+
+def closed(section: Section, place: Floats, guess: float) -> Orbit:
+    """Return the cycle near a place on a section, by Newton's iteration; `guess` is about its period (s).
+
+    Raises InputError if the iteration finds none.
+    """
+    now = section.returned(place, guess)
+    extent = extent_of(now.history, section.at_onset, now.piece)
+    if not len(place):
+        return Orbit(now, extent, 1, 0.0)
+    period, share = now.time, _share(now, extent)
+    for n in range(MOST_ITERATIONS):
+        step = np.linalg.solve(now.slopes(exactly=False) - np.eye(len(place)), -now.missed)
+        tried = _shortened(section, now, step, share, extent)
+        period, change = tried.time, abs(tried.time - period)
+        new = _share(tried, extent)
+        if new <= SETTLED or (share <= GOOD_ENOUGH and new >= 0.5 * share):
+            best = tried if new < share else now
+            return _checked(Orbit(best, extent_of(best.history, section.at_onset, best.piece), n + 2, change))
+        now, share = tried, new
+        extent = extent_of(now.history, section.at_onset, now.piece)
+    raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
+
+
+def _share(one: Return, extent: Floats) -> float:
+    return float(np.max(np.abs(one.missed) / extent))
+
+
+def _shortened(section: Section, now: Return, step: Floats, share: float, extent: Floats) -> Return:
+    """Return the return after a step of Newton's, shortened where it leads away. Raises InputError where it still does."""
+    for _ in range(MOST_HALVINGS):
+        try:
+            found = section.returned(now.start + step, now.time)
+        except InputError:
+            step = 0.25 * step
+            continue
+        if _share(found, extent) < 2.0 * share or share <= GOOD_ENOUGH:
+            return found
+        step = 0.5 * step
+    raise InputError("cycle: Newton's iteration leads away from this run: no cycle is near; give another start, or a longer run")
+
+
+def _checked(orbit: Orbit) -> Orbit:
+    """Refuse steady sliding. Raises InputError."""
+    now = orbit.closed
+    piece = np.repeat(np.arange(now.piece + 1), 3)
+    rates = now.history.rate(Positions.inside(piece, np.tile([0.0, 0.5, 1.0], now.piece + 1)))
+    if np.ptp(rates) <= NOTHING * now.section.problem.first_pull_rate:
+        raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
+    return orbit
+
+
+def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
+    """Return the cycle near the end of a run. Raises InputError if there is none."""
+    at_onset = len(onsets(history).time) > 1
+    met = crossings(history, at_onset)
+    if len(met.time) < 2:
+        raise InputError(
+            "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes the pull rate twice:"
+            " give a longer run (near), or another start"
+        )
+    places = coordinates(values_at(history, _positions(history, met, at_onset)), at_onset)
+    every = _meetings(history, places, at_onset)
+    found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
+    return found if at_onset or not found.sticks else from_onset(found)
+
+
+def from_onset(orbit: Orbit) -> Orbit:
+    """Return a cycle that rests, from the onset of its slip."""
+    end, section = orbit.closed, Section(orbit.section.problem, at_onset=True, rtol=orbit.section.rtol)
+    met = onsets(end.history)
+    if not len(met.time):
+        return orbit
+    place = coordinates(values_at(end.history, end.history.just_before(met.piece[:1] + 1)), at_onset=True)[:, 0]
+    return closed(section, place, orbit.period)
+
+
+def _positions(history: History, met: Crossings, at_onset: bool) -> Positions:
+    return history.just_before(met.piece + 1) if at_onset else Positions.inside(met.piece, met.place)
+
+
+def _meetings(history: History, places: Floats, at_onset: bool) -> int:
+    """Return after how many meetings with the section the run closes, 1 if it does so nowhere."""
+    extent = extent_of(history, at_onset, len(history) - 1)
+    for every in range(1, min(MOST_MEETINGS, places.shape[1] - 1) + 1):
+        if not len(extent) or np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= CLOSES * extent):
+            return every
+    return 1

@@ -1,0 +1,183 @@
+"""Where a cycle is cut: an onset of slip, or a passage of the slip rate through the pull rate upwards, and the returns to it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stickslip.engine import History, Positions
+from stickslip.extensions.cycles.tangent import FIRST_STATE, LOAD, RATE, RigidMotion, Tangent, pace_at, values_at
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.friction.contract import one_argument
+from stickslip.problem import INITIAL_STATES, Problem
+from stickslip.run.simulate import simulate
+from stickslip.run.study import uninterrupted
+
+SAMPLES = np.linspace(0.0, 1.0, 17)
+"""Places (1) in each piece between which a passage is looked for."""
+SPARE_TIME, MOST_TRIES = 1.1, 6
+"""A run to a return lasts longer than the guessed period by this factor (1), and is doubled so often if it has no return."""
+AT_START = 1e-9
+"""A passage before this share (1) of the run is that of the start."""
+
+
+class Crossings(NamedTuple):
+    """Moments when a run crosses a section: pieces, places (1) in them, and times (s)."""
+
+    piece: Any
+    place: Floats
+    time: Floats
+
+
+@dataclass(frozen=True)
+class Return:
+    """A run from a section to its return there."""
+
+    start: Floats
+    """Load and states, of a section at an onset the states alone, where it starts."""
+    end: Floats
+    """The same at the return."""
+    time: float
+    """The time (s) of the return."""
+    history: History
+    piece: int
+    place: float
+    section: Section
+
+    @property
+    def missed(self) -> Floats:
+        """How far the return is from the start."""
+        return np.asarray(self.end - self.start)
+
+    def slopes(self, *, exactly: bool = True) -> Floats:
+        """Return the derivative of the return by the start."""
+        motion, section = RigidMotion(self.section.problem), self.section
+        if not len(self.start):
+            return np.zeros((0, 0))
+        grown = Tangent(self.history, self.piece, self.place).grown(exactly=exactly)
+        pace = pace_at(self.history, self.piece, self.place)
+        if section.at_onset:
+            ends = ((0, 0.0), (self.piece, self.place))
+            at_start, at_end = (values_at(self.history, Positions.inside(*at))[:, 0] for at in ends)
+            leaves, arrives = motion.begins_slip(at_start, 1), motion.begins_slip(at_end, 1)
+            ways = np.eye(motion.size)[:, FIRST_STATE:]
+            ways[LOAD] = -leaves[FIRST_STATE:]
+            onto = np.eye(motion.size) - np.outer(pace, arrives) / (arrives @ pace)
+            return np.asarray((onto @ grown @ ways)[FIRST_STATE:])
+        onto = grown - np.outer(pace, grown[RATE]) / pace[RATE]
+        kept = [LOAD, *range(FIRST_STATE, motion.size)]
+        return np.asarray(onto[np.ix_(kept, kept)])
+
+    @cached_property
+    def sticks(self) -> bool:
+        """True if the contact rests on the way."""
+        history = self.history
+        return bool((history.store.mode[: self.piece + 1] == 0).any() or history.rests[: self.piece].any())
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of the motion of a problem, and the returns to it."""
+
+    problem: Problem
+    at_onset: bool
+    """True if it is at the onset of forward slip, False if it is where the slip rate passes the pull rate upwards."""
+    rtol: float = 1e-12
+
+    def start_at(self, place: Floats) -> Problem:
+        """Return the problem that starts at a place on the section."""
+        law, inner = self.problem.friction, place if self.at_onset else place[1:]
+        states: dict[str, Any] = dict.fromkeys(INITIAL_STATES)
+        if law.states:
+            seen = np.ravel(law.outer_state(np.array(one_argument(tuple(inner.tolist())))))
+            states |= dict(zip(INITIAL_STATES, seen.tolist(), strict=False))
+        load: dict[str, Any] = {"initial_load": None, "initial_excess": 0.0, "initial_rate": None}
+        if not self.at_onset:
+            rate = self.problem.first_pull_rate
+            load = {"initial_load": float(place[0]), "initial_excess": None, "initial_rate": rate}
+        return replace(self.problem, **load, **states)
+
+    def returned(self, place: Floats, guess: float) -> Return:
+        """Return the run from a place on the section to its return next to a `guess` of the time (s) that it takes.
+
+        A stiff contact may pass the pull rate again at once, where it starts a little off its slow motion.
+
+        Raises InputError if there is no return within MOST_TRIES times twice as long.
+        """
+        problem, lasts = self.start_at(place), SPARE_TIME * guess
+        for _ in range(MOST_TRIES):
+            run = uninterrupted(simulate(problem, lasts, self.rtol))
+            met = crossings(run.history, self.at_onset)
+            nearest = int(np.abs(met.time - guess).argmin()) if len(met.time) else 0
+            if len(met.time) and abs(met.time[nearest] - guess) <= lasts - guess:  # what lies beyond the run is farther away
+                piece, xi, time = int(met.piece[nearest]), float(met.place[nearest]), float(met.time[nearest])
+                end = coordinates(values_at(run.history, Positions.inside(piece, xi)), self.at_onset)[:, 0]
+                return Return(place, end, time, run.history, piece, xi, self)
+            if not run.status.ok:
+                raise InputError(f"cycle: a run of one period did not reach its end: {run.status}")
+            lasts *= 2.0
+        what = "begins to slip after a rest" if self.at_onset else "passes the pull rate"
+        raise InputError(f"cycle: the contact no longer {what} within {lasts / 2.0:.4g} s: there is no cycle near")
+
+
+def coordinates(values: Floats, at_onset: bool) -> Floats:
+    """Return what may vary on a section, of load, slip rate and states."""
+    return values[FIRST_STATE:] if at_onset else np.delete(values, RATE, axis=0)
+
+
+def crossings(history: History, at_onset: bool) -> Crossings:
+    """Return where a run crosses a section, without its start."""
+    return onsets(history) if at_onset else passages(history)
+
+
+def onsets(history: History) -> Crossings:
+    """Return the moments when forward slip begins after a rest, at the ends of the rests."""
+    mode = history.store.mode
+    rested = (mode[:-1] == 0) | history.rests[:-1]
+    found = 1 + np.flatnonzero((mode[1:] == 1) & rested)
+    return Crossings(found - 1, np.ones(len(found)), history.start[found])
+
+
+def passages(history: History) -> Crossings:
+    """Return the moments when the slip rate passes the pull rate upwards, to rounding."""
+    pull, count = history.problem.first_pull_rate, len(history)
+    piece, xi = np.repeat(np.arange(count), len(SAMPLES)), np.tile(SAMPLES, count)
+    below = history.rate(Positions.inside(piece, xi)) < pull
+    passes = np.flatnonzero(below[:-1] & ~below[1:])
+    pieces, places, times = [], [], []
+    for n in passes.tolist():
+        same = piece[n] == piece[n + 1]
+        row, low, high = (int(piece[n]), xi[n], xi[n + 1]) if same else (int(piece[n + 1]), 0.0, 0.0)
+        place = _root(history.store.rate[row], pull, float(low), float(high)) if same else 0.0
+        time = float(history.start[row] + place * (history.store.speed[row] + place * history.store.bend[row]))
+        if time > AT_START * history.duration:
+            pieces.append(row)
+            places.append(place)
+            times.append(time)
+    return Crossings(np.array(pieces, np.intp), np.array(places), np.array(times))
+
+
+def _root(series: Floats, value: float, low: float, high: float) -> float:
+    """Return the place, between two others, where a polynomial passes a value upwards, to rounding."""
+    terms = series[::-1].tolist()
+    place = 0.5 * (low + high)
+    for _ in range(200):
+        found, slope = 0.0, 0.0
+        for term in terms:
+            slope = slope * place + found
+            found = found * place + term
+        found -= value
+        low, high = (low, place) if found >= 0.0 else (place, high)
+        step = place - found / slope if slope > 0.0 else math.nan
+        new = step if low < step < high else 0.5 * (low + high)
+        if new == place or high - low <= 4e-16:
+            break
+        if abs(new - place) <= 1e-16:
+            return new
+        place = new
+    return place
