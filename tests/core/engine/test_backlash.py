@@ -300,6 +300,19 @@ def test_a_stop_inside_the_play_is_left_by_what_the_spring_takes_up() -> None:
     assert float(run.slip(np.linspace(0.0, 5.0, 500)).max()) <= 0.03
 
 
+@pytest.mark.parametrize("seed", [3, 11, 12, 29, 34])
+def test_an_end_that_comes_back_to_a_small_play_passes_its_edges(seed: int) -> None:
+    """At rest, with a play of millionths of a metre: the lag at its edge is the difference of much larger ways, and is rounded."""
+    draw = np.random.default_rng(seed)
+    play = 10.0 ** draw.uniform(-7.0, -3.0)
+    pull = ss.loading.PiecewiseLinear([0.0, 0.3, 0.9, 1.7], [0.0, 3e-4, -3e-4, 3e-4 * draw.uniform(0.5, 1.5)])
+    body = ss.SpringBlock(0.6, 2645.0, 1.43, 24.0, backlash=play)
+    run = ss.simulate(ss.Problem(body, ss.friction.Coulomb(0.4, 0.3), pull_rate=pull, initial_load=0.0), 1.7)
+    assert run.duration == 1.7
+    assert str(run.status).startswith("finished")
+    check_account(run)
+
+
 def test_years_of_rest_outside_the_play_are_leaped_over() -> None:
     """The play is taken up in 20 000 s, some 30 000 periods; what the spring needs then, a million times as long, is one leap."""
     play, rate = 2e-5, 1e-9

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.contact.contact_equation import TIE
-from stickslip.engine.contact.pieces import note_degree
+from stickslip.engine.contact.pieces import note_degree, phase_at
 from stickslip.engine.contact.pressing import tone_along
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, evaluate, fill, first_descent, restrict
 from stickslip.engine.state.layout import TERMS, Floats, Task
@@ -20,7 +20,7 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
 ROUNDING = 2.0**-48
-"""The lag is at an edge if it is nearer to it than this share (1) of the ways from which it follows."""
+"""The lag is at an edge if it is nearer to it than this share (1) of the ways from which it follows, or of that in a round trip."""
 LEAST_SHARE = 2.0**-60
 """A step ends no nearer to its start than at this share (1) of it: an edge there is met at once."""
 
@@ -50,7 +50,9 @@ def lag_at_rest(run: Run, width: float, lag: Floats) -> None:
     way = room_for(TERMS)
     way_pulled(run, way)
     restrict(way, run.state.xi, width, lag)
-    size = abs(lag[0]) + abs(run.params.first_lag) + abs(run.state.slip_now)
+    size = abs(run.params.first_lag) + abs(run.state.slip_now) + abs(way[1]) * run.params.round_trip_time / run.state.speed
+    for k in range(TERMS):
+        size += abs(way[k])
     lag[0] += run.params.first_lag - run.state.slip_now
     if abs(abs(lag[0]) - run.params.play) <= ROUNDING * size:  # it is at the edge, and its slope says where it goes
         lag[0] = math.copysign(run.params.play, lag[0])
@@ -81,10 +83,13 @@ def lead_to_edge(run: Run, xi_to: float) -> float:
     lag, width = room_for(TERMS), xi_to - run.state.xi if run.counts.mode == 0 else 0.0
     lag_at_rest(run, width, lag)
     place = place_of_edge(run, lag)
-    if place * width <= TIE:
-        change_side(run)
-        return run.state.xi
-    return run.state.xi + place * width if place < 1.0 else xi_to
+    if not place < 1.0:
+        return xi_to
+    to = run.state.xi + place * width
+    if place * width > TIE and phase_at(run, to) > phase_at(run, run.state.xi):
+        return to
+    change_side(run)
+    return run.state.xi
 
 
 @kernel
