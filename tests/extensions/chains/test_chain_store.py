@@ -67,8 +67,8 @@ def _in_small_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_run_that_is_killed_goes_on_from_its_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The rows after the checkpoint are in the folder already, and are written again."""
-    monkeypatch.setattr(store_layout, "CHUNK_ROWS", 50)
-    monkeypatch.setattr("stickslip.extensions.chains.store.CHUNK_ROWS", 50)
+    monkeypatch.setattr(store_layout, "ROWS_OF_CHUNK", 50)
+    monkeypatch.setattr("stickslip.extensions.chains.store.ROWS_OF_CHUNK", 50)
     _in_small_steps(monkeypatch)
     folder, calls = tmp_path / "a.zarr", []
 
