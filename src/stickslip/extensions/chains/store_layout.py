@@ -230,6 +230,9 @@ def checkpoint_in(path: Path, chain: Chain) -> ChainCheckpoint:
     many = len(arrays[f"{SNAPSHOT}now"])
     snapshots = [checked_state({name: arrays[SNAPSHOT + name][i] for name in empty.arrays}, chain) for i in range(many)]
     state, final = (checked_state({name: arrays[of + name] for name in empty.arrays}, chain) for of in ("", FINAL))
+    told = {EVENT: state.now[at.EVENTS], CHANGE: state.now[at.CHANGES]}
+    if wrong := next((kind for kind, count in rows.items() if told[kind] != count), None):
+        raise InputError(f"its {STATE_FILE} has {rows[wrong]} rows of {wrong}, and a state after {told[wrong]:.0f} of them")
     counts = whole_number(about, "every", path, 1), whole_number(about, "calls", path, 0)
     return ChainCheckpoint(str(about["engine"]), rows, state, final, snapshots, number(about, "reached", path), *counts)
 
