@@ -132,7 +132,7 @@ def solve(chain: ss.Chain, duration: float, rtol: float = 1e-12, step: float = 0
 
 def _straight(law: Any) -> Any:
     """Return friction as a function of slip and slip rate: for laws that are straight between knots a quick one."""
-    if law.knots:
+    if isinstance(law, ss.friction.LinearSlipWeakening | ss.friction.PiecewiseLinearSlip):
         levels = law.coefficient(np.array(law.knots))
         return lambda c, v: float(np.interp(c, (0.0, *law.knots), (float(law.coefficient(0.0)), *levels)))
     if isinstance(law, ss.friction.Coulomb):

@@ -61,7 +61,7 @@ def test_a_lattice_reads_back_as_it_was_written() -> None:
     assert _read(scenario.to_toml()) == scenario
 
 
-def test_long_lists_are_packed_and_read_back_to_the_last_bit() -> None:
+def test_long_lists_are_read_back_to_the_last_bit() -> None:
     values = np.random.default_rng(3).uniform(0.5, 2.0, 12_000)
     text = TEXT.replace("blocks = 3", "blocks = 12000").replace('[5.0, "0.01 N/mm"]', "5.0")
     scenario = _read(text.replace('[1.0, "2 kg", 1.0]', str(values.tolist())))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stickslip.extension import Command, Extension
@@ -25,9 +26,9 @@ class ChainsExtension(Extension):
 
     def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [chain]."""
-        from stickslip.extensions.chains.table import ChainTable
+        from stickslip.problem.scenarios import LateTable
 
-        return {ChainTable.name: ChainTable()}
+        return {"chain": LateTable("stickslip.extensions.chains.table:ChainTable", Path(__file__).with_name("scenarios"))}
 
     def readers(self) -> Sequence[Reader]:
         """Return the reader of their folders."""

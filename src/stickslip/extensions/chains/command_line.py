@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from typing_extensions import override
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from stickslip.problem import Status
     from stickslip.problem.scenarios import Scenario
 
-DRAWN: Sequence[str] = ("--figure", "--catalogue-figure", "--energy-figure")
-"""The pictures that these runs have."""
+DRAWN: Sequence[str] = ("--figure", "--catalogue-figure", "--energy-figure", "--space-time")
+"""The pictures that these runs have: the catalogue (twice), energies, and the rupture of the largest event."""
 TYPED = ("--events",)
 """The options that these runs take beside the duration."""
 
@@ -61,11 +61,12 @@ class ChainResults(RunResults):
     def draw(self, pictures: Pictures) -> list[Path]:
         if not pictures.wanted:
             return []
-        plot: Any = self.solution.plot
+        plot = self.solution.plot
         return write_files(
             (pictures.figure, drawing(plot, pictures.look)),
             (pictures.catalogue_figure, drawing(plot.catalogue, pictures.look)),
             (pictures.energy_figure, drawing(plot.energy, pictures.look)),
+            (pictures.space_time, drawing(plot.rupture, pictures.look)),
         )
 
     @override

@@ -56,7 +56,7 @@ class ChainExamination:
         """Yield the name and the text of each finding."""
         low, high, are_bounds = self.before.frequencies
         within = "within " if are_bounds else ""
-        yield "frequencies", f"{within}{brief(low, 'rad/s')} to {brief(high, 'rad/s')} where all blocks move{_periods(low, high)}"
+        yield "frequencies", f"{within}{number(low, 4)} to {number(high, 4)} rad/s where all blocks move{_periods(low, high)}"
         if self.before.wave_speed > 0.0:
             seconds = self.chain.count / self.before.wave_speed
             yield "waves", f"{number(self.before.wave_speed, 4)} blocks a second, {brief(seconds, 's')} from end to end"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula
-from stickslip.engine.series.polynomial import TERMS
+from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.compiled.memory import Blocks, ChainNumbers, Laws, Room, Springs
@@ -107,4 +107,6 @@ def room_of(count: int) -> Room:
         return np.zeros(count, np.int64)
 
     lists = whole(), whole(), whole(), whole()
-    return Room(np.empty((count, TERMS)), np.zeros(count), whole(), whole(), *lists, np.zeros(at.NUMBER_OF_COUNTS, np.int64))
+    return Room(
+        np.empty((count, TERMS)), np.zeros(count), whole(), whole(), *lists, np.zeros(at.NUMBER_OF_COUNTS, np.int64), np.zeros(1)
+    )

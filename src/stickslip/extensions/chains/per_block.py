@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,18 +14,12 @@ from stickslip.extensions.chains.couplings import SPRING, is_sparse
 from stickslip.extensions.chains.drawn import DISTRIBUTIONS, LARGEST_SEED, Drawn
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.given import Given
 from stickslip.foundation.quantities import LARGEST_SERIES, NumberSeries, Quantity
-
-if TYPE_CHECKING:
-    from stickslip.problem.scenarios.entries import DocumentPlace
 
 DRAWN, SEED_KEY = "drawn", "seed"
 """The keys of a table of numbers that are drawn: the name of their distribution, and the seed."""
 EXAMPLE = '{ drawn = "uniform", low = 9.0, high = 11.0, seed = 1 }'
-PACKED = " numbers"
-"""Is in the text of packed numbers, and in no number with a unit."""
-MOST_NUMBERS = MOST_BLOCKS + 1
-"""Largest number of springs between blocks in a row: with a wall at both ends."""
 BLOCKS = Quantity("1", "number of blocks, or of rows or columns of a lattice", at_least=1, at_most=MOST_BLOCKS)
 SEED = Quantity("1", "seed of the numbers that are drawn", at_least=0, at_most=float(LARGEST_SEED))
 COUPLING = "coupling"
@@ -50,7 +44,7 @@ def of_blocks() -> Mapping[str, OfBlocks]:
     return {name: OfBlocks(declared[name], 0.0 if name in OPTIONAL else MISSING) for name in ORDER}
 
 
-def read_blocks(value: Any, place: DocumentPlace) -> int | tuple[int, int]:
+def read_blocks(value: Any, place: Any) -> int | tuple[int, int]:
     """Return the number of blocks, or rows and columns of a lattice. Raises InputError."""
     counts = value if isinstance(value, list) and len(value) == 2 else [value]
     if not all(isinstance(one, int) and not isinstance(one, bool) and one >= 1 for one in counts):
@@ -58,21 +52,14 @@ def read_blocks(value: Any, place: DocumentPlace) -> int | tuple[int, int]:
             f"{place.source.file}: {place} must be a whole number, or [rows, columns] of a lattice, got {shown(value)}"
         )
     if (many := counts[0] * (counts[1] if len(counts) == 2 else 1)) > (most := min(MOST_BLOCKS, place.source.most_nodes)):
-        raise InputError(f"{place.source.file}: {place} must be at most {most:g} in all, got {shown(many)}")
+        raise InputError(f"{place.source.file}: {place} must be at most {most:.0f} in all, got {shown(many)}")
     return counts[0] if len(counts) == 1 else (counts[0], counts[1])
 
 
-def read_numbers(declared: Quantity, value: Any, place: DocumentPlace) -> Any:
+def read_numbers(declared: Quantity, value: Any, place: Any) -> Any:
     """Return one number for all blocks, a tuple of one each, or what is drawn, in SI. Raises InputError."""
     if isinstance(value, dict):
         return _read_drawn(declared, value, place)
-    if isinstance(value, str) and PACKED in value:
-        from stickslip.problem.scenarios.packed import unpacked  # few scenarios have so many numbers
-
-        try:
-            value = unpacked(value, declared.unit, MOST_NUMBERS)
-        except InputError as error:
-            raise InputError(f"{place.source.file}: {place} must be a list of numbers in {declared.label}, got {error}") from None
     if not isinstance(value, list):
         return declared.check(place.source.file, str(place), value)
     if not value:
@@ -81,7 +68,7 @@ def read_numbers(declared: Quantity, value: Any, place: DocumentPlace) -> Any:
     return found or tuple(declared.check(place.source.file, f"{place}[{i}]", one) for i, one in enumerate(value))
 
 
-def _read_drawn(declared: Quantity, table: Mapping[str, Any], place: DocumentPlace) -> Drawn:
+def _read_drawn(declared: Quantity, table: Mapping[str, Any], place: Any) -> Drawn:
     """Return what a table such as EXAMPLE says is drawn. Raises InputError."""
     where, kind = f"{place.source.file}: {place}", table.get(DRAWN)
     if place.key in NOT_DRAWN:
@@ -101,7 +88,12 @@ def _read_drawn(declared: Quantity, table: Mapping[str, Any], place: DocumentPla
     seed = table[SEED_KEY]
     if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST_SEED:
         raise InputError(f"{where} {SEED_KEY} must be a whole number from 0 to {LARGEST_SEED}, got {shown(seed)}")
-    return Drawn(kind, *given, seed=seed)
+    drawn = Drawn(kind, *given, seed=seed)
+    try:
+        _ = drawn.in_unit(declared.unit)
+    except InputError as error:
+        raise InputError(f"{where} {str(error).removeprefix('Drawn: ')}") from None
+    return drawn
 
 
 def _numbers_of(kind: str, declared: Quantity) -> dict[str, Quantity]:
@@ -113,18 +105,12 @@ def _numbers_of(kind: str, declared: Quantity) -> dict[str, Quantity]:
 
 def written(value: Any) -> Any:
     """Return what a file says of a number of blocks, or of any other key of [chain]."""
-    from stickslip.problem.scenarios.entries import as_written
-
     if isinstance(value, Drawn):
         names = DISTRIBUTIONS[value.distribution].numbers
-        return {DRAWN: value.distribution, **dict(zip(names, map(as_written, value.numbers), strict=True)), SEED_KEY: value.seed}
-    if not isinstance(value, tuple):
-        return as_written(value)
-    if len(value) <= LARGEST_SERIES:
-        return [as_written(one) for one in value]
-    from stickslip.problem.scenarios.packed import packed
-
-    return packed(value)
+        return {DRAWN: value.distribution, **dict(zip(names, map(written, value.numbers), strict=True)), SEED_KEY: value.seed}
+    if isinstance(value, tuple):
+        return [written(one) for one in value]
+    return value.text if isinstance(value, Given) else value
 
 
 def numbers_in(name: str, declared: Quantity, value: Any) -> Iterator[tuple[str, Quantity]]:

@@ -48,7 +48,7 @@ class Snapshots:
 
 
 @dataclass(eq=False)
-class RowsInMemory:
+class ChainRows:
     """Rows of a run in memory. `keeps_changes` says whether those of changes are kept, too."""
 
     chain: Chain

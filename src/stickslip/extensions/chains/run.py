@@ -120,8 +120,9 @@ class ChainRun(NamesAttributes):
 
     @cached_property
     def events(self) -> NDArray[Any]:
-        """The finished events, a structured array: time of the first onset (s), first_block, size (number of blocks that slipped),
-        moment (sum of their slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work
+        """The finished events, as a structured array.
+
+        Its columns are the time of the first onset (s), first_block, size (number of blocks that slipped), moment (sum of their slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work
         of the driver, springs before and after.
         """
         return structured(self.event_rows, EVENT_TYPE)
@@ -140,8 +141,10 @@ class ChainRun(NamesAttributes):
 
     @cached_property
     def changes(self) -> NDArray[Any]:
-        """The changes of blocks, a structured array: time (s), since (time since the first onset of the event, s), block, kind (0
-        onset, 1 arrest, 2 turn, 3 knot: `CHANGE_NAMES`), slip (m). Raises InputError if the run did not keep them.
+        """The changes of blocks, as a structured array. Raises InputError if the run did not keep them.
+
+        Its columns are time (s), since (time since the first onset of the event, s), block, kind (0
+        onset, 1 arrest, 2 turn, 3 knot: `CHANGE_NAMES`), slip (m).
         """
         if self.change_rows is None:
             raise InputError('ChainRun: changes were not kept: simulate(chain, duration, keep="changes") keeps them')
@@ -165,12 +168,12 @@ class ChainRun(NamesAttributes):
     @property
     def slip(self) -> Floats:
         """The slip of each block at the end (m)."""
-        return self.final.blocks[at.SLIP].copy()
+        return np.array(self.final.blocks[at.SLIP])
 
     @property
     def slip_rate(self) -> Floats:
         """The slip rate of each block at the end (m/s)."""
-        return self.final.blocks[at.RATE].copy()
+        return np.array(self.final.blocks[at.RATE])
 
     def energy(self) -> ChainEnergy:
         """Return the energies at the end (J) and their balance."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
-from stickslip.extensions.chains.rows import RowsInMemory, Snapshots
+from stickslip.extensions.chains.rows import ChainRows, Snapshots
 from stickslip.extensions.chains.run import ChainRun
 from stickslip.extensions.chains.solver import ChainSolver
 from stickslip.foundation.arguments import shown
@@ -78,7 +78,7 @@ def simulate_chain(source: Chain | Scenario, options: CallOptions) -> ChainRun:
     keeps, options = kept_of(options), options.checked("simulate")
     path = options.checkpoint
     if path is None:
-        return followed(ChainSolver(chain, None, keeps == CHANGES), options, RowsInMemory(chain, options.title, keeps == CHANGES))
+        return followed(ChainSolver(chain, None, keeps == CHANGES), options, ChainRows(chain, options.title, keeps == CHANGES))
     if path.suffix != ".zarr":
         raise InputError(f"simulate: the checkpoint of a Chain is a folder NAME.zarr, got {shown(str(path))}")
     from stickslip.extensions.chains.store import ChainStore  # with zarr, which takes half a second to load
@@ -110,7 +110,7 @@ def resume_chain(path: Path, duration: float | str | WithUnit | None = None, **g
         return followed(ChainSolver(store.chain, state, store.keeps_changes), options, store)
 
 
-def followed(solver: ChainSolver, options: CallOptions, rows: RowsInMemory) -> ChainRun:
+def followed(solver: ChainSolver, options: CallOptions, rows: ChainRows) -> ChainRun:
     """Run a solver to the end of its run, with rows that go where they are kept."""
     run = ChainInProgress(options, solver, rows)
     return run_to_end(run, WholeHistory(run))
@@ -122,7 +122,7 @@ class ChainInProgress:
 
     options: CallOptions
     solver: ChainSolver
-    rows: RowsInMemory
+    rows: ChainRows
     length: int = 0
     """The number of calls of compiled code."""
     can_be_saved = True

@@ -19,12 +19,11 @@ from typing_extensions import override
 
 from stickslip.engine import engine_key
 from stickslip.extensions.chains.chain import Chain
-from stickslip.extensions.chains.rows import RowsInMemory, Snapshots
+from stickslip.extensions.chains.rows import ChainRows, Snapshots
 from stickslip.extensions.chains.store_layout import (
     CHAIN_FORMAT,
     CHANGE,
     CHUNK_ROWS,
-    COLUMNS,
     EVENT,
     FINAL,
     SNAPSHOT,
@@ -62,7 +61,7 @@ ROOM = "stickslip.resume continues from the last checkpoint when there is room"
 
 
 @dataclass(eq=False)
-class ChainStore(RowsInMemory):
+class ChainStore(ChainRows):
     """The rows of a run in a folder, with what the run needs to be continued."""
 
     path: Path = field(kw_only=True)
@@ -131,7 +130,7 @@ class ChainStore(RowsInMemory):
 
     @cached_property
     def _arrays(self) -> dict[str, Any]:
-        """The arrays of columns, by name."""
+        """The arrays of rows, by name."""
         group: Any = opened(self.path, "r+", use_consolidated=False)
         return dict(group.arrays())
 
@@ -148,14 +147,13 @@ class ChainStore(RowsInMemory):
         if not len(rows):
             return
         first, end = self.written[kind], self.written[kind] + len(rows)
+        array = self._arrays[kind]
         with CHAIN_FORMAT.reading(self.path), zarr_folder.writing(self.path, ROOM):  # a chunk that is not full is read first
-            for column, name in enumerate(COLUMNS[kind]):
-                array = self._arrays[f"{kind}.{name}"]
-                if array.shape[0] != end:
-                    array.resize((end,))
-                array[first:end] = rows[:, column]
-                for chunk in range(first // CHUNK_ROWS, -(-end // CHUNK_ROWS)):
-                    sync(self.path / f"{kind}.{name}" / f"c.{chunk}")
+            if array.shape[0] != end:
+                array.resize((end, array.shape[1]))
+            array[first:end] = rows
+            for chunk in range(first // CHUNK_ROWS, -(-end // CHUNK_ROWS)):
+                sync(self.path / kind / f"c.{chunk}.0")
         self.written[kind] = end
         parts[:] = [rows[:0]]
 
@@ -178,8 +176,8 @@ class ChainStore(RowsInMemory):
             CHAIN_FORMAT.kind: CHAIN_FORMAT.version,
             "engine": engine_key(*CODE),
             "digest": self.digest,
-            "events": self.written[EVENT],
-            "changes": self.written[CHANGE],
+            EVENT: self.written[EVENT],
+            CHANGE: self.written[CHANGE],
             "reached": reached,
             "every": self.snapshots.every,
             "calls": self.snapshots.calls,

@@ -1,14 +1,15 @@
 """The folder of zarr that holds the run of a chain: how it is laid out, and how it is read.
 
-It holds a column of events in each array `event.NAME`, one of changes in each `change.NAME` if they are kept, and as attributes the
-scenario and how the run ended: `xarray.open_zarr` opens it at any time. The file `state.nc` in it is the checkpoint, with the state
-from which the run continues, and how many rows belong to it.
+It holds the array `events`, a row for each, if they are kept the array `changes`, both with names and units of their columns, and
+as attributes the scenario and how the run ended: `xarray.open_zarr` opens it at any time. The file `state.nc` in it is the
+checkpoint, with the state from which the run continues, and how many rows belong to it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -38,8 +39,8 @@ STATE_FILE = "state.nc"
 """File of the checkpoint."""
 CHUNK_ROWS = 65_536
 """Rows in a chunk of a column."""
-EVENT, CHANGE = "event", "change"
-"""What a row is, and how the names of its columns begin."""
+EVENT, CHANGE = "events", "changes"
+"""The arrays of rows."""
 COLUMNS = {
     EVENT: dict(EVENT_UNITS),
     CHANGE: dict(zip(CHANGE_TYPE.names or (), ("s", "s", "1", "1", "m"), strict=True)),
@@ -84,18 +85,18 @@ def lay_out(place: Any, about: Mapping[str, Any]) -> None:
     """Create all arrays, without rows, and the attributes."""
     group: Any = zarr.create_group(place, attributes=dict(about))
     for kind in kinds_in(about):
-        for name, unit in COLUMNS[kind].items():
-            group.create_array(
-                f"{kind}.{name}",
-                shape=(0,),
-                chunks=(CHUNK_ROWS,),
-                dtype="float64",
-                dimension_names=(kind,),
-                attributes={"units": unit},
-                compressors=zarr_folder.COMPRESSED,
-                fill_value=np.nan,  # so that a chunk that is missing is noticed
-                chunk_key_encoding=zarr_folder.IN_ONE_FOLDER,
-            )
+        columns = COLUMNS[kind]
+        group.create_array(
+            kind,
+            shape=(0, len(columns)),
+            chunks=(CHUNK_ROWS, len(columns)),
+            dtype="float64",
+            dimension_names=(f"row_of_{kind}", f"column_of_{kind}"),
+            attributes={"columns": list(columns), "units_of_columns": list(columns.values())},
+            compressors=zarr_folder.COMPRESSED,
+            fill_value=np.nan,  # so that a chunk that is missing is noticed
+            chunk_key_encoding=zarr_folder.IN_ONE_FOLDER,
+        )
 
 
 def kinds_in(about: Mapping[str, Any]) -> tuple[str, ...]:
@@ -133,7 +134,7 @@ def in_attributes(status: Status) -> dict[str, Any]:
 # ---- reading what somebody else may have written -----------------------------------------------------------------------------
 
 
-class Checkpoint(NamedTuple):
+class ChainCheckpoint(NamedTuple):
     """What the checkpoint of a run says: the engine that made it, numbers of rows, states, and the time that is reached (s)."""
 
     engine: str
@@ -148,7 +149,7 @@ class Checkpoint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RowsInFolder:
-    """Rows of a run in a folder, of which a column is read when it is asked for: `rows[:, 2]`."""
+    """Rows of a run in a folder, which are read when a column is asked for: `rows[:, 2]`."""
 
     path: Path
     kind: str
@@ -157,11 +158,13 @@ class RowsInFolder:
     def __len__(self) -> int:
         return self.count
 
-    def __getitem__(self, where: tuple[slice, int]) -> Floats:
-        rows, column = where
-        name = list(COLUMNS[self.kind])[column]
+    def __getitem__(self, where: Any) -> Floats:
+        return np.asarray(self._all[where])
+
+    @cached_property
+    def _all(self) -> Floats:
         with CHAIN_FORMAT.reading(self.path):
-            return finite_column(opened(self.path), f"{self.kind}.{name}", self.count)[rows]
+            return finite_rows(opened(self.path), self.kind, self.count)
 
 
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
@@ -169,8 +172,8 @@ def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | 
     return CHAIN_FORMAT.opened(path, mode, use_consolidated)
 
 
-def finite_column(group: Any, name: str, count: int) -> Floats:
-    """Return the first rows of a column. Raises InputError if some of its numbers are missing."""
+def finite_rows(group: Any, name: str, count: int) -> Floats:
+    """Return the first rows of an array. Raises InputError if some of its numbers are missing."""
     found = np.asarray(group[name][:count])
     if len(found) != count or not np.isfinite(found).all():
         raise InputError(f"its array {name!r} has numbers that are missing or not finite")
@@ -208,7 +211,7 @@ def open_chain(path: Path) -> ChainRun:
         return ChainRun(chain, found.reached, rows[EVENT], rows.get(CHANGE), *states, status=status, title=title)
 
 
-def checkpoint_in(path: Path, chain: Chain) -> Checkpoint:
+def checkpoint_in(path: Path, chain: Chain) -> ChainCheckpoint:
     """Return the checkpoint in a folder. Raises InputError if it is missing, damaged, or that of another run."""
     group, file = opened(path, use_consolidated=False), path / STATE_FILE
     if not file.exists():
@@ -219,15 +222,25 @@ def checkpoint_in(path: Path, chain: Chain) -> Checkpoint:
     wanted = MemoryStore()
     lay_out(wanted, dict(group.attrs))
     kinds = kinds_in(group.attrs)
-    check_layout(zarr.open_group(wanted), group, [f"{kind}.{name}" for kind in kinds for name in COLUMNS[kind]])
-    rows = {kind: whole_number(about, f"{kind}s", path, 0) for kind in kinds}
+    check_layout(zarr.open_group(wanted), group, kinds)
+    rows = {kind: whole_number(about, kind, path, 0) for kind in kinds}
+    _check_rows(path, group, rows)
     arrays = {name: np.asarray(one.values) for name, one in variables.items()}
     empty = ChainState.empty(chain.count)
     many = len(arrays[f"{SNAPSHOT}now"])
     snapshots = [checked_state({name: arrays[SNAPSHOT + name][i] for name in empty.arrays}, chain) for i in range(many)]
     state, final = (checked_state({name: arrays[of + name] for name in empty.arrays}, chain) for of in ("", FINAL))
     counts = whole_number(about, "every", path, 1), whole_number(about, "calls", path, 0)
-    return Checkpoint(str(about["engine"]), rows, state, final, snapshots, number(about, "reached", path), *counts)
+    return ChainCheckpoint(str(about["engine"]), rows, state, final, snapshots, number(about, "reached", path), *counts)
+
+
+def _check_rows(path: Path, group: Any, rows: Mapping[str, int]) -> None:
+    """Refuse more rows than an array has, or rows without a file. Raises InputError."""
+    for name, count in rows.items():
+        array = group[name]
+        files = sum(1 for _ in (path / name).glob("c.*")) if count else 0
+        if count > min(array.shape[0], files * array.chunks[0]):
+            raise InputError(f"its array {name!r} has {array.shape[0]} rows in {files} files, and its {STATE_FILE} says {count}")
 
 
 def checked_state(arrays: Mapping[str, Any], chain: Chain) -> ChainState:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
@@ -16,8 +15,6 @@ from stickslip.foundation.quantities import Choice, Quantity, declare, fields_of
 from stickslip.problem.scenarios import ScenarioTable, read_part, without_owner
 
 if TYPE_CHECKING:
-    from importlib.resources.abc import Traversable
-
     from stickslip.extensions.chains.chain import Chain
     from stickslip.problem import Problem
     from stickslip.problem.scenarios import Key, Scenario, Source
@@ -126,10 +123,6 @@ class ChainTable(ScenarioTable):
     @override
     def problem(self, value: GivenChain, scenario: Scenario) -> Chain:
         return chain_of(value, scenario.problem)
-
-    @override
-    def examples(self) -> Traversable:
-        return Path(__file__).with_name("scenarios")
 
 
 def _check_law(law: dict[str, Any], source: Source) -> None:

@@ -25,9 +25,9 @@ class GivenMotionExtension(Extension):
 
     def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [motion]."""
-        from stickslip.extensions.given_motion.table import MotionTable
+        from stickslip.problem.scenarios import LateTable
 
-        return {MotionTable.name: MotionTable()}
+        return {"motion": LateTable("stickslip.extensions.given_motion.table:MotionTable")}
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `identify`."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
+from numpy.polynomial.legendre import leggauss
 
-from stickslip.engine.series.polynomial import TERMS, extremes
+from stickslip.engine.series.polynomial import extremes
+from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import driver_place, friction_at, time_of
 from stickslip.extensions.chains.compiled.memory import (
     COUNTED,
@@ -49,9 +50,7 @@ from stickslip.extensions.chains.compiled.series import moved, speed
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
-GAUSS_PLACES, GAUSS_WEIGHTS = (
-    0.5 * (one + shift) for one, shift in zip(np.polynomial.legendre.leggauss(10), (1.0, 0.0), strict=True)
-)
+GAUSS_PLACES, GAUSS_WEIGHTS = (0.5 * (one + shift) for one, shift in zip(leggauss(10), (1.0, 0.0), strict=True))
 """Places on [0, 1] and weights of Gauss's sum: with ten points it is exact for polynomials up to degree 19."""
 TWICE = 2 * TERMS
 """Number of powers of x in a square of a series."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.polynomial import NONE, TERMS
+from stickslip.engine.series.polynomial import NONE
+from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.accounts import (
     begin_event,
     dissipated,
@@ -24,6 +25,7 @@ from stickslip.extensions.chains.compiled.changes import (
     pass_knot,
     set_moving_at_start,
 )
+from stickslip.extensions.chains.compiled.lists import find_lists, first_due, moves_from_now, rests_from_now, rubbing
 from stickslip.extensions.chains.compiled.loads import set_due, time_of
 from stickslip.extensions.chains.compiled.memory import (
     ARREST,
@@ -43,7 +45,6 @@ from stickslip.extensions.chains.compiled.memory import (
     FREE,
     GOES_ON,
     HANGS,
-    HAVE_SLIPPED,
     HEAT,
     IN_EVENT,
     KNOT,
@@ -60,7 +61,6 @@ from stickslip.extensions.chains.compiled.memory import (
     SAMPLES,
     SINCE,
     SLIP,
-    SLIPPED,
     STEPS,
     STRENGTH,
     WATCHED,
@@ -90,133 +90,6 @@ LONGER, SHORTER, SHORTEST = 2.0, 1e-3, 1e-300
 a term overflows (1), and the shortest unit (s)."""
 SCAN = 16
 """To look at so many blocks costs about as much as a step of one."""
-
-
-UNKNOWN = -1
-"""In place of the block that is due first: it is to be looked for."""
-
-
-# ---- lists of blocks -------------------------------------------------------------------------------------------------------
-
-
-@kernel
-def find_lists(chain: ChainNumbers, state: Now, room: Room) -> None:
-    """Make the lists of moving blocks, of those beside them, and of those that have slipped; they follow from the modes."""
-    springs, count = chain.springs, len(chain.blocks.mass)
-    room.counts[MOVING] = room.counts[WATCHED] = room.counts[HAVE_SLIPPED] = 0
-    for j in range(count):
-        room.near[j] = 0
-    for j in range(count):
-        if state.whole[SLIPPED, j] == 1:
-            room.slipped[room.counts[HAVE_SLIPPED]] = j
-            room.counts[HAVE_SLIPPED] += 1
-        if state.whole[MODE, j] != REST:
-            room.moving[room.counts[MOVING]] = j
-            room.counts[MOVING] += 1
-            for place in range(springs.starts[j], springs.starts[j + 1]):
-                if springs.springs[place] != 0.0:
-                    room.near[springs.neighbours[place]] += 1
-    for j in range(count):
-        if room.near[j] > 0 and state.whole[MODE, j] == REST:
-            room.watched[room.counts[WATCHED]] = j
-            room.counts[WATCHED] += 1
-    find_first_due(state, room)
-
-
-@kernel
-def find_first_due(state: Now, room: Room) -> None:
-    """Look for the block that is due first."""
-    first, least = 0, state.blocks[DUE, 0]
-    for j in range(1, len(state.blocks[DUE])):
-        if state.blocks[DUE, j] < least:
-            first, least = j, state.blocks[DUE, j]
-    room.counts[FIRST_DUE] = first
-
-
-@kernel
-def drop_due(state: Now, room: Room, j: int) -> None:
-    """Write that a block is not due at a known time any more."""
-    state.blocks[DUE, j] = math.inf
-    if room.counts[FIRST_DUE] == j:
-        room.counts[FIRST_DUE] = UNKNOWN
-
-
-@kernel
-def insert_moving(room: Room, j: int) -> None:
-    """Put a block into the list of moving ones, which is sorted."""
-    n = room.counts[MOVING]
-    while n > 0 and room.moving[n - 1] > j:
-        room.moving[n] = room.moving[n - 1]
-        n -= 1
-    room.moving[n] = j
-    room.counts[MOVING] += 1
-
-
-@kernel
-def moves_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
-    """Put a block that has begun to slip into the lists, and its neighbours at rest among those that are watched."""
-    springs = chain.springs
-    insert_moving(room, j)
-    note_slipping(state, room, j)
-    drop_due(state, room, j)
-    if room.near[j] > 0:
-        forget_watched(room, j)
-    for place in range(springs.starts[j], springs.starts[j + 1]):
-        other = springs.neighbours[place]
-        if springs.springs[place] != 0.0:
-            room.near[other] += 1
-            if room.near[other] == 1 and state.whole[MODE, other] == REST:
-                room.watched[room.counts[WATCHED]] = other
-                room.counts[WATCHED] += 1
-                drop_due(state, room, other)
-
-
-@kernel
-def forget_watched(room: Room, j: int) -> None:
-    """Take a block from the list of those that are watched."""
-    last = room.counts[WATCHED] - 1
-    for n in range(last + 1):
-        if room.watched[n] == j:
-            room.watched[n] = room.watched[last]
-            room.counts[WATCHED] = last
-            return
-
-
-@kernel
-def rests_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
-    """Take a block that has come to rest from the list of moving ones, and let neighbours be that no moving block is beside."""
-    springs, n = chain.springs, 0
-    while room.moving[n] != j:
-        n += 1
-    for m in range(n + 1, room.counts[MOVING]):
-        room.moving[m - 1] = room.moving[m]
-    room.counts[MOVING] -= 1
-    for place in range(springs.starts[j], springs.starts[j + 1]):
-        other = springs.neighbours[place]
-        if springs.springs[place] != 0.0:
-            room.near[other] -= 1
-            if room.near[other] == 0 and state.whole[MODE, other] == REST:
-                forget_watched(room, other)
-                becomes_quiet(chain, state, room, other)
-    if room.near[j] > 0:
-        room.watched[room.counts[WATCHED]] = j
-        room.counts[WATCHED] += 1
-    else:
-        becomes_quiet(chain, state, room, j)
-
-
-@kernel
-def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
-    """Write when a block is due that rests among resting ones."""
-    set_due(chain, state, j)
-    first = room.counts[FIRST_DUE]
-    if first >= 0 and (
-        state.blocks[DUE, j] < state.blocks[DUE, first] or (state.blocks[DUE, j] == state.blocks[DUE, first] and j < first)
-    ):
-        room.counts[FIRST_DUE] = j
-
-
-# ---- steps -----------------------------------------------------------------------------------------------------------------
 
 
 @kernel
@@ -296,7 +169,7 @@ def change_blocks(chain: ChainNumbers, state: Now, room: Room, kept: Kept, place
         elif kind == ARREST:
             note_change(state, room, kept, j, arrest(chain, state, j))
         else:
-            begin_slip(chain, state, room, kept, j, BACKWARD if kind == ONSET_BACK else FORWARD)
+            begin_slip(state, room, kept, j, BACKWARD if kind == ONSET_BACK else FORWARD)
     for n in range(found):
         j = room.changed[n]
         if room.kinds[j] == ARREST and state.whole[MODE, j] == REST:
@@ -304,6 +177,15 @@ def change_blocks(chain: ChainNumbers, state: Now, room: Room, kept: Kept, place
         elif room.kinds[j] == ONSET or room.kinds[j] == ONSET_BACK:
             moves_from_now(chain, state, room, j)
     return found
+
+
+@kernel
+def begin_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: float) -> None:
+    """Let blocks slip that are due at a time (s), which is now, in the event in progress or in a new one."""
+    if state.now[IN_EVENT] == 0.0:
+        state.now[ORIGIN], state.now[SINCE] = time, 0.0
+        begin_event(chain, state, room.counts[FIRST_DUE])
+    start_due(chain, state, room, kept, time)
 
 
 @kernel
@@ -315,33 +197,39 @@ def start_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: flo
             room.changed[found] = j
             found += 1
     for n in range(found):
-        begin_slip(chain, state, room, kept, room.changed[n], FORWARD if chain.pull_rate > 0.0 else BACKWARD)
+        begin_slip(state, room, kept, room.changed[n], FORWARD if chain.pull_rate > 0.0 else BACKWARD)
     for n in range(found):
         moves_from_now(chain, state, room, room.changed[n])
     return found
 
 
 @kernel
-def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
-    """Take a step of the moving blocks, and the changes at its end; return DONE if it would lead beyond the time to reach."""
-    now = state.now
-    unit = UNIT / chain.fastest
-    if chain.all_straight == 0 and now[LAST_STEP] > 0.0:
-        unit = min(unit, LONGER * now[LAST_STEP])
+def expand(chain: ChainNumbers, state: Now, room: Room) -> float:
+    """Write the series of the moving blocks over a step, and return its length (s); inf if a term is no number."""
+    unit, last = UNIT / chain.fastest, state.now[LAST_STEP]
+    if chain.all_straight == 0 and last > 0.0:
+        unit = min(unit, LONGER * last)
     write_series(chain, state, room, unit)
     while not is_finite(room) and unit > SHORTEST:
         unit *= SHORTER
         write_series(chain, state, room, unit)
-    length = length_of_step(room)
-    if not (is_finite(room) and length > 0.0):
+    share = length_of_step(room)
+    if not (is_finite(room) and share > 0.0):
+        return math.inf
+    stretch_series(room, share)
+    room.span[0] = share * unit
+    return room.span[0]
+
+
+@kernel
+def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+    """Take a step of the moving blocks, and the changes at its end; return DONE if it would lead beyond the time to reach."""
+    now, length = state.now, expand(chain, state, room)
+    if length == math.inf:
         return NOT_FINITE
-    stretch_series(room, length)
-    length *= unit
     left = (limits.until - now[ORIGIN]) - now[SINCE]
-    place = first_place(chain, state, room, length)
-    if room.counts[FIRST_DUE] == UNKNOWN:
-        find_first_due(state, room)
-    due = state.blocks[DUE, room.counts[FIRST_DUE]]
+    place = first_place(chain, state, room)
+    due = first_due(state, room)
     due_place = max(0.0, ((due - now[ORIGIN]) - now[SINCE]) / length) if due < math.inf else NONE
     end = min(1.0, min(place, due_place))
     if end * length > left:
@@ -351,20 +239,15 @@ def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits
         return DONE
     take_samples(state, room, kept, length, end * length)
     now[DEFECT] = max(now[DEFECT], remainder_of_step(room, length * chain.fastest))
-    was_resting = rubbing(chain, state, room) == 0
     commit(chain, state, room, length, end)
     now[LAST_STEP] = length
     if chain.all_straight == 0:
         measure_end(chain, state, room, length, end)
-    found = 0
-    if due_place == end and was_resting:
-        now[ORIGIN], now[SINCE] = due, 0.0
-        begin_event(chain, state, room.counts[FIRST_DUE])
     if place == end:
-        found += change_blocks(chain, state, room, kept, end)
+        change_blocks(chain, state, room, kept, end)
     if due_place == end:
-        found += start_due(chain, state, room, kept, due)
-    if now[IN_EVENT] == 1.0 and rubbing(chain, state, room) == 0:
+        begin_due(chain, state, room, kept, due)
+    if now[IN_EVENT] == 1.0 and rubbing(state, room) == 0:
         finish_event(chain, state, room, kept)
     return GOES_ON
 
@@ -399,22 +282,10 @@ def finish_event(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> Non
 
 
 @kernel
-def rubbing(chain: ChainNumbers, state: Now, room: Room) -> int:
-    """Return how many blocks slip against friction."""
-    found = 0
-    for n in range(room.counts[MOVING]):
-        if state.whole[MODE, room.moving[n]] != FREE:
-            found += 1
-    return found
-
-
-@kernel
 def pass_rest(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
     """Pass over rest of all blocks at once, to the next onset; return DONE if it lies beyond the time to reach."""
     now = state.now
-    if room.counts[FIRST_DUE] == UNKNOWN:
-        find_first_due(state, room)
-    due, here = state.blocks[DUE, room.counts[FIRST_DUE]], time_of(state)
+    due, here = first_due(state, room), time_of(state)
     beyond = not due <= limits.until
     to = limits.until if beyond else due
     take_samples(state, room, kept, 0.0, (to - now[ORIGIN]) - now[SINCE])
@@ -427,8 +298,7 @@ def pass_rest(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: L
     now[ORIGIN], now[SINCE] = to, 0.0
     if beyond:
         return DONE
-    begin_event(chain, state, room.counts[FIRST_DUE])
-    start_due(chain, state, room, kept, due)
+    begin_due(chain, state, room, kept, due)
     return GOES_ON
 
 

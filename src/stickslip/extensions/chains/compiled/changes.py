@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.polynomial import NONE, TERMS, first_descent
+from stickslip.engine.series.polynomial import NONE, first_descent
+from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import load_on, piece_of, put_to_rest, sliding_strength, static_step, time_of
 from stickslip.extensions.chains.compiled.memory import (
     ARREST,
@@ -32,7 +33,6 @@ from stickslip.extensions.chains.compiled.memory import (
     ONSET,
     PIECE,
     RATE,
-    REST,
     SINCE,
     SLIP,
     STRENGTH,
@@ -48,7 +48,7 @@ from stickslip.foundation.kernels.kernels import exact, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
 ONSET_BACK = 4
-"""Kind of change inside a step, besides those that are kept: a block at rest begins to slip backward."""
+"""Kind of change inside a step, besides those that are kept: a block at rest begins to slip back."""
 
 TOUCH, ROUNDED_FORCE = 1e-13, 4e-15
 """A slip rate that falls below 0 by no more than this share (1) of its size in the step, and of what a force of this share (1) of the
@@ -68,8 +68,8 @@ def note_change(state: Now, room: Room, kept: Kept, j: int, kind: int) -> None:
 
 
 @kernel
-def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int, length: float) -> None:
-    """Write where in the step (of a length in s) a moving block first comes to rest or passes a knot of its law."""
+def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Write where in the step a moving block first comes to rest or passes a knot of its law."""
     mode, row, line, spare = state.whole[MODE, j], room.series[j], room_for(TERMS), room_for(TERMS)
     room.places[j] = NONE
     if mode == FREE:
@@ -82,6 +82,7 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int, length: 
         size = 0.0
         for k in range(TERMS):
             size += abs(line[k])
+        length = room.span[0]
         line[0] += TOUCH * size + ROUNDED_FORCE * state.blocks[STRENGTH, j] / chain.blocks.mass[j] * length * length
         if first_descent(line, spare) == NONE:
             room.places[j] = NONE
@@ -103,11 +104,11 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int, length: 
 
 
 @kernel
-def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int, length: float) -> None:
-    """Write where in the step (of a length in s) a block at rest beside moving ones first reaches its strength."""
+def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+    """Write where in the step a block at rest beside moving ones first reaches its strength."""
     load, margin, spare = room_for(TERMS), room_for(TERMS), room_for(TERMS)
     strength, edge = state.blocks[STRENGTH, j], state.whole[EDGE, j]
-    write_load(chain, state, room, j, length, load)
+    write_load(chain, state, room, j, load)
     for k in range(1, TERMS):
         margin[k] = -load[k]
     margin[0] = 0.0 if edge == 1 else strength - load[0]
@@ -122,20 +123,20 @@ def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int, length: fl
 
 
 @kernel
-def first_place(chain: ChainNumbers, state: Now, room: Room, length: float) -> float:
+def first_place(chain: ChainNumbers, state: Now, room: Room) -> float:
     """Look for changes of moving blocks and those beside them in a step, and return the first place of one in [0, 1]; NONE."""
     first = NONE
     for n in range(room.counts[MOVING]):
-        find_in_moving(chain, state, room, room.moving[n], length)
+        find_in_moving(chain, state, room, room.moving[n])
         first = min(first, room.places[room.moving[n]])
     for n in range(room.counts[WATCHED]):
-        find_at_rest(chain, state, room, room.watched[n], length)
+        find_at_rest(chain, state, room, room.watched[n])
         first = min(first, room.places[room.watched[n]])
     return first
 
 
 @kernel
-def begin_slip(chain: ChainNumbers, state: Now, room: Room, kept: Kept, j: int, mode: int) -> None:
+def begin_slip(state: Now, room: Room, kept: Kept, j: int, mode: int) -> None:
     """Let a block leave rest exactly at its strength."""
     state.whole[MODE, j], state.whole[EDGE, j] = mode, mode
     state.blocks[RATE, j] = 0.0
@@ -186,10 +187,4 @@ def set_moving_at_start(chain: ChainNumbers, state: Now, j: int) -> int:
         state.whole[MODE, j] = FORWARD
     elif load < -strength and chain.forward_only == 0:
         state.whole[MODE, j] = BACKWARD
-    return state.whole[MODE, j]
-
-
-@kernel
-def is_at_rest(state: Now, j: int) -> bool:
-    """Return True if a block rests."""
-    return state.whole[MODE, j] == REST
+    return int(state.whole[MODE, j])

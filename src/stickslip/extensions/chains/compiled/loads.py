@@ -34,13 +34,13 @@ ROOM_OF_VALUE = 4
 @exact
 def time_of(state: Now) -> float:
     """Return the time (s)."""
-    return state.now[ORIGIN] + state.now[SINCE]
+    return float(state.now[ORIGIN] + state.now[SINCE])
 
 
 @exact
 def driver_place(chain: ChainNumbers, state: Now) -> float:
     """Return the place of the driver (m)."""
-    return chain.pull_rate * state.now[ORIGIN] + chain.pull_rate * state.now[SINCE]
+    return float(chain.pull_rate * state.now[ORIGIN] + chain.pull_rate * state.now[SINCE])
 
 
 @exact
@@ -55,7 +55,7 @@ def load_on(chain: ChainNumbers, state: Now, j: int) -> float:
         found += one + other
     if (last - first) % 2 == 1:
         found += springs.springs[last - 1] * (slips[springs.neighbours[last - 1]] - own)
-    return found - springs.walls[j] * own + chain.blocks.stiffness[j] * (driver_place(chain, state) - own)
+    return float(found - springs.walls[j] * own + chain.blocks.stiffness[j] * (driver_place(chain, state) - own))
 
 
 @exact
@@ -64,22 +64,22 @@ def friction_at(chain: ChainNumbers, state: Now, j: int, counted: float, rate: f
     law, piece, laws = chain.blocks.law[j], state.whole[PIECE, j], chain.laws
     along = counted - laws.references[law, piece]
     if laws.rules[law, STRAIGHT] == 1:
-        return chain.blocks.normal[j] * (laws.levels[law, piece] + laws.slopes[law, piece] * along)
+        return float(chain.blocks.normal[j] * (laws.levels[law, piece] + laws.slopes[law, piece] * along))
     out = room_for(ROOM_OF_VALUE)
     call_value(laws.values_at[law, piece], floats(laws.constants_at[law, piece]), along, rate, out)
-    return chain.blocks.normal[j] * (laws.levels[law, piece] + out[0])
+    return float(chain.blocks.normal[j] * (laws.levels[law, piece] + out[0]))
 
 
 @exact
 def sliding_strength(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return the magnitude of friction (N) on a block that slips, at its slip and slip rate."""
-    return friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE, j]))
+    return float(friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE, j])))
 
 
 @exact
 def static_step(chain: ChainNumbers, j: int) -> float:
     """Return the step (N) from static to sliding friction."""
-    return chain.blocks.normal[j] * chain.laws.excess[chain.blocks.law[j]]
+    return float(chain.blocks.normal[j] * chain.laws.excess[chain.blocks.law[j]])
 
 
 @exact

@@ -84,7 +84,9 @@ class Laws(NamedTuple):
 
 
 class ChainNumbers(NamedTuple):
-    """A chain as numbers. `fastest` (1/s) bounds the frequency of any of its motions; `all_stiffness` (N/m) is that of all springs to the driver."""
+    """A chain as numbers. `fastest` (1/s) bounds the frequency of any of its motions, `all_stiffness` (N/m) is
+    that of all springs to the driver, and `all_straight` is 1 if all laws are straight in slip.
+    """
 
     springs: Springs
     blocks: Blocks
@@ -116,6 +118,8 @@ class Room(NamedTuple):
     slipped: Integers1
     changed: Integers1
     counts: Integers1
+    span: Floats1
+    """One number: the unit of time (s) of the series, first a guess, and then the length of the step."""
 
 
 MOVING, WATCHED, HAVE_SLIPPED, FIRST_DUE, CHANGE_ROWS, EVENT_ROWS, SAMPLES = range(7)

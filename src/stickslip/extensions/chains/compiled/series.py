@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.polynomial import TERMS
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
+from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import load_on, sliding_strength, static_step
 from stickslip.extensions.chains.compiled.memory import (
     BACKWARD,
@@ -28,6 +28,7 @@ from stickslip.extensions.chains.compiled.memory import (
     Now,
     Room,
 )
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact, inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import call_jet, floats, room_for
 
@@ -59,7 +60,7 @@ def load_term(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> fl
     if (last - first) % 2 == 1:
         a = springs.neighbours[last - 1]
         found += springs.springs[last - 1] * ((0.0 if modes[a] == REST else series[a, k]) - own)
-    return found - (springs.walls[j] + chain.blocks.stiffness[j]) * own
+    return float(found - (springs.walls[j] + chain.blocks.stiffness[j]) * own)
 
 
 @exact
@@ -67,12 +68,12 @@ def first_force(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return the net force (N) on a moving block now; where it leaves rest at its strength, the step of its friction."""
     mode, edge = state.whole[MODE, j], state.whole[EDGE, j]
     if edge != 0:
-        return edge * static_step(chain, j)
+        return float(edge * static_step(chain, j))
     force = load_on(chain, state, j) - chain.blocks.damping[j] * state.blocks[RATE, j]
     if mode == FREE:
-        return force
+        return float(force)
     friction = sliding_strength(chain, state, j)
-    return force + friction if mode == BACKWARD else force - friction
+    return float(force + friction if mode == BACKWARD else force - friction)
 
 
 @exact
@@ -82,7 +83,7 @@ def weakening_of(chain: ChainNumbers, state: Now, j: int) -> float:
     if mode == FREE:
         return 0.0
     slope = chain.blocks.normal[j] * chain.laws.slopes[law, state.whole[PIECE, j]]
-    return -slope if mode == BACKWARD and chain.laws.rules[law, COUNTS_NET] == 1 else slope
+    return float(-slope if mode == BACKWARD and chain.laws.rules[law, COUNTS_NET] == 1 else slope)
 
 
 @exact
@@ -95,9 +96,9 @@ def begin_series(chain: ChainNumbers, state: Now, room: Room, j: int, unit: floa
 
 
 @exact
-def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int, unit: float) -> None:
+def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> None:
     """Write order k + 2 of the series of a block whose friction is straight in slip."""
-    blocks, row = chain.blocks, room.series[j]
+    blocks, row, unit = chain.blocks, room.series[j], room.span[0]
     force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * row[k]
     if k == 1:
         force += blocks.stiffness[j] * chain.pull_rate * unit
@@ -109,13 +110,13 @@ def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int, unit
 @exact
 def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> None:
     """Write the series of all moving blocks, in powers of the time in units (s)."""
-    count = room.counts[MOVING]
+    count, room.span[0] = room.counts[MOVING], unit
     for n in range(count):
         begin_series(chain, state, room, room.moving[n], unit)
     if chain.all_straight == 1:
         for k in range(1, TERMS - 2):
             for n in range(count):
-                next_order(chain, state, room, room.moving[n], k, unit)
+                next_order(chain, state, room, room.moving[n], k)
         return
     for n in range(count):
         for k in range(3, TERMS):
@@ -125,7 +126,7 @@ def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> No
             j = room.moving[n]
             if state.whole[MODE, j] == FREE or chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 1:
                 for k in range(1, TERMS - 2):
-                    next_order(chain, state, room, j, k, unit)
+                    next_order(chain, state, room, j, k)
             else:
                 series_of_formula(chain, state, room, j, unit)
 
@@ -173,7 +174,7 @@ def length_of_step(room: Room) -> float:
         length = longest
         if length > SHORT:
             break
-    return length
+    return float(length)
 
 
 @exact
@@ -195,31 +196,31 @@ def remainder_of_step(room: Room, phase: float) -> float:
         row = room.series[room.moving[n]]
         motion = max(motion, abs(row[1]) + abs(row[2]) + abs(row[3]))
         left_out = max(left_out, abs(row[TERMS - 2]) + abs(row[TERMS - 1]))
-    return 0.5 * phase * phase * math.cosh(phase) * left_out / motion if motion > 0.0 else 0.0
+    return float(0.5 * phase * phase * math.cosh(phase) * left_out / motion if motion > 0.0 else 0.0)
 
 
 @inlined
-def moved(row: object, x: float) -> float:
+def moved(row: Floats, x: float) -> float:
     """Return the slip (m) since the start of the step at x."""
     value = row[TERMS - 1]
     for k in range(TERMS - 2, 0, -1):
         value = value * x + row[k]
-    return value * x
+    return float(value * x)
 
 
 @inlined
-def speed(row: object, x: float) -> float:
+def speed(row: Floats, x: float) -> float:
     """Return d slip/dx (m) at x."""
     value = (TERMS - 1.0) * row[TERMS - 1]
     for k in range(TERMS - 2, 0, -1):
         value = value * x + k * row[k]
-    return value
+    return float(value)
 
 
 @exact
-def write_load(chain: ChainNumbers, state: Now, room: Room, j: int, length: float, out: object) -> None:
-    """Write the series of the load (N) on a block at rest over a step of a length (s)."""
+def write_load(chain: ChainNumbers, state: Now, room: Room, j: int, out: Floats) -> None:
+    """Write the series of the load (N) on a block at rest over the step."""
     out[0] = load_on(chain, state, j)
     for k in range(1, TERMS):
         out[k] = load_term(chain, state, room, j, k)
-    out[1] += chain.blocks.stiffness[j] * chain.pull_rate * length
+    out[1] += chain.blocks.stiffness[j] * chain.pull_rate * room.span[0]
