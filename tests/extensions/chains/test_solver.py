@@ -119,6 +119,7 @@ CURVED = {
     "rate": ss.friction.HyperbolicRate(1.0, 0.6, 3.0),
     "slip": ss.friction.ExponentialSlipWeakening(1.0, 0.7, 0.1, memory="since-arrest"),
     "net slip": ss.friction.SinusoidalSlip(1.0, 0.2, 10.0),
+    "Carlson and Langer": ss.friction.FromExpression("(1 - s)/(1 + 2*a*v/(1 - s))", static=1.0, s=0.05, a=2.0),
     "knots": ss.friction.ParabolicSlipWeakening(1.0, 0.7, 0.2, 0.02),
 }
 
@@ -130,7 +131,7 @@ def test_laws_that_are_not_straight_agree_with_dop853(name, seed):
     normal, start, mass = rng.uniform(0.8, 1.4, 4), rng.uniform(-0.05, 0.05, 4), rng.uniform(0.7, 1.5, 4)
     laws = [CURVED[name], CURVED[name], COULOMB, CURVED[name]] if seed else CURVED[name]
     one = ss.Chain(laws, 4, mass, 1.3, 1.0, normal, 1e-2, damping=0.2 * seed, initial_slip=start)
-    run, other = solve_chain(one, 150.0, keep="changes"), solve(one, 150.0)
+    run, other = solve_chain(one, 110.0, keep="changes"), solve(one, 110.0)
     own = changes_but_knots(run)
     assert own["block"].tolist() == other.changes[:, 1].tolist()
     assert own["time"] == pytest.approx(other.changes[:, 0], rel=0, abs=1e-6)

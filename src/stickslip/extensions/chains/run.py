@@ -122,8 +122,9 @@ class ChainRun(NamesAttributes):
     def events(self) -> NDArray[Any]:
         """The finished events, as a structured array.
 
-        Its columns are the time of the first onset (s), first_block, size (number of blocks that slipped), moment (sum of their slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work
-        of the driver, springs before and after.
+        Its columns are the time of the first onset (s), first_block, size (number of blocks that slipped), moment (sum of their
+        slip, m), duration (s), largest_rate (m/s), and energies (J): heat of friction, heat in dashpots, work of the driver, and
+        that of springs before and after.
         """
         return structured(self.event_rows, EVENT_TYPE)
 
@@ -218,8 +219,8 @@ class ChainRun(NamesAttributes):
         placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"
         if all(is_straight(law) for law in self.chain.laws[0]):
             return (
-                f"In each of {steps} steps the terms left out of the series move no block further than {left_out:.1e} of the largest "
-                f"motion in the step (proven, but for rounding), and {placed}."
+                f"In each of {steps} steps the terms left out of the series move no block further than {left_out:.1e} of the "
+                f"largest motion in the step (proven, but for rounding), and {placed}."
             )
         return (
             f"At the end of each of {steps} steps the equation of every block holds to {lacks:.1e} of its strength (measured, not "

@@ -168,7 +168,7 @@ def integral_of_slip(room: Room, j: int, place: float) -> float:
 
 @kernel
 def heat_of_step(chain: ChainNumbers, state: Now, room: Room, j: int, span: tuple[float, float]) -> float:
-    """Return the heat (J) of a block's friction over a step, before the block is moved; `span` is its length (s), and the place of its end.
+    """Return the heat (J) of a block's friction over a step, before the block is moved; `span` is its length (s) and its end.
 
     It is exact for friction that is straight in slip; for any other law it is the sum of Gauss over the law's own values.
     """

@@ -51,8 +51,8 @@ ONSET_BACK = 4
 """Kind of change inside a step, besides those that are kept: a block at rest begins to slip back."""
 
 TOUCH, ROUNDED_FORCE = 1e-13, 4e-15
-"""A slip rate that falls below 0 by no more than this share (1) of its size in the step, and of what a force of this share (1) of the
-strength makes of it, touches 0 but for rounding: that is no arrest."""
+"""A slip rate that falls below 0 by no more than the first share (1) of its size in the step, and what a force of the second share
+(1) of the strength makes of it, touches 0 but for rounding: that is no arrest."""
 
 
 @kernel

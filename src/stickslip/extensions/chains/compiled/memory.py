@@ -68,8 +68,8 @@ class Laws(NamedTuple):
     """The laws, piece by piece of slip, from one knot (m) to the next.
 
     Where a law is straight in slip, mu = level + slope times the counted slip, less the reference (m). Any other law has functions
-    of its formula at addresses, and mu is the level plus what they return. `rules` has for each law 1 if it counts net slip, 1 if it
-    forgets slip at an arrest, and 1 if it is straight; `excess` is the step (1) from sliding to static friction.
+    of its formula at addresses, and mu is the level plus what they return. `rules` has for each law 1 if it counts net slip, 1 if
+    it forgets slip at an arrest, and 1 if it is straight; `excess` is the step (1) from sliding to static friction.
     """
 
     knots: Floats2
@@ -84,8 +84,10 @@ class Laws(NamedTuple):
 
 
 class ChainNumbers(NamedTuple):
-    """A chain as numbers. `fastest` (1/s) bounds the frequency of any of its motions, `all_stiffness` (N/m) is
-    that of all springs to the driver, and `all_straight` is 1 if all laws are straight in slip.
+    """A chain as numbers.
+
+    `fastest` (1/s) bounds the frequency of any of its motions, `all_stiffness` (N/m) is that of all springs to the driver, and
+    `all_straight` is 1 if all laws are straight in slip.
     """
 
     springs: Springs

@@ -190,7 +190,7 @@ def stretch_series(room: Room, length: float) -> None:
 
 @kernel
 def remainder_of_step(room: Room, phase: float) -> float:
-    """Return a bound of the remainder of the series over a step, as a share of the motion in it; `phase` is fastest times length."""
+    """Return a bound of the remainder of the series over a step, as a share of its motion; `phase` is fastest times length."""
     motion = left_out = 0.0
     for n in range(room.counts[MOVING]):
         row = room.series[room.moving[n]]
