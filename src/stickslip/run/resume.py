@@ -41,7 +41,8 @@ def resume(
     ----------
     path : str or Path
         File of a run (.nc) that `simulate`, `Solution.to_netcdf` or Ctrl-C left, or a catalogue's NAME.checkpoint.nc, with the
-        catalogue's rows in the same folder; the file of a run of a `MovedContact`; or the folder (.zarr) of that of a `PlanarSlab`.
+        catalogue's rows in the same folder; the file of a run of a `MovedContact`; or the folder (.zarr) of that of a `PlanarSlab`
+        or a `Chain`.
     duration : float or str, optional
         New end of the run, counted from its start: a number in s, or a text with a unit. The previous one by default.
     {options}

@@ -67,8 +67,8 @@ def _in_small_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_run_that_is_killed_goes_on_from_its_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The rows after the checkpoint are in the folder already, and are written again."""
-    monkeypatch.setattr(store_layout, "CHUNK_ROWS", 50)
-    monkeypatch.setattr("stickslip.extensions.chains.store.CHUNK_ROWS", 50)
+    monkeypatch.setattr(store_layout, "ROWS_OF_CHUNK", 50)
+    monkeypatch.setattr("stickslip.extensions.chains.store.ROWS_OF_CHUNK", 50)
     _in_small_steps(monkeypatch)
     folder, calls = tmp_path / "a.zarr", []
 
@@ -98,6 +98,15 @@ def test_ctrl_c_leaves_a_folder_that_goes_on(tmp_path: Path, monkeypatch: pytest
     assert 3 < len(stopped.events) < len(whole.events)
     assert np.array_equal(stopped.events, whole.events[: len(stopped.events)])
     _same(ss.resume(tmp_path / "a.zarr"), whole)
+
+
+def test_a_chain_under_a_smooth_law_is_resumed_bit_for_bit(tmp_path: Path) -> None:
+    law = ss.friction.HyperbolicRate(static=1.0, dynamic=0.7, alpha=10.0)
+    chain = ss.Chain(law, [2, 3], 1.0, (2.0, 3.0), 1.0, ss.Drawn("uniform", 0.9, 1.1, seed=2), 1e-2, damping=0.1)
+    whole = ss.simulate(chain, 400.0, keep="changes")
+    first = ss.simulate(chain, float(whole.events["time"][3]) + 0.3, keep="changes", checkpoint=tmp_path / "a.zarr")
+    assert first.slip_rate.any()  # it stops within an event
+    _same(ss.resume(tmp_path / "a.zarr", 400.0), whole)
 
 
 @pytest.mark.parametrize("many", [1, 17])
@@ -183,11 +192,15 @@ def _negative(arrays: Any, attributes: Any) -> None:
     attributes["changes"] = -1
 
 
+def _fewer(arrays: Any, attributes: Any) -> None:
+    attributes["events"] -= 1
+
+
 def _other(arrays: Any, attributes: Any) -> None:
     attributes["digest"] = "0"
 
 
-@pytest.mark.parametrize("change", [_piece, _block, _nan, _rows, _negative, _other])
+@pytest.mark.parametrize("change", [_piece, _block, _nan, _rows, _negative, _fewer, _other])
 def test_a_state_that_no_run_has_is_refused_in_one_line(kept: Path, tmp_path: Path, change: Any) -> None:
     folder = tmp_path / "b.zarr"
     shutil.copytree(kept, folder)

@@ -33,7 +33,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import number
-from stickslip.problem import Problem
+from stickslip.problem import Problem, block_for
 from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.scenarios import read_source
 from stickslip.run import Study, TextProgress, telling, uninterrupted
@@ -45,8 +45,8 @@ if TYPE_CHECKING:
 
 HALF, WHOLE = "half", "whole"
 """The first block has half of the mass of the others, or the same."""
-TIMES = 2_001
-"""Number of even times at which slip is compared."""
+TIMES_COMPARED = 2_001
+"""Slip is compared at so many even times."""
 MOST_ROUND_TRIPS = 1_000
 """Compare for at most so many round trips: the blocks without friction never rest, and no time is passed over."""
 MOST_BLOCKS = 4_096
@@ -56,7 +56,7 @@ TENTHS = (0.1, 0.9)
 AIRY_WIDTH, AIRY_PEAK = 2.167643, 1.274352
 """The distance between the first tenth and the first nine tenths of the integral of Airy's function from infinity, and its peak."""
 AROUND_FRONT = 6.0
-"""Look for a front at so many of its lengths before and after the time at which the slab has it."""
+"""Look for a front so many of its lengths before and after that of the slab."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -167,7 +167,7 @@ def chain_beside_slab(
             "without friction never rest, so that no time is passed over"
         )
     counts = checked_counts(blocks)
-    times = np.linspace(0.0, lasts, TIMES)
+    times = np.linspace(0.0, lasts, TIMES_COMPARED)
     runs: dict[tuple[int, str], ChainRun] = {}
     rows: list[dict[str, Any]] = []
     with telling(progress, "chain_beside_slab") as tell:
@@ -191,7 +191,7 @@ def checked_slab(problem: Problem) -> ElasticSlab:
     """Return the slab of a problem that a chain can stand for. Raises InputError."""
     body = problem.body
     why = ""
-    if not isinstance(body, ElasticSlab) or body.contact_mass or not body.is_driven_rigidly or problem.driver_changes:
+    if not isinstance(body, ElasticSlab) or body.contact_mass or not _has_block(problem):
         why = "needs an ElasticSlab under a rigid driver, whose contact has no mass"
     elif problem.varies or problem.ground is not None:
         why = "needs a constant pull rate and normal stress, and ground that does not move"
@@ -201,6 +201,15 @@ def checked_slab(problem: Problem) -> ElasticSlab:
         raise InputError(f"chain_beside_slab: {why}")
     assert isinstance(body, ElasticSlab)
     return body
+
+
+def _has_block(problem: Problem) -> bool:
+    """Return True if a block can stand for the body, which needs a rigid driver."""
+    try:
+        block_for(problem)
+    except InputError:
+        return False
+    return True
 
 
 def checked_counts(blocks: Any) -> list[int]:

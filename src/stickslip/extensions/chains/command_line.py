@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from stickslip.problem import Status
     from stickslip.problem.scenarios import Scenario
 
-DRAWN: Sequence[str] = ("--figure", "--catalogue-figure", "--energy-figure", "--space-time")
+CHAIN_PICTURES: Sequence[str] = ("--figure", "--catalogue-figure", "--energy-figure", "--space-time")
 """The pictures that these runs have: the catalogue (twice), energies, and the rupture of the largest event."""
 TYPED = ("--events",)
 """The options that these runs take beside the duration."""
@@ -77,8 +77,8 @@ class ChainResults(RunResults):
 
 def check_pictures(pictures: Pictures, where: str) -> None:
     """Refuse figures that a chain does not have. Raises InputError."""
-    if others := [option for option in pictures.wanted if option not in DRAWN]:
-        raise InputError(f"{where}: a [chain] has {', '.join(DRAWN)}: leave out {', '.join(others)}")
+    if others := [option for option in pictures.wanted if option not in CHAIN_PICTURES]:
+        raise InputError(f"{where}: a [chain] has {', '.join(CHAIN_PICTURES)}: leave out {', '.join(others)}")
 
 
 class KindOfChain(KindOfRun):

@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     from stickslip.extensions.chains.run import ChainRun
 
-SUFFIXES = (".csv", ".parquet", ".nc")
+FORMATS_OF_EVENTS = (".csv", ".parquet", ".nc")
 """The ends of names of files that are written."""
 
 
@@ -33,7 +33,7 @@ def write_events(run: ChainRun, path: str | Path) -> Path:
         columns = {name: Variable(("event",), table[name].to_numpy(), {"units": EVENT_UNITS[name]}) for name in EVENT_UNITS}
         return write_variables(columns, {"title": made}, file)
     if file.suffix != ".parquet":
-        raise InputError(f"to_csv: {file}: the name must end in {', '.join(SUFFIXES)}")
+        raise InputError(f"to_csv: {file}: the name must end in {', '.join(FORMATS_OF_EVENTS)}")
     try:
         import pyarrow  # noqa: F401  # pandas would complain in several lines
     except ImportError:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STIFF, SOFT = 100.0, 0.01
 """Springs between blocks beyond these shares of those to the driver make a chain nearly one block, or nearly many of their own."""
-MANY = 1_000_000
+MANY_ONSETS = 1_000_000
 """From so many onsets on a run takes more than seconds."""
 
 
@@ -100,7 +100,7 @@ class ChainExamination:
         driven = abs(float(chain.pull_rate)) * self.scenario.duration
         most = float(np.sum(np.where(before.pull > 0.0, driven / slips, 0.0)))
         if driven > 0.0 and most >= 1.0:
-            takes = ", a few microseconds each and for each block that moves" if most > MANY else ""
+            takes = ", a few microseconds each and for each block that moves" if most > MANY_ONSETS else ""
             smallest = brief(float(slips.min()), "m")
             yield "size", f"a block that slips alone slips {smallest} or more: at most some {number(most, 2)} onsets{takes}"
 

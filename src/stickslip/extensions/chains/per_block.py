@@ -17,10 +17,10 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.given import Given
 from stickslip.foundation.quantities import LARGEST_SERIES, NumberSeries, Quantity
 
-DRAWN, SEED_KEY = "drawn", "seed"
+DRAWN_KEY, SEED_KEY = "drawn", "seed"
 """The keys of a table of numbers that are drawn: the name of their distribution, and the seed."""
 EXAMPLE = '{ drawn = "uniform", low = 9.0, high = 11.0, seed = 1 }'
-BLOCKS = Quantity("1", "number of blocks, or of rows or columns of a lattice", at_least=1, at_most=MOST_BLOCKS)
+COUNT_OF_BLOCKS = Quantity("1", "number of blocks, or of rows or columns of a lattice", at_least=1, at_most=MOST_BLOCKS)
 SEED = Quantity("1", "seed of the numbers that are drawn", at_least=0, at_most=float(LARGEST_SEED))
 COUPLING = "coupling"
 NOT_DRAWN = (COUPLING,)
@@ -70,15 +70,15 @@ def read_numbers(declared: Quantity, value: Any, place: Any) -> Any:
 
 def _read_drawn(declared: Quantity, table: Mapping[str, Any], place: Any) -> Drawn:
     """Return what a table such as EXAMPLE says is drawn. Raises InputError."""
-    where, kind = f"{place.source.file}: {place}", table.get(DRAWN)
+    where, kind = f"{place.source.file}: {place}", table.get(DRAWN_KEY)
     if place.key in NOT_DRAWN:
         raise InputError(f"{where} must be a number, or a list of one for each spring: it is not drawn")
     if kind is None:
         raise InputError(f"{where} must say how its numbers are drawn, as {EXAMPLE}")
     if not isinstance(kind, str) or kind not in DISTRIBUTIONS:
-        raise InputError(f"{where} {DRAWN} {shown(kind)} is unknown; {nearest(str(kind), DISTRIBUTIONS)}")
+        raise InputError(f"{where} {DRAWN_KEY} {shown(kind)} is unknown; {nearest(str(kind), DISTRIBUTIONS)}")
     numbers = _numbers_of(kind, declared)
-    allowed = (DRAWN, *numbers, SEED_KEY)
+    allowed = (DRAWN_KEY, *numbers, SEED_KEY)
     for key in table:
         if key not in allowed:
             raise InputError(f"{where} {shown(key)} is unknown; {nearest(key, allowed)}")
@@ -100,14 +100,14 @@ def _numbers_of(kind: str, declared: Quantity) -> dict[str, Quantity]:
     """Return the numbers of a distribution by name, where what is drawn is declared in this way."""
     made = DISTRIBUTIONS[kind]
     units = (declared.unit if has_unit else "1" for has_unit in made.has_unit)
-    return {name: Quantity(unit, f"{name} of what is drawn") for name, unit in zip(made.numbers, units, strict=True)}
+    return {name: Quantity(unit, f"{name} of the distribution") for name, unit in zip(made.numbers, units, strict=True)}
 
 
 def written(value: Any) -> Any:
     """Return what a file says of a number of blocks, or of any other key of [chain]."""
     if isinstance(value, Drawn):
         names = DISTRIBUTIONS[value.distribution].numbers
-        return {DRAWN: value.distribution, **dict(zip(names, map(written, value.numbers), strict=True)), SEED_KEY: value.seed}
+        return {DRAWN_KEY: value.distribution, **dict(zip(names, map(written, value.numbers), strict=True)), SEED_KEY: value.seed}
     if isinstance(value, tuple):
         return [written(one) for one in value]
     return value.text if isinstance(value, Given) else value

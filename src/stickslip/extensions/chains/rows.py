@@ -1,4 +1,4 @@
-"""Rows of events and changes of a run in memory, and states during it from which motion is calculated again."""
+"""Rows of events and changes of a run in memory, and states during it that motion is calculated again from."""
 
 from __future__ import annotations
 

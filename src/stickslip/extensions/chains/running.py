@@ -26,8 +26,8 @@ from stickslip.run import CallOptions, Pace, WholeHistory, how_far, how_fast, ru
 if TYPE_CHECKING:
     from stickslip.extensions.chains.state import ChainState
 
-CATALOGUE, CHANGES = "catalogue", "changes"
-KEPT = (CATALOGUE, CHANGES)
+KEEP_CATALOGUE, KEEP_CHANGES = "catalogue", "changes"
+WORDS_OF_KEEP = (KEEP_CATALOGUE, KEEP_CHANGES)
 """What is kept of a run: its events, or the changes of blocks, too."""
 STEPS_IN_BUDGET = 20
 """So many steps of blocks count as one in the budget of a call: the first call then takes a tenth of a second."""
@@ -59,10 +59,10 @@ class ChainReport(NamedTuple):
 
 
 def kept_of(options: CallOptions) -> str:
-    """Return what is kept of a run. Raises InputError for a word that is none of `KEPT`."""
-    kept = options.of_solver.get("keep") or CATALOGUE
-    if not isinstance(kept, str) or kept not in KEPT:
-        raise InputError(f"simulate: keep {shown(kept)} is unknown; {nearest(str(kept), KEPT)}")
+    """Return what is kept of a run. Raises InputError for a word that is none of `WORDS_OF_KEEP`."""
+    kept = options.of_solver.get("keep") or KEEP_CATALOGUE
+    if not isinstance(kept, str) or kept not in WORDS_OF_KEEP:
+        raise InputError(f"simulate: keep {shown(kept)} is unknown; {nearest(str(kept), WORDS_OF_KEEP)}")
     return kept
 
 
@@ -78,15 +78,17 @@ def simulate_chain(source: Chain | Scenario, options: CallOptions) -> ChainRun:
     keeps, options = kept_of(options), options.checked("simulate")
     path = options.checkpoint
     if path is None:
-        return followed(ChainSolver(chain, None, keeps == CHANGES), options, ChainRows(chain, options.title, keeps == CHANGES))
+        return followed(
+            ChainSolver(chain, None, keeps == KEEP_CHANGES), options, ChainRows(chain, options.title, keeps == KEEP_CHANGES)
+        )
     if path.suffix != ".zarr":
         raise InputError(f"simulate: the checkpoint of a Chain is a folder NAME.zarr, got {shown(str(path))}")
     from stickslip.extensions.chains.store import ChainStore  # with zarr, which takes half a second to load
     from stickslip.extensions.chains.store_layout import scenario_of_chain
 
     about = source if isinstance(source, Scenario) else scenario_of_chain(chain, options)
-    with ChainStore.new(path, chain, replace(about, duration=options.duration), keeps == CHANGES, options.title) as store:
-        solver = ChainSolver(chain, None, keeps == CHANGES)
+    with ChainStore.new(path, chain, replace(about, duration=options.duration), keeps == KEEP_CHANGES, options.title) as store:
+        solver = ChainSolver(chain, None, keeps == KEEP_CHANGES)
         store.save(solver.state)
         return followed(solver, options, store)
 

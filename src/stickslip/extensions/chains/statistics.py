@@ -36,14 +36,14 @@ from stickslip.foundation.errors import InputError
 from stickslip.run import Study
 
 LN_10 = math.log(10.0)
-FEW = 50
+FEW_EVENTS = 50
 """With fewer events than this the interval is rough: said in words."""
 ROUNDED = 0.5
 """Magnitudes that are said to be exact seem rounded if there are fewer different ones than this share of them."""
 MOST_RESAMPLES = 100_000
 BINS_SHOWN = 25
 """The table of exact magnitudes has about so many bins."""
-DRAWN = 1_000
+CATALOGUES_DRAWN = 1_000
 """How well the law fits is judged by so many drawn catalogues of at most as many events each."""
 BARELY = 0.05
 """The law is said not to fit if a drawn catalogue is as far from it with a smaller probability than this."""
@@ -53,7 +53,8 @@ BARELY = 0.05
 class GutenbergRichter(Study):
     """The result of `gutenberg_richter`: the slope b of a catalogue with its interval, and how well the law fits.
 
-    `magnitudes` are all that were given, ascending; `complete` are those from `completeness` to `largest`, from which b was found.
+    `magnitudes` are all that were given, ascending; b was found from those that are `complete`, from `completeness` to
+    `largest`.
     `told` is True if completeness was found from the magnitudes. `low` and `high` are the ends of the interval of b that holds the
     share `confidence` of resampled catalogues.
     """
@@ -81,7 +82,7 @@ class GutenbergRichter(Study):
 
     @property
     def events(self) -> int:
-        """The number of events from which b was found."""
+        """The number of events that are complete."""
         return len(self.complete)
 
     @property
@@ -109,14 +110,14 @@ class GutenbergRichter(Study):
         A small one says that magnitudes do not follow the law. 1000 catalogues are drawn, of at most 1000 events each; the distance
         of larger ones is compared by its product with the root of the number of events.
         """
-        rng, count = np.random.default_rng(self.seed), min(self.events, DRAWN)
+        rng, count = np.random.default_rng(self.seed), min(self.events, CATALOGUES_DRAWN)
         here = self.distance * math.sqrt(self.events)
-        drawn = np.sort(drawn_excess(self.beta, self.bin, self._span, (DRAWN, count), rng), axis=1)
+        drawn = np.sort(drawn_excess(self.beta, self.bin, self._span, (CATALOGUES_DRAWN, count), rng), axis=1)
         gaps = []
         for one in drawn:
             beta = slope(float(one.mean()), self.bin, self._span)
             gaps.append(largest_gap(one, beta, self.bin, self._span) * math.sqrt(count) if math.isfinite(beta) else 0.0)
-        return float((1 + sum(gap >= here for gap in gaps)) / (1 + DRAWN))
+        return float((1 + sum(gap >= here for gap in gaps)) / (1 + CATALOGUES_DRAWN))
 
     def expected(self, magnitudes: Any) -> Floats:
         """Return how many events of these magnitudes or larger the law expects, NaN where it says nothing; of bins the middles."""
@@ -140,8 +141,8 @@ class GutenbergRichter(Study):
     def table(self) -> pd.DataFrame:
         """A table with a row for each bin of magnitudes, those below completeness too.
 
-        Columns: magnitude, of bins the middle, of exact magnitudes the lower edge of 25 parts of what the middle nine tenths
-        span; events in it; at_least, the number of events from there on; expected, that of the law (NaN where it says nothing).
+        Columns: magnitude, of bins the middle, of exact magnitudes the lower edge of one of 25 parts of the middle nine tenths;
+        events in it; at_least, the number of events from there on; expected, that of the law (NaN where it says nothing).
         """
         step = self.bin or self._shown_step()
         places = np.floor((self.magnitudes - self._first_edge) / step + (ON_GRID if self.bin else 0.0)).astype(np.int64)
@@ -193,7 +194,7 @@ class GutenbergRichter(Study):
         different = np.unique(self.complete)
         step = float(np.diff(different).min()) if len(different) > 1 else 0.0
         rounded = f"there are only {len(different)} different magnitudes: if they were rounded, say so by bin={step:.4g}"
-        said = ((self.events < FEW, few), (not self.bin and len(different) < ROUNDED * self.events, rounded))
+        said = ((self.events < FEW_EVENTS, few), (not self.bin and len(different) < ROUNDED * self.events, rounded))
         return tuple(text for true, text in said if true)
 
     @property
@@ -224,7 +225,7 @@ def gutenberg_richter(
         Magnitudes of events, or the run of a chain, whose magnitudes are mu = ln M (see `stickslip.studies.magnitudes`). For mu the
         b of papers on chains is `beta` of the result.
     completeness : float, optional
-        Smallest magnitude from which on the catalogue lacks no event. By default it is found by the largest curvature: bins of a
+        Smallest magnitude above which the catalogue lacks no event. By default it is found by the largest curvature: bins of a
         fifth of the distance between the quartiles are counted, and completeness lies two bins above the fullest one's lower end.
     bin : float
         Width of the bins to whose middles magnitudes were rounded, such as 0.1; 0 if they were not.
@@ -235,7 +236,7 @@ def gutenberg_richter(
     resamples : int
         Number of resampled catalogues.
     seed : int
-        Seed of the resampling, and of the drawn catalogues by which the fit is judged.
+        Seed of the resampling, and of the drawn catalogues that judge the fit.
 
     Raises
     ------

@@ -23,9 +23,9 @@ from stickslip.extensions.chains.rows import ChainRows, Snapshots
 from stickslip.extensions.chains.store_layout import (
     CHAIN_FORMAT,
     CHANGE,
-    CHUNK_ROWS,
     EVENT,
     FINAL,
+    ROWS_OF_CHUNK,
     SNAPSHOT,
     STATE_FILE,
     attributes,
@@ -57,7 +57,7 @@ DECIDING = ("numbers", "couplings", "drawn", "solver", "state")
 BUSY = "another run is writing into it"
 CODE = tuple(f"extensions/chains/{one}" for one in ("compiled", *(f"{name}.py" for name in DECIDING)))
 """The code that decides the result of a run, beside the engine's."""
-ROOM = "stickslip.resume continues from the last checkpoint when there is room"
+IF_FULL = "stickslip.resume continues from the last checkpoint when there is room"
 
 
 @dataclass(eq=False)
@@ -72,7 +72,7 @@ class ChainStore(ChainRows):
     written: dict[str, int] = field(default_factory=lambda: {EVENT: 0, CHANGE: 0})
     """Numbers of rows in the folder."""
     start: ChainState | None = None
-    """The state from which the run continues."""
+    """The state that the run continues from."""
 
     # ---- begin, or go on ---------------------------------------------------------------------------------------------------------
 
@@ -122,7 +122,7 @@ class ChainStore(ChainRows):
 
     @property
     def state(self) -> ChainState:
-        """The state from which the run continues."""
+        """The state that the run continues from."""
         assert self.start is not None  # as long as the folder has a checkpoint
         return self.start
 
@@ -138,7 +138,7 @@ class ChainStore(ChainRows):
     def take(self, events: Floats, changes: Floats) -> None:
         super().take(events, changes)
         for kind, parts in ((EVENT, self.events), (CHANGE, self.changes)):
-            if sum(map(len, parts)) >= CHUNK_ROWS:
+            if sum(map(len, parts)) >= ROWS_OF_CHUNK:
                 self._write(kind, parts)
 
     def _write(self, kind: str, parts: list[Floats]) -> None:
@@ -148,11 +148,14 @@ class ChainStore(ChainRows):
             return
         first, end = self.written[kind], self.written[kind] + len(rows)
         array = self._arrays[kind]
-        with CHAIN_FORMAT.reading(self.path), zarr_folder.writing(self.path, ROOM):  # a chunk that is not full is read first
+        with (
+            CHAIN_FORMAT.reading(self.path),
+            zarr_folder.writing(self.path, IF_FULL),
+        ):  # a chunk that is not full is read first
             if array.shape[0] != end:
                 array.resize((end, array.shape[1]))
             array[first:end] = rows
-            for chunk in range(first // CHUNK_ROWS, -(-end // CHUNK_ROWS)):
+            for chunk in range(first // ROWS_OF_CHUNK, -(-end // ROWS_OF_CHUNK)):
                 sync(self.path / kind / f"c.{chunk}.0")
         self.written[kind] = end
         parts[:] = [rows[:0]]
@@ -186,7 +189,7 @@ class ChainStore(ChainRows):
 
     def _show(self, status: Status) -> None:
         """Let readers see what has been written, with a status."""
-        with CHAIN_FORMAT.reading(self.path), zarr_folder.writing(self.path, ROOM):
+        with CHAIN_FORMAT.reading(self.path), zarr_folder.writing(self.path, IF_FULL):
             zarr_folder.consolidate(self.path)
             opened(self.path, "r+").attrs.update(in_attributes(status) | {"duration": self.duration})
 

@@ -2,7 +2,7 @@
 
 It holds the array `events`, a row for each, if they are kept the array `changes`, both with names and units of their columns, and
 as attributes the scenario and how the run ended: `xarray.open_zarr` opens it at any time. The file `state.nc` in it is the
-checkpoint, with the state from which the run continues, and how many rows belong to it.
+checkpoint, with the state that the run continues from, and how many rows belong to it.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ if TYPE_CHECKING:
 
 STATE_FILE = "state.nc"
 """File of the checkpoint."""
-CHUNK_ROWS = 65_536
+ROWS_OF_CHUNK = 65_536
 """Rows in a chunk of a column."""
 EVENT, CHANGE = "events", "changes"
 """The arrays of rows."""
-COLUMNS = {
+COLUMNS_OF_ROWS = {
     EVENT: dict(EVENT_UNITS),
     CHANGE: dict(zip(CHANGE_TYPE.names or (), ("s", "s", "1", "1", "m"), strict=True)),
 }
@@ -85,11 +85,11 @@ def lay_out(place: Any, about: Mapping[str, Any]) -> None:
     """Create all arrays, without rows, and the attributes."""
     group: Any = zarr.create_group(place, attributes=dict(about))
     for kind in kinds_in(about):
-        columns = COLUMNS[kind]
+        columns = COLUMNS_OF_ROWS[kind]
         group.create_array(
             kind,
             shape=(0, len(columns)),
-            chunks=(CHUNK_ROWS, len(columns)),
+            chunks=(ROWS_OF_CHUNK, len(columns)),
             dtype="float64",
             dimension_names=(f"row_of_{kind}", f"column_of_{kind}"),
             attributes={"columns": list(columns), "units_of_columns": list(columns.values())},
@@ -230,6 +230,9 @@ def checkpoint_in(path: Path, chain: Chain) -> ChainCheckpoint:
     many = len(arrays[f"{SNAPSHOT}now"])
     snapshots = [checked_state({name: arrays[SNAPSHOT + name][i] for name in empty.arrays}, chain) for i in range(many)]
     state, final = (checked_state({name: arrays[of + name] for name in empty.arrays}, chain) for of in ("", FINAL))
+    told = {EVENT: state.now[at.EVENTS], CHANGE: state.now[at.CHANGES]}
+    if wrong := next((kind for kind, count in rows.items() if told[kind] != count), None):
+        raise InputError(f"its {STATE_FILE} has {rows[wrong]} rows of {wrong}, and a state after {told[wrong]:.0f} of them")
     counts = whole_number(about, "every", path, 1), whole_number(about, "calls", path, 0)
     return ChainCheckpoint(str(about["engine"]), rows, state, final, snapshots, number(about, "reached", path), *counts)
 

@@ -50,7 +50,7 @@ class GivenChain:
     damping: Any = 0.0
     initial_slip: Any = 0.0
     ends: str = declare(Choice("ends of the chain", ("free", "fixed", "periodic")), "free")
-    direction: str = declare(Choice("ways in which blocks slip", ("both", "forward")), "both")
+    direction: str = declare(Choice("directions of slip", ("both", "forward")), "both")
 
 
 class ChainTable(ScenarioTable):
@@ -109,9 +109,11 @@ class ChainTable(ScenarioTable):
 
     @override
     def paths(self, value: GivenChain, problem: Problem) -> Iterator[tuple[str, Quantity | Choice]]:
-        from stickslip.extensions.chains.per_block import BLOCKS, numbers_in, of_blocks
+        from stickslip.extensions.chains.per_block import COUNT_OF_BLOCKS, numbers_in, of_blocks
 
-        yield from ((name, BLOCKS) for name in (("blocks",) if isinstance(value.blocks, int) else ("blocks[0]", "blocks[1]")))
+        yield from (
+            (name, COUNT_OF_BLOCKS) for name in (("blocks",) if isinstance(value.blocks, int) else ("blocks[0]", "blocks[1]"))
+        )
         for name, (declared, _) in of_blocks().items():
             yield from numbers_in(name, declared, getattr(value, name))
         yield from ((name, entry) for name, (entry, _) in fields_of(GivenChain).items() if isinstance(entry, Quantity | Choice))

@@ -15,7 +15,7 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     from stickslip.foundation.arrays import Floats
 
-COMPLETENESS = "Smallest magnitude from which on no event lacks; default: by the largest curvature."
+COMPLETENESS = "Magnitude of completeness; default: by the largest curvature."
 BIN = "Width of the bins to whose middles magnitudes were rounded; 0 if they were not."
 LARGEST = "Leave out events above this magnitude, and cut the law off there."
 COLUMN = 'Its column of magnitudes, or of moments; default: "magnitude", "mag" or "moment".'
@@ -64,7 +64,6 @@ def read_magnitudes(path: Path, column: str | None, scale: str) -> Floats:
 
     from stickslip.extensions.chains.magnitudes import magnitudes as of_moments
     from stickslip.extensions.chains.magnitudes import numbers_of
-    from stickslip.foundation.headings import split_heading
 
     try:
         table = pd.read_csv(path, comment="#", skipinitialspace=True)
@@ -72,7 +71,7 @@ def read_magnitudes(path: Path, column: str | None, scale: str) -> Floats:
         raise InputError(f"magnitudes: there is no file {path}") from None
     except (OSError, ValueError) as error:  # not text, or no table
         raise InputError(f"magnitudes: {path}: cannot be read as CSV: {' '.join(str(error).split())}") from None
-    known = {split_heading(str(name))[0].strip().lower(): name for name in table.columns}
+    known = {str(name).partition(" (")[0].strip().lower(): name for name in table.columns}
     wanted = (column.strip().lower(),) if column else (*MAGNITUDES, *MOMENTS)
     name = next((one for one in wanted if one in known), None)
     if name is None:

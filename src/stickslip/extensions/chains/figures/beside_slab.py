@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip.extensions.chains.beside_slab import HALF, WHOLE, slip_of
 from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks
 from stickslip.figures.style import BLUE, GREY, INK, LINE_COLOURS, VERMILLION, Numbers, axis_text, label, shown, styled, time_unit
 from stickslip.figures.style import unit_shown as unit_of
@@ -18,7 +17,7 @@ from stickslip.foundation.place import Place
 if TYPE_CHECKING:
     from stickslip.extensions.chains.beside_slab import ChainBesideSlab
 
-POINTS = 1_001
+POINTS_OF_MOTION = 1_001
 MOST_LINES = 4
 """Draw the motion of at most so many chains."""
 
@@ -45,12 +44,12 @@ def _counts(study: ChainBesideSlab) -> list[int]:
 
 
 def _draw_slip(axes: Axes, study: ChainBesideSlab) -> None:
-    times = np.linspace(0.0, study.duration, POINTS)
+    times = np.linspace(0.0, study.duration, POINTS_OF_MOTION)
     clock, second = time_unit(study.duration)
     exact = Numbers(study.slab.slip(times) - study.problem.initial_slip, {"units": "m", "long_name": "slip", "symbol": "u"})
     unit = unit_of(exact)
     for count, colour in zip(_counts(study), LINE_COLOURS, strict=False):
-        found = slip_of(study.runs[count, WHOLE], study.problem, times)
+        found = study.slip(count, "whole", times)
         axes.plot(times / second, found / unit[1], color=colour, linewidth=1.0, label=f"{count} equal blocks")
     axes.plot(times / second, shown(exact, unit), color=INK, linestyle="--", label="slab")
     axes.set_xlabel(axis_text("time", "t", clock))
@@ -60,9 +59,9 @@ def _draw_slip(axes: Axes, study: ChainBesideSlab) -> None:
 def _draw_differences(axes: Axes, study: ChainBesideSlab) -> None:
     table = study.table
     looks = (
-        (HALF, "difference", BLUE, "o", "half a mass at the contact"),
-        (WHOLE, "difference", VERMILLION, "s", "equal masses"),
-        (WHOLE, "difference_with_mass", GREY, "^", "equal masses, beside a slab with contact mass"),
+        ("half", "difference", BLUE, "o", "half a mass at the contact"),
+        ("whole", "difference", VERMILLION, "s", "equal masses"),
+        ("whole", "difference_with_mass", GREY, "^", "equal masses, beside a slab with contact mass"),
     )
     for first, column, colour, mark, text in looks:
         rows = table[table.first_block == first]
@@ -79,11 +78,11 @@ def _draw_rate(axes: Axes, study: ChainBesideSlab, in_the_middle: bool) -> None:
         arrives = float(study.slab.shocks.time.iloc[0]) + way / slab.wave_speed  # type: ignore[attr-defined]
         reach = 2.0 * float(study.table.airy_front.max())
         begins, ends = max(arrives - reach, 0.0), min(arrives + 2.0 * reach, study.duration)
-    times = np.linspace(begins, ends, POINTS)
+    times = np.linspace(begins, ends, POINTS_OF_MOTION)
     clock, second = time_unit(ends)
     for count, colour in zip(_counts(study), LINE_COLOURS, strict=False):
         block = count // 2 if in_the_middle else 0
-        axes.plot(times / second, study.runs[count, WHOLE].at(times).slip_rate[:, block], color=colour, linewidth=1.0)
+        axes.plot(times / second, study.runs[count, "whole"].at(times).slip_rate[:, block], color=colour, linewidth=1.0)
     exact = study.slab.field(way, times).velocity if in_the_middle else study.slab.slip_rate(times)
     axes.plot(times / second, exact, color=INK, linestyle="--")
     axes.set_xlabel(axis_text("time", "t", clock))

@@ -18,7 +18,7 @@ from stickslip.foundation.place import Place
 if TYPE_CHECKING:
     from stickslip.extensions.chains.statistics import GutenbergRichter
 
-POINTS = 400
+POINTS_OF_LAW = 400
 """Number of points of the curve of the law."""
 
 
@@ -34,7 +34,7 @@ def draw_frequency(found: GutenbergRichter, **place: Unpack[Place]) -> Figure | 
     axes.plot(middle, table.events, "s", color=GREY, markersize=3.0, markerfacecolor="none", label="in a bin")
     begins = found.completeness - 0.5 * found.bin
     ends = min(float(all_of_them[-1]), found.largest) + 0.5 * found.bin
-    magnitude = np.linspace(begins, ends, POINTS)
+    magnitude = np.linspace(begins, ends, POINTS_OF_LAW)
     law, low, high = (_law(found, magnitude, slope * math.log(10.0)) for slope in (found.b, found.low, found.high))
     share = f"{100.0 * found.confidence:g} %"
     axes.fill_between(
