@@ -1,5 +1,7 @@
 from stickslip.contact import critical_value
+from stickslip.extensions.cycles.branch import BranchOfCycles
 from stickslip.extensions.cycles.find_cycle import cycle
+from stickslip.extensions.cycles.follow import follow
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
@@ -21,6 +23,7 @@ from stickslip.solution.observables.severity import severity
 
 __all__ = [
     "Analogy",
+    "BranchOfCycles",
     "Comparison",
     "Edge",
     "Ensemble",
@@ -37,6 +40,7 @@ __all__ = [
     "cycle",
     "ensemble",
     "find",
+    "follow",
     "identify",
     "infer",
     "judge_series",
