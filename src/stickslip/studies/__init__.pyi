@@ -2,7 +2,9 @@ from stickslip.contact import critical_value
 from stickslip.extensions.chains.beside_slab import ChainBesideSlab, chain_beside_slab
 from stickslip.extensions.chains.magnitudes import magnitudes
 from stickslip.extensions.chains.statistics import GutenbergRichter, gutenberg_richter
+from stickslip.extensions.cycles.branch import BranchOfCycles
 from stickslip.extensions.cycles.find_cycle import cycle
+from stickslip.extensions.cycles.follow import follow
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
@@ -24,6 +26,7 @@ from stickslip.solution.observables.severity import severity
 
 __all__ = [
     "Analogy",
+    "BranchOfCycles",
     "ChainBesideSlab",
     "Comparison",
     "Edge",
@@ -43,6 +46,7 @@ __all__ = [
     "cycle",
     "ensemble",
     "find",
+    "follow",
     "gutenberg_richter",
     "identify",
     "infer",

@@ -16,8 +16,10 @@ class CyclesExtension(Extension):
         """Return the studies and the classes of their results."""
         home = "stickslip.extensions.cycles"
         return {
+            "studies.BranchOfCycles": f"{home}.branch:BranchOfCycles",
             "studies.LimitCycle": f"{home}.limit_cycle:LimitCycle",
             "studies.cycle": f"{home}.find_cycle:cycle",
+            "studies.follow": f"{home}.follow:follow",
         }
 
 

@@ -102,15 +102,15 @@ class Section:
             load = {"initial_load": float(place[0]), "initial_excess": None, "initial_rate": rate}
         return replace(self.problem, **load, **states)
 
-    def returned(self, place: Floats, guess: float) -> Return:
+    def returned(self, place: Floats, guess: float, tries: int = MOST_TRIES) -> Return:
         """Return the run from a place on the section to its return next to a `guess` of the time (s) that it takes.
 
         A stiff contact may pass the pull rate again at once, where it starts a little off its slow motion.
 
-        Raises InputError if there is no return within MOST_TRIES times twice as long.
+        The run is made twice as long up to `tries` times. Raises InputError if there is no return then.
         """
         problem, lasts = self.start_at(place), SPARE_TIME * guess
-        for _ in range(MOST_TRIES):
+        for _ in range(tries):
             run = uninterrupted(simulate(problem, lasts, self.rtol))
             met = crossings(run.history, self.at_onset)
             nearest = int(np.abs(met.time - guess).argmin()) if len(met.time) else 0

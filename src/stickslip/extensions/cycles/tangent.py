@@ -28,7 +28,7 @@ from stickslip.problem.bodies import as_on_spring
 
 STAGES = 8
 """Points of Radau's method on each part of a piece, whose order is twice that less one."""
-TOLERANCE, MOST_PARTS = 1e-12, 1024
+TOLERANCE, MOST_PARTS = 1e-11, 64
 """Pieces are divided until the result changes by less than this share (1) of the largest so far, into no more parts than this."""
 LOAD, RATE, FIRST_STATE = range(3)
 """Places of load, slip rate and the first state in a disturbance."""

@@ -1,0 +1,153 @@
+"""Edges of a branch of cycles: folds, doubling, a torus, loss of stick, and the end in steady sliding, each located to rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from stickslip.contact import steady_slidings
+from stickslip.extensions.cycles.measures import least_rate
+from stickslip.extensions.cycles.orbit import Orbit
+from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+
+FOLD, DOUBLING, TORUS = "fold of cycles", "period doubling", "Neimark-Sacker"
+LOSS_OF_STICK, FIRST_STICK, STEADY_END = "loss of stick", "first stick", "steady sliding"
+NOT_FOUND = "not followed further"
+MEANING = {
+    FOLD: "a multiplier is +1: a stable and an unstable cycle meet and vanish",
+    DOUBLING: "a multiplier is -1: a cycle of twice the period branches off",
+    TORUS: "a pair of multipliers is on the unit circle: a motion with two frequencies branches off",
+    LOSS_OF_STICK: "the arrest is grazed: the contact no longer comes to rest",
+    FIRST_STICK: "the slip rate touches 0: the contact begins to rest",
+    STEADY_END: "the amplitude is 0: the cycle vanishes in steady sliding, which changes its stability there (Hopf)",
+    NOT_FOUND: "Newton's iteration finds no cycle beyond",
+}
+"""The edges by name, and what happens there."""
+SAME_STEP = 1e-13
+"""An edge within a step is found to this share of the step (1)."""
+CLOSE_TO_REST, NEARER, MOST_NEARER = 1e-7, 0.05, 30
+"""A branch is followed until its least slip rate is this share of the greatest, each time this much nearer, at most so often (1)."""
+SMALLEST_BISECTED = 1e-12
+"""Width (1, share of the range) to which a value is bisected beyond which there is no cycle."""
+WIDER, MOST_WIDER = 4.0, 12
+"""By what factor, and how often, the surroundings of an end in steady sliding are widened (1)."""
+
+
+class CycleEdge(NamedTuple):
+    """An edge of a branch of cycles: its name, the value (SI) of the parameter there, and the cycle next to it."""
+
+    name: str
+    value: float
+    orbit: Orbit
+
+
+def _fold(place: PlaceOnBranch) -> float:
+    return float(place.way[-1])
+
+
+def _doubling(place: PlaceOnBranch) -> float:
+    return float(np.prod(1.0 + place.orbit.multipliers).real)
+
+
+def _torus(place: PlaceOnBranch) -> float:
+    """Return by how much the pair that is largest is beyond the unit circle; NaN if there is no pair."""
+    pairs = [abs(one) for one in place.orbit.multipliers if one.imag != 0.0]
+    return max(pairs) - 1.0 if pairs else float("nan")
+
+
+TESTS: dict[str, Callable[[PlaceOnBranch], float]] = {FOLD: _fold, DOUBLING: _doubling, TORUS: _torus}
+"""Functions of a cycle whose sign changes at an edge."""
+
+
+def edges_between(path: Path, begin: PlaceOnBranch, end: PlaceOnBranch, length: float) -> list[CycleEdge]:
+    """Return the edges within a step along a branch, in their order."""
+    found = []
+    for name, test in TESTS.items():
+        if not len(begin.orbit.place) or not test(begin) * test(end) < 0.0:
+            continue
+        seen = {0.0: begin, length: end}
+
+        def value(at: float, test: Callable[[PlaceOnBranch], float] = test, seen: dict[float, PlaceOnBranch] = seen) -> float:
+            if at not in seen:
+                seen[at] = path.step(begin, at)
+            return test(seen[at])
+
+        try:
+            where = float(brentq(value, 0.0, length, xtol=SAME_STEP * length, rtol=1e-12))
+        except NoCycleError:
+            continue
+        at = seen.get(where) or path.step(begin, where)
+        found.append((where, CycleEdge(name, at.value, at.orbit)))
+    return [edge for _, edge in sorted(found, key=lambda one: one[0])]
+
+
+def first_stick(path: Path, last: PlaceOnBranch) -> tuple[CycleEdge, PlaceOnBranch] | None:
+    """Return where a branch without rest begins to rest, beyond its last place, and a place next to it; None if it does not.
+
+    The least slip rate is followed towards 0, and the edge is where it gets there: the branch turns no corner before it.
+    """
+    here, step = last, path.longest_step(last, 1e-3)
+    rate = least_rate(here.orbit)
+    whole = last.orbit.section.problem.first_pull_rate
+    before: tuple[float, float] | None = None
+    for _ in range(MOST_NEARER):
+        try:
+            new = path.step(here, step)
+        except NoCycleError:
+            step *= 0.25
+            continue
+        after = least_rate(new.orbit)
+        if new.orbit.sticks or after <= 0.0 or after >= rate:
+            if after >= rate and not new.orbit.sticks:
+                return None
+            step *= 0.25
+            continue
+        before, slope = (rate, here.value), (after - rate) / step
+        here, rate = new, after
+        if rate <= CLOSE_TO_REST * whole:
+            gone = here.value + (here.value - before[1]) * rate / (before[0] - rate)
+            return CycleEdge(FIRST_STICK, gone, here.orbit), here
+        step = (1.0 - NEARER) * rate / -slope
+    return None
+
+
+def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[CycleEdge, PlaceOnBranch]:
+    """Return where a branch ends whose cycles rest, between its last place and a value (SI) without a cycle, by bisection."""
+    good, bad = last, beyond
+    while abs(bad - good.value) > max(SMALLEST_BISECTED * path.range, 4.0 * np.spacing(abs(bad))):
+        middle = 0.5 * (good.value + bad)
+        try:
+            good = path.at_value(middle, good.orbit.place, good.orbit.period)
+        except NoCycleError:
+            bad = middle
+    return CycleEdge(LOSS_OF_STICK, 0.5 * (good.value + bad), good.orbit), good
+
+
+def end_in_steady_sliding(path: Path, values: Floats, amplitudes: Floats) -> float | None:
+    """Return the value (SI) where steady sliding changes its stability next to the last two cycles of a branch; None: nowhere.
+
+    The square of the amplitude goes to 0 in proportion to the distance from it.
+    """
+    squares = amplitudes[-2:] ** 2
+    if squares[0] == squares[1]:
+        return None
+    expected = float(values[-1] - squares[1] * (values[-2] - values[-1]) / (squares[0] - squares[1]))
+    width = max(4.0 * abs(values[-1] - expected), 1e-9 * abs(expected))
+
+    def growth(value: float) -> float:
+        return steady_slidings(path.section(value).problem).slidings[-1].growth
+
+    for _ in range(MOST_WIDER):
+        ends = expected - width, expected + width
+        try:
+            if growth(ends[0]) * growth(ends[1]) < 0.0:
+                return float(brentq(growth, *ends, xtol=1e-14 * abs(expected), rtol=1e-14))
+        except (InputError, IndexError):
+            return None
+        width *= WIDER
+    return None

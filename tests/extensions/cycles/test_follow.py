@@ -1,0 +1,58 @@
+"""Branches of cycles: their edges against steady sliding, closed forms, searches by runs, and what the branches themselves say."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import stickslip as ss
+from tests.extensions.cycles.problems import DAMPING, DISTANCE, FALL, HEAVY, NORMAL, OVER, SLOW, A, B, rate_and_state, stribeck
+
+
+def test_a_branch_loses_stick_turns_back_unstable_and_ends_in_steady_sliding() -> None:
+    """A subcritical Hopf point: it lies where S mu'(V) = -c, in closed form, to 1e-9; stick ends where `find` says, to 1e-6."""
+    start = ss.studies.cycle(stribeck(0.2, initial_load=0.0))
+    branch = ss.studies.follow(start, "pull_rate", to=0.5, steps=10)
+    hopf = OVER * math.log(NORMAL * FALL / (OVER * DAMPING))
+    back = [one for one in branch.points if not one.sticks]
+    assert [edge.name for edge in branch.edges] == ["loss of stick"]
+    assert back, "the branch without rest follows"
+    assert min(one.value for one in back) == pytest.approx(0.2, rel=1e-12), "back to where it began"
+    whole = ss.studies.follow(ss.studies.cycle(stribeck(0.1, initial_load=0.0)), "pull_rate", to=0.5, steps=10)
+    assert [edge.name for edge in whole.edges] == ["loss of stick", "steady sliding"]
+    lost, steady = whole.edges
+    assert steady.value == pytest.approx(hopf, rel=1e-9)
+    assert steady.value == pytest.approx(ss.studies.steady(start.problem).changes[0].pull_rate, rel=1e-9)
+    assert lost.value == pytest.approx(branch.edges[0].value, rel=1e-9), "wherever the branch begins"
+    found = ss.studies.find(stribeck(0.2, initial_load=0.0), "pull_rate", 0.3, 0.31, within=1e-6, duration=20.0)
+    assert found.low * (1.0 - 1e-6) <= lost.value <= found.high * (1.0 + 1e-6)
+    assert {one.stable for one in whole.points if one.sticks} == {True}
+    assert {one.stable for one in back} == {False}
+    lost_too = min(back, key=lambda one: abs(one.value - lost.value))
+    assert lost_too.measures.period == pytest.approx(lost.orbit.period, rel=1e-4)
+
+
+def test_the_two_cycles_at_one_value_are_those_that_runs_come_to_and_part_at() -> None:
+    """Runs that start 1 % inside and outside of the unstable cycle come to steady sliding and to stick-slip."""
+    load = DAMPING * 0.2 + NORMAL * (0.3 + FALL * math.exp(-0.2 / OVER))
+    unstable = ss.studies.cycle(stribeck(0.2, initial_rate=0.2, initial_load=load + 5.0), near=0.7)
+    assert unstable.stable is False
+    ends = []
+    for share in (0.99, 1.01):
+        start = load + share * (float(unstable.orbit.place[0]) - load)
+        run = ss.simulate(stribeck(0.2, initial_rate=0.2, initial_load=start), 20.0)
+        ends.append(bool((run.history.store.mode[len(run.history) // 2 :] == 0).any()))
+    assert ends == [False, True]
+
+
+def test_a_branch_under_rate_and_state_friction_ends_at_the_critical_stiffness() -> None:
+    """K = S (b - a) / D (1 + m V^2 / (S a D)) (Gu et al. 1984, with inertia), to 1e-9; the amplitude falls as a square root."""
+    critical = NORMAL * (B - A) / DISTANCE * (1.0 + HEAVY * SLOW**2 / (NORMAL * A * DISTANCE))
+    branch = ss.studies.follow(ss.studies.cycle(rate_and_state()), "body.stiffness", to=1.1 * critical, steps=10)
+    assert [edge.name for edge in branch.edges] == ["steady sliding"]
+    assert branch.edges[0].value == pytest.approx(critical, rel=1e-9)
+    near = [one for one in branch.points if not one.edge and one.value > 0.9999 * critical]
+    shares = [one.measures.amplitude**2 / (critical - one.value) for one in near]
+    assert shares == pytest.approx([shares[-1]] * len(shares), rel=1e-2)
+    assert {one.stable for one in branch.points} == {True}
