@@ -50,11 +50,11 @@ def simulate(problem: Any, duration: float | str | WithUnit | None = None, rtol:
     {options}
     **of_solver
         Options of the solver of an extension. For a `PlanarSlab`, `frames` is the number of frames to keep in each two-way travel
-        time; 100 by default.
+        time; 100 by default. For a `Chain`, `keep="changes"` keeps each onset, arrest and turn of a block, too.
 
     Returns
     -------
-    Solution or PlanarSolution
+    Solution, PlanarSolution or ChainRun
         The run; its `status` says what ended it. Ctrl-C ends the run with a valid solution up to that time.
 
     Raises

@@ -1,4 +1,7 @@
 from stickslip.contact import critical_value
+from stickslip.extensions.chains.beside_slab import ChainBesideSlab, chain_beside_slab
+from stickslip.extensions.chains.magnitudes import magnitudes
+from stickslip.extensions.chains.statistics import GutenbergRichter, gutenberg_richter
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
 from stickslip.extensions.inference.infer import infer
@@ -19,9 +22,11 @@ from stickslip.solution.observables.severity import severity
 
 __all__ = [
     "Analogy",
+    "ChainBesideSlab",
     "Comparison",
     "Edge",
     "Ensemble",
+    "GutenbergRichter",
     "Identification",
     "Inference",
     "Record",
@@ -29,13 +34,16 @@ __all__ = [
     "SlidingDisplacements",
     "analogy",
     "catalogue_statistics",
+    "chain_beside_slab",
     "compare",
     "critical_value",
     "ensemble",
     "find",
+    "gutenberg_richter",
     "identify",
     "infer",
     "judge_series",
+    "magnitudes",
     "predictability",
     "ranking",
     "schemes",

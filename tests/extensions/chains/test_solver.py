@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.extensions.chains.reference import matrix_of, solve
 
 import stickslip as ss
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.run import CHANGE_NAMES, ChainRun
 from stickslip.extensions.chains.solver import ChainSolver, solve_chain
+from tests.extensions.chains.reference import matrix_of, solve
 
 COULOMB = ss.friction.Coulomb(static=1.0, dynamic=0.8)
 

@@ -12,3 +12,10 @@ def stickslip(*words: object) -> None:
     with pytest.raises(SystemExit) as ended:
         main([str(one) for one in words])
     assert ended.value.code in (0, None)
+
+
+def refused(*words: object) -> None:
+    """Run a command, which must fail with the code of a wrong input."""
+    with pytest.raises(SystemExit) as ended:
+        main([str(one) for one in words])
+    assert ended.value.code == 2

@@ -32,6 +32,7 @@ OUTCOMES = {
     19: QUALIFIED,
     20: PRINTED,
     21: NOT,
+    22: QUALIFIED,
 }
 
 # (claim, label, expected, relative tolerance): values of the design's table, or closed forms
@@ -91,7 +92,7 @@ NUMBERS = [
 
 
 def test_every_claim_has_a_measurement() -> None:
-    assert list(CLAIMS) == list(STATEMENTS) == list(range(1, 22))
+    assert list(CLAIMS) == list(STATEMENTS) == list(range(1, 23))
 
 
 @pytest.mark.parametrize("number", CLAIMS)
@@ -169,6 +170,20 @@ def test_rest_is_the_reloading_time(verdicts: dict[int, ClaimVerdict]) -> None:
         assert found.value(f"rest, {reading}") == pytest.approx(expected, rel=1e-9, abs=0)
         assert expected > 1.0
     assert found.value("rest, rate law, K = G × 10³ m") == pytest.approx(2.061159848 / 0.05, rel=1e-6, abs=0)
+
+
+def test_chains_are_rich_and_not_as_seismicity_is(verdicts: dict[int, ClaimVerdict]) -> None:
+    """The smallest event is one block between two that rest: its slip is twice the drop of friction over its springs."""
+    found = verdicts[22]
+    for name, coupling in (("kc/kp = 1", 1.0), ("kc/kp = 10", 10.0), ("kc/kp = 40", 40.0)):
+        smallest = 2.0 * 0.3 / (1.0 + 2.0 * coupling)
+        largest = smallest * 10.0 ** found.value(f"decades of moment, {name}")
+        assert 5.0 < largest < 100 * 2.0 * 0.3  # all 100 blocks as one block, which its springs to the driver hold
+        assert found.value(f"share of drawn catalogues that are as far, {name}") < 0.01
+        assert 0.2 < found.value(f"events after large ones, over the mean, {name}") < 0.8
+    kinds = ("1", "10", "40", "10, weakening with slip", "10, weakening with slip rate")
+    slopes = [found.value(f"b of (2/3) log10 M, kc/kp = {name}") for name in kinds]
+    assert slopes == pytest.approx([2.29, 0.86, 0.64, 0.41, 1.15], rel=0.05, abs=0.0)
 
 
 def test_load_follows_the_formula_to_twice_the_claim(verdicts: dict[int, ClaimVerdict]) -> None:

@@ -23,7 +23,7 @@ from stickslip.cli.typed_options import TypedOptions
 if TYPE_CHECKING:
     from stickslip.problem import Status
 
-OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] a new folder (.zarr)."
+OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] or a [chain] a new folder (.zarr)."
 CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
 CSV = "Save the curves at 1001 evenly spaced times; `stickslip export` has other times and formats (.csv)."
 RESUME = "Resume the run in a file or folder of --out, or a checkpoint of --catalogue."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,11 +14,13 @@ from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.state import ChainState
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.errors import InputError
+from stickslip.problem import STATUSES, Status, Stop
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.extensions.chains.chain import Chain
+    from stickslip.extensions.chains.plots import ChainPlots
     from stickslip.friction import FrictionLaw
 
 Floats = NDArray[np.float64]
@@ -101,6 +104,8 @@ class ChainRun(NamesAttributes):
         What was solved.
     duration : float
         The time that was reached (s).
+    status : Status
+        What ended the run.
     """
 
     chain: Chain
@@ -110,6 +115,8 @@ class ChainRun(NamesAttributes):
     snapshots: list[ChainState]
     state: ChainState
     final: ChainState
+    status: Status = STATUSES[Stop.FINISHED]
+    title: str = ""
 
     @cached_property
     def events(self) -> NDArray[Any]:
@@ -126,6 +133,12 @@ class ChainRun(NamesAttributes):
         import pandas as pd
 
         return pd.DataFrame(self.events)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the events as .csv, .parquet or .nc, with a unit in each heading, and return the path. Raises InputError."""
+        from stickslip.extensions.chains.event_files import write_events
+
+        return write_events(self, path)
 
     @cached_property
     def changes(self) -> NDArray[Any]:
@@ -191,6 +204,13 @@ class ChainRun(NamesAttributes):
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         return Motion(wanted, found.slip[back], found.slip_rate[back])
+
+    @property
+    def plot(self) -> ChainPlots:
+        """The figures: `plot()` draws the catalogue, `plot.rupture()` which blocks slip when."""
+        from stickslip.extensions.chains.plots import ChainPlots
+
+        return ChainPlots(self)
 
     def proof(self) -> str:
         """Return in a sentence what is proven of the run."""

@@ -9,7 +9,7 @@ from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import ScenarioTable
-    from stickslip.run import SolverKind
+    from stickslip.run import Reader, SolverKind
 
 
 class GivenMotionExtension(Extension):
@@ -23,11 +23,17 @@ class GivenMotionExtension(Extension):
 
         return (MOVED,)
 
+    def readers(self) -> Sequence[Reader]:
+        """Return the reader of files of runs along given motions."""
+        from stickslip.extensions.given_motion.reader import MotionReader
+
+        return (MotionReader(),)
+
     def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [motion]."""
-        from stickslip.extensions.given_motion.table import MotionTable
+        from stickslip.problem.scenarios import LateTable
 
-        return {MotionTable.name: MotionTable()}
+        return {"motion": LateTable("stickslip.extensions.given_motion.table:MotionTable")}
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `identify`."""

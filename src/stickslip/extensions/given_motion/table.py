@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from typing_extensions import override
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.conversion import Number, unit_among
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.foundation.quantities import Choice, Quantity, quantity
@@ -23,12 +23,6 @@ if TYPE_CHECKING:
 
 MOTION = "motion"
 """The name of the table."""
-UNUSED_BODIES: dict[str, dict[str, Any]] = {
-    "N": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
-    "Pa": {"kind": "elastic-slab", "density": 1e3, "wave_speed": 1e3, "thickness": 1.0, "normal_stress": 1e6},
-    "N m": {"kind": "rotating-block", "inertia": 1.0, "stiffness": 1.0, "normal_torque": 1.0},
-}
-"""The [body] of a scenario that has none, by the unit of its normal load: nothing but that unit is used of it."""
 STILL: dict[str, Any] = {"pull_rate": 0.0}
 """The [loading] of a scenario with a [motion]."""
 STATE_KEYS = ("initial_state", "initial_second_state")
@@ -43,8 +37,9 @@ class GivenMotion:
     """What a [motion] says: slip rate and normal load, numbers or histories, and where slip and states begin."""
 
     slip_rate: Any
-    normal_load: Any = None
-    """None for that of the [body]."""
+    normal_load: Any
+    load_unit: str = "N"
+    """The unit of plain numbers of the normal load."""
     initial_slip: Number = quantity("m", "slip at the start", default=0.0)
     initial_state: Any = None
     initial_second_state: Any = None
@@ -57,6 +52,7 @@ class MotionTable(ScenarioTable):
     what = "given [{}]"
     instead = "leave out [{}], and give [body] and [loading], for a contact that moves by itself"
     run_keys = frozenset({"duration", "rtol"})
+    in_place_of = frozenset({"body", "loading", "initial"})
     why_no_others = "has no effect with a [motion], which says how the contact moves"
 
     @override
@@ -69,38 +65,44 @@ class MotionTable(ScenarioTable):
 
         return {
             "slip_rate": Key(_read_varying, meaning="slip rate, a number or a history [motion.slip_rate]"),
-            "normal_load": Key(_read_varying, None, "normal load, a number or a history [motion.normal_load]"),
+            "normal_load": Key(_read_varying, meaning="normal load, a number or a history [motion.normal_load]"),
+            "load_unit": Key(lambda value, place: value, "N", "unit of plain numbers of the normal load: 'N', 'Pa', 'N m'"),
             **{name: Key(lambda value, place: value, None, "state of the law at the start, or 'steady'") for name in STATE_KEYS},
         }
 
     @override
     def completed(self, raw: Mapping[str, Any], source: Source) -> Mapping[str, Any]:
         motion = raw[MOTION]
-        if not isinstance(motion, dict) or not isinstance(raw.get("friction"), dict):
+        if not isinstance(motion, dict) or not isinstance(raw.get("friction", {}), dict):
             return raw  # which is refused in its turn
+        if "friction" not in raw:
+            raise InputError(f"{source.file}: [friction] is missing")
         loading = raw.get("loading", {})
         if not isinstance(loading, dict) or any(one != 0.0 for one in loading.values()):
             raise InputError(f"{source.file}: {NO_LOADING}")
         if raw.get("initial") is not None and not (isinstance(raw["initial"], dict) and raw["initial"].get("load") == 0.0):
             raise InputError(f"{source.file}: {NO_START}")
-        if "body" not in raw and motion.get("normal_load") is None:
-            raise InputError(f"{source.file}: [motion] normal_load is missing: a number such as '100 N' or '5 MPa', or a history")
-        unit = _unit_of(motion.get("normal_load"))
-        law = read_part("friction", dict(raw["friction"]), source._replace(load_unit=unit if "body" not in raw else ""))
+        from stickslip.extensions.given_motion.load_of_motion import UNUSED_BODIES, with_load  # only where there is a [motion]
+
+        motion = with_load(motion, raw.get("body"), source)
+        unit = motion["load_unit"]
+        law = read_part("friction", dict(raw["friction"]), source._replace(load_unit=unit))
         start: dict[str, Any] = {"load": 0.0}
         if not law.sticks and not law.reverses:
             given = (motion.get(name) for name in STATE_KEYS)
             names = ("state", "second_state")[: len(law.states)]
             start |= {name: NEVER_STICKS_AT if one in (None, "steady") else one for name, one in zip(names, given, strict=False)}
-        return {"body": UNUSED_BODIES[unit]} | dict(raw) | {"loading": STILL, "initial": start}
+        return dict(raw) | {"body": UNUSED_BODIES[unit], "loading": STILL, "initial": start, MOTION: motion}
 
     @override
     def read(self, entries: Mapping[str, Any], problem: Problem, source: Source) -> GivenMotion:
         found = GivenMotion(**entries)
         try:
-            moved_of(found, problem)
+            moved = moved_of(found, problem)
         except InputError as error:
             raise InputError(f"{source.file}: [motion] {without_owner(error)}") from None
+        if moved.load_unit != found.load_unit:
+            raise InputError(f"{source.file}: [motion] normal_load is in {moved.load_unit}, and load_unit is {found.load_unit!r}")
         return found
 
     @override
@@ -120,31 +122,17 @@ class MotionTable(ScenarioTable):
                 yield name, Quantity(of, meaning)
 
     @override
-    def pressed(self, value: GivenMotion, factor: float) -> GivenMotion:
-        raise InputError("pressing changes a body's loads: with a [motion], change motion.normal_load")
-
-    @override
     def problem(self, value: GivenMotion, scenario: Scenario) -> MovedContact:
         return moved_of(value, scenario.problem)
 
 
 def moved_of(value: GivenMotion, problem: Problem) -> MovedContact:
-    """Return the contact of a [motion], with the law of a problem, and its normal load if the table has none. Raises InputError."""
+    """Return the contact of a [motion] with the law of a problem. Raises InputError."""
     from stickslip.extensions.given_motion.moved import MovedContact, with_unit_of_load
 
-    unit = problem.load_unit
-    load = f"{problem.body.normal_load!r} {unit}" if value.normal_load is None else with_unit_of_load(value.normal_load, unit)
+    load = with_unit_of_load(value.normal_load, value.load_unit)
     starts = {name: getattr(value, name) for name in STATE_KEYS}
     return MovedContact(problem.friction, value.slip_rate, load, value.initial_slip, **starts)
-
-
-def _unit_of(load: Any) -> str:
-    """Return the unit of a normal load in a file: that of a text, or of the first text among the values of a history."""
-    values = load.get("values", load.get("mean")) if isinstance(load, dict) else load
-    for one in values if isinstance(values, list) else [values]:
-        if found := unit_among(one, " or ".join(UNUSED_BODIES)):
-            return found
-    return "N"
 
 
 def _read_varying(value: Any, place: Any) -> Any:

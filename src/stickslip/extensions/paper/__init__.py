@@ -11,7 +11,7 @@ class PaperExtension(Extension):
     """The command `paper`."""
 
     name = "paper"
-    uses = ("planar",)
+    uses = ("chains", "planar")
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the command `paper`."""

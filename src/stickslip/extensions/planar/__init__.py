@@ -8,6 +8,7 @@ step of time with these, and `solver.py` a run.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.extension import Extension
@@ -31,9 +32,9 @@ class PlanarExtension(Extension):
 
     def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [contact]."""
-        from stickslip.extensions.planar.table import ContactTable
+        from stickslip.problem.scenarios import LateTable
 
-        return {ContactTable.name: ContactTable()}
+        return {"contact": LateTable("stickslip.extensions.planar.table:ContactTable", Path(__file__).with_name("bundled"))}
 
     def readers(self) -> Sequence[Reader]:
         """Return the reader of their folders."""

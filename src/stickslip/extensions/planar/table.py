@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +14,6 @@ from stickslip.foundation.quantities import Choice, Quantity
 from stickslip.problem.scenarios import ScenarioTable
 
 if TYPE_CHECKING:
-    from importlib.resources.abc import Traversable
-
     from stickslip.extensions.planar.contact import Contact
     from stickslip.extensions.planar.slab import PlanarSlab
     from stickslip.problem import Problem
@@ -103,10 +100,6 @@ class ContactTable(ScenarioTable):
             _ = planar_slab_of(scenario).steps(scenario.duration)
         except InputError as error:
             raise InputError(f"{source.file}: [contact] {without_owner(error)}") from None
-
-    @override
-    def examples(self) -> Traversable:
-        return Path(__file__).with_name("bundled")
 
 
 def contact_of(scenario: Scenario) -> Contact:

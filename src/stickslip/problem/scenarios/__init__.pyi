@@ -53,6 +53,7 @@ from stickslip.problem.scenarios.source import (
     read_source,  # Return the scenario of a problem with a `duration`, a scenario itself, or that of a bundled name or a file.
 )
 from stickslip.problem.scenarios.table import (
+    LateTable,  # A table whose module is imported when a scenario has it, or when somebody asks for more than its examples.
     ScenarioTable,  # What a table of an extension holds, and what it means.
 )
 from stickslip.problem.scenarios.templates import (
@@ -77,6 +78,7 @@ __all__ = [
     "UNNAMED",
     "YES_OR_NO",
     "Key",
+    "LateTable",
     "ParameterPath",
     "Scenario",
     "ScenarioTable",

@@ -99,6 +99,9 @@ def place_of(name: str, document: Any) -> tuple[Any, Any]:
 
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     """Return the parameter with this name, or whose name ends with it. Raises InputError if none fits, or several do."""
+    table = name.partition(".")[0]
+    if (owner := scenario.lacks.get(table)) is not None:
+        raise InputError(f"{where}: {name}: a scenario with a [{owner}] has no [{table}]; {PARAMETERS_LISTED}")
     plain = next((one for one in entries_of(scenario.problem) if one.name == name), None)
     if plain is not None:
         return ParameterPath(plain.name, plain.declared, plain.written)
@@ -156,7 +159,7 @@ def _put(document: dict[str, Any], changes: Changes) -> None:
     for parameter, value in changes:
         if parameter.name == PRESSING:
             raise KeyError(PRESSING)
-        document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
+        document.get("initial", {}).pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
         if parameter.name == "initial.rate" and value == STEADY:
             for excluded in ("load", "excess", *STATE_NAMES):
                 document["initial"].pop(excluded, None)
@@ -219,10 +222,13 @@ def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     problem = scenario.problem
     ours = [ParameterPath(one.name, one.declared, one.written) for one in entries_of(problem)]
     for table in ("body", "friction", "loading", "initial"):
+        if table in scenario.lacks:
+            continue
         yield from (one for one in ours if one.name.startswith(f"{table}."))
         if table == "loading" and scenario.is_of_core:
             yield ParameterPath("loading.one_way", YES_OR_NO)
-    yield ParameterPath(PRESSING, pressing_of(problem))
+    if "body" not in scenario.lacks:
+        yield ParameterPath(PRESSING, pressing_of(problem))
     allowed = scenario.run_keys
     for name, declared in _in_run().items():
         if allowed is None or name in allowed:

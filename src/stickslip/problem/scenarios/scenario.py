@@ -67,14 +67,16 @@ class Scenario(ShownAsTable, RunOptions, OfProblem):
     def __repr__(self) -> str:
         fields_shown = dict(shown_fields(self))
         problem, head = fields_shown.pop("problem"), [self.name, *([self.title] if self.title else [])]
+        problem = repr(self.problem.friction) if self.lacks else problem
         others = ", ".join(f"{name}={text}" for name, text in fields_shown.items() if name not in ("name", "title", "description"))
         return f"stickslip Scenario {': '.join(head)}\n{problem}\n{others}"
 
     def _lines(self) -> list[tuple[str, str]]:
-        return [(name, text.strip("'")) for name, text in shown_fields(self) if name != "problem"]
+        law = [("friction", repr(self.problem.friction))] if self.lacks else []
+        return law + [(name, text.strip("'")) for name, text in shown_fields(self) if name != "problem"]
 
     def _repr_html_(self) -> str:
-        return super()._repr_html_() + self.problem._repr_html_()
+        return super()._repr_html_() + ("" if self.lacks else self.problem._repr_html_())
 
     @property
     def heading(self) -> str:
@@ -113,6 +115,11 @@ class Scenario(ShownAsTable, RunOptions, OfProblem):
         found = [keys for name, _ in self.tables if (keys := tables_of_extensions()[name].run_keys) is not None]
         return frozenset.intersection(*found) if found else None
 
+    @property
+    def lacks(self) -> dict[str, str]:
+        """The tables of the core that it does not have, each with the name of the table that takes its place."""
+        return {one: name for name, _ in self.tables for one in sorted(tables_of_extensions()[name].in_place_of)}
+
     @cached_property
     def document(self) -> dict[str, Any]:
         """The scenario as a parsed TOML document, which must not be changed. Raises InputError as `to_toml` does."""
@@ -143,6 +150,7 @@ class Scenario(ShownAsTable, RunOptions, OfProblem):
                 tables[table][f.name.removeprefix("initial_")] = (
                     to_table(value) if isinstance(value, LoadingHistory) else as_written(value)
                 )
+        tables = {name: table for name, table in tables.items() if name not in self.lacks}
         tables |= {name: tables_of_extensions()[name].write(value) for name, value in self.tables}
         run: dict[str, Any] = {key: getattr(self, name) for name, key in KEYS_OF_RUN.items()}
         run["selection"] = problem.rule

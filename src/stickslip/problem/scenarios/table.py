@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.errors import InputError
@@ -36,6 +37,8 @@ class ScenarioTable:
     """The keys that [run] may have beside the table; None for all."""
     why_no_others = "has no effect with this table"
     """Why [run] may have no other key."""
+    in_place_of: frozenset[str] = frozenset()
+    """The tables of the core that a scenario with this one does not have: `completed` fills them in, and nobody is shown them."""
 
     def __init__(self, kind: type | None = None) -> None:
         self._kind = kind
@@ -90,3 +93,25 @@ class ScenarioTable:
     def examples(self) -> Traversable | None:
         """Return a folder of scenario files that come with the extension, which then have names as bundled scenarios do."""
         return None
+
+
+class LateTable(ScenarioTable):
+    """A table whose module is imported when a scenario has it, or when somebody asks for more than its examples."""
+
+    def __init__(self, home: str, examples: Traversable | None = None) -> None:
+        """Take the home of the table as "module:name", and the folder of its scenario files."""
+        object.__setattr__(self, "_late", (home, examples, []))
+
+    def examples(self) -> Traversable | None:
+        """Return the folder that was given: see `ScenarioTable.examples`."""
+        folder: Traversable | None = object.__getattribute__(self, "_late")[1]
+        return folder
+
+    def __getattribute__(self, name: str) -> Any:
+        home, _, found = object.__getattribute__(self, "_late")
+        if name == "examples":
+            return object.__getattribute__(self, name)
+        if not found:
+            module, _, kind = home.partition(":")
+            found.append(getattr(import_module(module), kind)())
+        return getattr(found[0], name)

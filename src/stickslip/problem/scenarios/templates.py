@@ -10,6 +10,7 @@ from dataclasses import MISSING
 from types import MappingProxyType
 from typing import Any
 
+from stickslip.extension import tables
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.names import KINDS_OF_BODY, TURNS
 from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
@@ -90,7 +91,9 @@ def check_takes_law(name: str) -> None:
     if name not in template_names():
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names(), listed=library.NAMES_LISTED)}")
     if name not in (*library.STARTERS, *library.in_1d()):
-        raise InputError(f"{name} has a [contact] of many nodes, which takes no other law: name another scenario")
+        document = tomllib.loads(library.text(name))
+        what = next(table.what.format(one) for one, table in tables().items() if one in document)
+        raise InputError(f"{name} has a {what}, which takes no other law: name another scenario")
 
 
 def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[str, Any] = MappingProxyType({})) -> str:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from stickslip.extension import is_there
 from stickslip.extensions.paper.cases import Runs
 from stickslip.extensions.paper.claims import inertia, rate_law, rules, slip_law  # noqa: F401  # importing them fills MEASUREMENTS
 from stickslip.extensions.paper.claims.verdict import MEASUREMENTS, ClaimVerdict, MeasuredNumber, Outcome
+
+if is_there("chains"):
+    from stickslip.extensions.paper.claims import chains  # noqa: F401
 
 STATEMENTS = {number: statement for number, (statement, _) in sorted(MEASUREMENTS.items())}
 """The claims in our words, by number."""
