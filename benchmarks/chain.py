@@ -1,7 +1,7 @@
-"""`python -m benchmarks.chain`: chains of blocks under Coulomb friction, beside scipy's DOP853 with events and a fixed-step RK4.
+"""`python -m benchmarks.chain`: chains of blocks under Coulomb friction, beside scipy with events and RK4.
 
-Both peers are numpy, forward slip only. RK4 is as usual: after each step a block whose rate is not above a small one, and whose load
-is within its strength, is held; how many events it counts depends on the step.
+Both peers are numpy, forward slip only. RK4 is as usual: after each step a block whose rate is not above a small one, and whose
+load is within its strength, is held; how many events it counts depends on the step.
 """
 
 from __future__ import annotations
