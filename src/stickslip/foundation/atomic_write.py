@@ -202,7 +202,7 @@ class SafeSink(io.FileIO):
 
 OWN = re.compile(
     rb"^# (written by |code=)?stickslip\b|^start,end,duration,recurrence,"
-    rb"|^time \(s\),slip \((?:m|rad)\),slip rate \((?:m|rad)/s\),(?:load|traction) \(",
+    rb"|^time \(s\),slip \((?:m|rad)\),slip[ _]rate \((?:m|rad)/s\),(?:load|traction|normal_load) \(",
     re.MULTILINE,
 )
 """What stands in the text files that this package writes: a comment, or the columns of a catalogue that grows."""

@@ -66,7 +66,7 @@ def check_force(problem: Any) -> None:
     name = type(body).__name__
     if force is not None and not body.takes_force:
         end = "far_stress acts on it through a driver of finite driver_impedance"
-        raise InputError(f"Problem: force acts on a rigid body, and a {name} is none: {end}")
+        raise InputError(f"Problem: force acts on a rigid body, which {name} is not: {end}")
     if _swings(force) and (_swings(pull) or (ground is not None and ground.tone.amplitude != 0.0)):
         other = "pull_rate" if _swings(pull) else "the ground"
         raise InputError(f"Problem: only one of force and {other} may have a sinusoid: give the other as straight lines")

@@ -66,14 +66,16 @@ class SolverKind:
 
 
 class Reader:
-    """Reads what an extension leaves in folders, or in files of its own."""
+    """Reads what an extension leaves in folders, in netCDF files, or in files of its own."""
 
     what: str
     """What it reads, for messages: "a sweep"."""
+    mark = ""
+    """The attribute of netCDF files (.nc) that hold what it reads; "" if it reads none."""
 
     def is_in(self, path: Path) -> bool:
-        """Return True if a path holds what it reads, whether that is sound or not."""
-        raise NotImplementedError
+        """Return True if a path that is no file of the core holds what it reads, whether that is sound or not."""
+        return False
 
     def open(self, path: Path) -> Any:
         """Return the run in a path. Raises InputError if it is damaged, or no run."""
@@ -107,9 +109,12 @@ def special_solver_of(source: Any) -> SolverKind | None:
 
 def reader_of(path: Path) -> Reader | None:
     """Return the reader of the extension whose results a path holds; None if it holds none that an extension reads."""
-    if path.suffix.lower() in FILES_OF_CORE and not path.is_dir():
-        return None
-    return next((one for one in members("readers", Reader) if one.is_in(path)), None)
+    if path.suffix.lower() not in FILES_OF_CORE or path.is_dir():
+        return next((one for one in members("readers", Reader) if one.is_in(path)), None)
+    from stickslip.foundation.netcdf_file import attributes  # no run needs it
+
+    marks = attributes(path) if path.suffix.lower() == ".nc" else {}
+    return next((one for one in members("readers", Reader) if one.mark in marks), None) if marks else None
 
 
 def no_results(path: Path) -> InputError:

@@ -12,7 +12,7 @@ from stickslip.solution.files import read_solution
 
 @for_users
 def open_solution(path: str | Path) -> Any:
-    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
+    """Read a run from a netCDF file that `to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
 
     It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file
     is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule

@@ -41,14 +41,15 @@ def resume(
     ----------
     path : str or Path
         File of a run (.nc) that `simulate`, `Solution.to_netcdf` or Ctrl-C left, or a catalogue's NAME.checkpoint.nc, with the
-        catalogue's rows in the same folder; or the folder (.zarr) of a run of a `PlanarSlab` or a `Chain`.
+        catalogue's rows in the same folder; the file of a run of a `MovedContact`; or the folder (.zarr) of that of a `PlanarSlab`
+        or a `Chain`.
     duration : float or str, optional
         New end of the run, counted from its start: a number in s, or a text with a unit. The previous one by default.
     {options}
 
     Returns
     -------
-    Solution, PlanarSolution or pandas.DataFrame
+    Solution, FrictionAlongMotion, PlanarSolution or pandas.DataFrame
         The whole run from t = 0, or the whole table of a catalogue.
 
     Raises

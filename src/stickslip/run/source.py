@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.problem.scenarios import Scenario, read_source
+from stickslip.run.kinds import reader_of
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.run.study import uninterrupted
@@ -39,6 +40,8 @@ def run_source(
     if isinstance(source, Solution):
         return RunSource("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
+        if (reader := reader_of(Path(str(source)))) is not None:
+            raise InputError(f"{who}: {source} holds {reader.what}, and a run of the exact solver is needed")
         solution = read_solution(Path(str(source)))
         return RunSource(Path(str(source)).stem, lambda _: solution)
     scenario = read_source(who, source, duration)

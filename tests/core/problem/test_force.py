@@ -42,7 +42,7 @@ FROM_FILE = '[loading.force]\nkind = "piecewise-linear"\nfile = "push.csv"'
     ("given", "message"),
     [
         ({"pull_rate": 1.0}, "pull_rate has nothing to pull: a SpringBlock of stiffness 0 has no spring: leave it out, give"),
-        ({"body": SLAB, "force": 1.0, "initial_load": 0.0}, "force acts on a rigid body, and a ElasticSlab is none: far_stress"),
+        ({"body": SLAB, "force": 1.0, "initial_load": 0.0}, "force acts on a rigid body, which ElasticSlab is not: far_stress"),
         (
             {"body": SPRUNG, "force": SWING, "pull_rate": SWING, "initial_load": 0.0},
             "only one of force and pull_rate may have a sin",

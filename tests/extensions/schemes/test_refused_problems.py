@@ -27,7 +27,7 @@ VARIES = "schemes: a pull rate, far stress or normal load that varies in time is
         (SHAKEN, f"{VARIES}, and ground at rest$"),
         (PRESSED, f"{VARIES}$"),
         *(
-            (problem, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab$")
+            (problem, f"schemes: {type(problem.body).__name__} has no grid: they are of an ElasticSlab$")
             for problem in (ss.load_scenario(name).problem for name in ("low-velocity-zone", "steel-on-granite", "pipe-and-collar"))
         ),
     ],

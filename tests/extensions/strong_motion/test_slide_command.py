@@ -92,13 +92,17 @@ WRONG = {
     "a yield of 0": (["--yield", "0"], "--yield must be above 0"),
     "a yield in words": (["--yield", "low"], "--yield must be above 0"),
     "yields without commas": (["--yield", "0.1 0.2"], "values are written with commas, as 0.1,0.2"),
-    "another polarity": (["--yield", "0.1", "--polarity", "2"], "polarity must be 1"),
+    "another polarity": (["--yield", "0.1", "--polarity", "2"], "slide: --polarity must be 1"),
+    "a scale below 0": (
+        ["--yield", "0.1", "--scale", "-2"],
+        "slide: --scale must be a number above 0, got -2.0; --polarity -1",
+    ),
     "both signs and one": (["--yield", "0.1", "--both-signs", "--polarity", "1"], "exclude each other"),
-    "two scales": (["--yield", "0.1", "--scale", "2", "--scale-to-pga", "0.4"], "give scale or scale_to_pga, not both"),
+    "two scales": (["--yield", "0.1", "--scale", "2", "--scale-to-pga", "0.4"], "slide: give --scale or --scale-to-pga, not both"),
     "no column": (["--yield", "0.1", "--analysis", "coupled"], "needs a column: name its scenario"),
     "a column that is too much": (["--yield", "0.1", "--body", "sliding-slab-shaken"], "--body is for --analysis coupled"),
     "another analysis": (["--yield", "0.1", "--analysis", "decopled"], "did you mean 'decoupled'?"),
-    "another unit": (["--yield", "0.1", "--unit", "inch"], "unit must be one of m, cm, mm, in, ft"),
+    "another unit": (["--yield", "0.1", "--unit", "inch"], "slide: --unit must be one of m, cm, mm, in, ft"),
     "a record that is not there": (["--yield", "0.1", "--record-figure", "m.svg", "--record", "three"], "no record has 'three'"),
     "a record without its figure": (["--yield", "0.1", "--record", "one"], "--record says what --record-figure draws"),
     "a component that is not there": (["--yield", "0.1", "--component", "N90E"], "N90E"),
@@ -116,7 +120,7 @@ def test_what_cannot_be_is_refused_in_one_line_and_nothing_is_written(case: str,
 def test_one_bad_file_is_named_with_its_reason_and_nothing_is_written(command, folder: Path):
     (folder / "records" / "third.csv").write_text("time (s),acceleration (g)\n0.0,0.1\n0.01,nan\n0.02,0\n")
     refused = command("slide", "records", "--yield", "0.1", "--out", "a.csv").refusal
-    assert refused.startswith("sliding: ")
+    assert refused.startswith("slide: ")
     assert "third.csv" in refused
     assert not (folder / "a.csv").exists()
     assert "no such file" in command("slide", "records/four.AT2", "--yield", "0.1").refusal

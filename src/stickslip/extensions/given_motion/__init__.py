@@ -9,7 +9,7 @@ from stickslip.extension import Command, Extension
 
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import ScenarioTable
-    from stickslip.run import SolverKind
+    from stickslip.run import Reader, SolverKind
 
 
 class GivenMotionExtension(Extension):
@@ -22,6 +22,12 @@ class GivenMotionExtension(Extension):
         from stickslip.extensions.given_motion.kind import MOVED
 
         return (MOVED,)
+
+    def readers(self) -> Sequence[Reader]:
+        """Return the reader of files of runs along given motions."""
+        from stickslip.extensions.given_motion.reader import MotionReader
+
+        return (MotionReader(),)
 
     def tables(self) -> Mapping[str, ScenarioTable]:
         """Return the table [motion]."""

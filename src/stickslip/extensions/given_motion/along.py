@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
@@ -19,6 +18,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, number
 from stickslip.friction.contract import one_argument
+from stickslip.problem import STATUSES, Status, Stop
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,13 +74,11 @@ class FrictionAlongMotion:
     title: str
     motion: MotionInIntervals
     steps: StepsOfStates | None
-
-    @classmethod
-    def solved(
-        cls, moved: MovedContact, duration: float, rtol: float, title: str = "", report: Callable[[float], object] | None = None
-    ) -> FrictionAlongMotion:
-        """Return friction along a motion up to a duration (s). Raises InputError if it cannot be followed."""
-        return replace(cls.along(moved, in_intervals(moved, duration), duration, rtol, report), title=title)
+    asked_duration: float
+    """How long it was to be followed (s)."""
+    status: Status = STATUSES[Stop.FINISHED]
+    """What ended the run."""
+    description: str = ""
 
     @classmethod
     def along(
@@ -89,12 +87,11 @@ class FrictionAlongMotion:
         motion: MotionInIntervals,
         duration: float,
         rtol: float,
-        report: Callable[[float], object] | None = None,
     ) -> FrictionAlongMotion:
         """Return friction along a motion that is divided into intervals already. Raises InputError if it cannot be followed."""
         law = moved.friction
-        steps = solve_states(law, motion, law.inner_states(moved.given_states), rtol, report) if law.states else None
-        return cls(moved, duration, rtol, "", motion, steps)
+        steps = solve_states(law, motion, law.inner_states(moved.given_states), rtol) if law.states else None
+        return cls(moved, duration, rtol, "", motion, steps, duration)
 
     # ---- values at times ----------------------------------------------------------------------------------------------------
 
@@ -118,6 +115,11 @@ class FrictionAlongMotion:
         """The number of the first step of each interval."""
         assert self.steps is not None
         return np.asarray(np.searchsorted(self.steps.interval, np.arange(len(self.motion.start))))
+
+    @property
+    def _begun(self) -> Floats:
+        """The starts (s) of the intervals that the run has reached."""
+        return self.motion.start[self.motion.start < self.duration]
 
     @cached_property
     def _step_starts(self) -> Floats:
@@ -240,7 +242,7 @@ class FrictionAlongMotion:
     @cached_property
     def times(self) -> Floats:
         """Times (s) that show the run: even ones, and those where the motion has a kink, up to 20 000 of these."""
-        kinks = self.motion.start[:: max(1, -(-len(self.motion.start) // MOST_KINKS))]
+        kinks = self._begun[:: max(1, -(-len(self._begun) // MOST_KINKS))]
         return np.unique(np.concatenate((np.linspace(0.0, self.duration, ROWS + 1), kinks)))
 
     def at(self, t: ArrayLike) -> pd.DataFrame:
@@ -265,11 +267,25 @@ class FrictionAlongMotion:
         found |= dict.fromkeys(("traction", "lowest_traction", "highest_traction", "error"), load) | {"coefficient": "1"}
         return found | {name: one.unit for name, one in zip(("state", "second_state"), moved.friction.states, strict=False)}
 
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write the run to a netCDF file, and return the path: `stickslip.open_solution` gives it back bit for bit.
+
+        Raises InputError if it cannot be written, or for a law or a history that a file cannot name.
+        """
+        from stickslip.extensions.given_motion.kept import write_motion
+
+        return write_motion(self, Path(path))
+
     def to_csv(self, path: str | Path) -> Path:
-        """Write the table at `times`, with units in its headings, and return the path."""
+        """Write the table at `times`, with units in its headings, and return the path; as netCDF if its name ends in .nc."""
         from stickslip.foundation.atomic_write import write_atomically
 
-        table, target = self.at(self.times), Path(path)
+        target = Path(path)
+        if target.suffix.lower() == ".nc":
+            from stickslip.extensions.given_motion.kept import write_curves
+
+            return write_curves(self, target)
+        table = self.at(self.times)
         table.columns = [f"{name} ({self.units[name]})" for name in table.columns]
         return write_atomically(target, lambda draft: table.to_csv(draft, index=False))
 
@@ -288,16 +304,19 @@ class FrictionAlongMotion:
         """Return what is to be said of the run, a sentence each."""
         law, unit, table = self.moved.friction, self.moved.load_unit, self.at(self.times)
         low, high = float(np.nanmin(table.lowest_traction)), float(np.nanmax(table.highest_traction))
-        begun = f"{type(law).__name__} along a given motion of {number(self.duration)} s, in {len(self.motion.start)} intervals"
+        begun = f"{type(law).__name__} along a given motion of {number(self.duration)} s, in {len(self._begun)} intervals"
         found = [begun if self.steps is None else f"{begun} and {len(self.steps.length)} steps"]
         end = brief(float(self.slip(self.duration)), self.units["slip"])
         found.append(f"slip rate {_span(table.slip_rate, self.moved.rate_unit)}, slip at the end {end}")
         found.append(
             f"traction {brief(low, unit)} to {brief(high, unit)}, with an error of at most {float(table.error.max()):.2g} {unit}"
         )
-        rest = float(self.motion.lasting[self.motion.direction == 0.0].sum())
+        lasting = np.diff(np.append(self._begun, self.duration))
+        rest = float(lasting[self.motion.direction[: len(lasting)] == 0.0].sum())
         if rest and law.sticks:
             found.append(f"at rest for {number(rest, 4)} s, where any traction up to static friction is possible")
+        if not self.status.ok:
+            found.append(f"{self.status}; it was to end at {number(self.asked_duration)} s")
         return found
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import number
-from stickslip.run import SolverKind
+from stickslip.run import ALL_TAKE, SolverKind
 
 if TYPE_CHECKING:
+    from stickslip.cli.kinds import KindOfRun
     from stickslip.extensions.given_motion.along import FrictionAlongMotion
     from stickslip.problem.scenarios import Scenario
     from stickslip.run import CallOptions
@@ -20,21 +19,16 @@ def _solves(what: Any) -> bool:
     return isinstance(what, MovedContact)
 
 
-def follow_motion(source: Any, options: CallOptions) -> FrictionAlongMotion:
-    """Find friction along the motion of a `MovedContact`, or of a scenario with a [motion]. Raises InputError."""
-    from stickslip.extensions.given_motion.along import FrictionAlongMotion
+def _run(source: Any, options: CallOptions) -> FrictionAlongMotion:
+    from stickslip.extensions.given_motion.run import follow_motion
 
-    moved = getattr(source, "to_solve", source)
-    if options.duration is None:
-        raise InputError("simulate: a MovedContact needs a duration, in s or with a unit")
-    checked, report = options.checked("simulate"), options.progress
-    duration = float(checked.duration)
+    return follow_motion(source, options)
 
-    def tell(time: float) -> None:
-        assert report is not None
-        report(f"{number(time, 4)} s of {number(duration, 4)} s")
 
-    return FrictionAlongMotion.solved(moved, duration, checked.rtol, checked.title, None if report is None else tell)
+def _on_command_line() -> KindOfRun:
+    from stickslip.extensions.given_motion.command_line import MotionKindOfRun
+
+    return MotionKindOfRun()
 
 
 def _examine(scenario: Scenario) -> Any:
@@ -45,10 +39,11 @@ def _examine(scenario: Scenario) -> Any:
 
 MOVED = SolverKind(
     _solves,
-    follow_motion,
-    frozenset({"duration", "rtol", "title", "progress"}),
+    _run,
+    ALL_TAKE | {"rtol", "title"},
     "a MovedContact has no {}: leave it out",
-    examine=_examine,
+    _on_command_line,
+    _examine,
     what="a MovedContact",
 )
 """The solver of contacts whose motion is given, and of scenarios with a [motion]."""

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 LOADS = "N or Pa or N m"
 """Units of a normal load: of a force, a stress, or the torque of friction if mu is 1."""
+MARK = "stickslip_motion_format"
+"""The attribute of files of runs along given motions."""
 STEADY_START = "steady"
 """The word for the state of steady sliding at the first slip rate."""
 

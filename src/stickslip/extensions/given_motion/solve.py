@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from stickslip.engine import compile_formula
 from stickslip.extensions.given_motion.compiled import along_motion as at
 from stickslip.extensions.given_motion.compiled.nodes import PLACES_IN_STEP
-from stickslip.extensions.given_motion.intervals import MotionInIntervals
+from stickslip.extensions.given_motion.intervals import MotionInIntervals, Places
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.uncompiled import lend_memory
 from stickslip.friction.law import FrictionLaw
 
-AT_ONCE = 2_000
-"""Steps between two reports of progress."""
+AT_ONCE = 20_000
+"""Largest number of steps that are taken at once, without looking at the run."""
+SHORT_RUN = 2_000
+"""Steps that are taken first: most runs have fewer."""
 MOST_STEPS = 20_000_000
 """Largest number of steps of a run."""
 LEAST_TOLERANCE = 1e-14
@@ -29,68 +31,144 @@ LEAST_TOLERANCE = 1e-14
 class StepsOfStates:
     """The states, in the form that formulas use, in all steps: the polynomial through the values at Radau's points."""
 
-    interval: Floats
-    """The interval of each step, as a whole number."""
+    interval: Places
+    """The interval of each step."""
     since: Floats
     """The start (s) of each step since the start of its interval."""
     length: Floats
+    tried: Floats
+    """The length (s) with which the next step was begun."""
     values: Floats
     """(steps, states, points): the states at the points."""
     errors: Floats
     """(steps, states): bounds of the errors of the states at the ends of steps."""
 
+    def first(self, count: int) -> StepsOfStates:
+        """Return the first steps."""
+        return StepsOfStates(*(getattr(self, one.name)[:count] for one in fields(self)))
 
-def solve_states(
-    law: FrictionLaw,
-    motion: MotionInIntervals,
-    start: tuple[float, ...],
-    tolerance: float,
-    report: Callable[[float], object] | None = None,
-) -> StepsOfStates:
-    """Follow the states of a law, given in the form of the formulas, along a motion; `report` is told the time (s) now and then.
+    @classmethod
+    def joined(cls, parts: Sequence[StepsOfStates]) -> StepsOfStates:
+        """Return the steps of several parts of a run, one after the other."""
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
+
+
+class StatesUnderWay:
+    """The states of a law on their way along a motion, and the steps so far; it goes on behind steps that are given."""
+
+    def __init__(
+        self,
+        law: FrictionLaw,
+        motion: MotionInIntervals,
+        start: tuple[float, ...],
+        tolerance: float,
+        before: StepsOfStates | None = None,
+    ) -> None:
+        tree, self.many = law.trees()[0], len(law.states)
+        self.motion, self.name, self.table = motion, type(law).__name__, motion.table()
+        self.formula = compile_formula(
+            tree, law.parameters(), law.state_trees()
+        )  # its machine code is needed as long as this lives
+        self.constants = np.zeros(self.formula.size)
+        self.formula.fill(np.array(law.piece_values(0), float), 0.0, self.constants)
+        lend_memory(self.constants)
+        self.compiled = at.LawWithStates(
+            self.formula.address("state_value"),
+            self.constants.ctypes.data,
+            self.many,
+            law.normal_coupling,
+            np.array([float(one.reverses) for one in law.states]),
+            np.array([one.scale for one in law.states]),
+            max(tolerance, LEAST_TOLERANCE),
+        )
+        self.now = np.zeros(at.LEVELS + 3 * at.MOST_STATES_HERE)
+        self.now[at.LEVELS : at.LEVELS + self.many] = start
+        self.now[at.LEVELS + 2 * at.MOST_STATES_HERE :][: self.many] = np.abs(start)
+        self.now[at.TRIED] = float(self.table[0, at.LASTING])
+        self.parts: list[StepsOfStates] = []
+        self.count = 0
+        if before is not None and len(before.length):
+            self._go_on_behind(before)
+
+    def _go_on_behind(self, steps: StepsOfStates) -> None:
+        """Put the run where some steps have left it."""
+        now, place = self.now, int(steps.interval[-1])
+        since = float(steps.since[-1] + steps.length[-1])
+        is_over = since >= self.table[place, at.LASTING] * (1.0 - at.SHORTEST_STEP)
+        now[at.AT_INTERVAL], now[at.SINCE] = (place + 1, 0.0) if is_over else (place, since)
+        now[at.TRIED] = steps.tried[-1]
+        ends, many = steps.values[:, :, -1], self.many
+        now[at.LEVELS :][:many] = ends[-1]
+        now[at.LEVELS + at.MOST_STATES_HERE :][:many] = steps.errors[-1]
+        largest = now[at.LEVELS + 2 * at.MOST_STATES_HERE :][:many]
+        largest[:] = np.maximum(largest, np.abs(ends).max(axis=0))
+        self.parts, self.count = [steps], len(steps.length)
+
+    @property
+    def is_over(self) -> bool:
+        """True at the end of the motion."""
+        return bool(self.now[at.AT_INTERVAL] >= len(self.table))
+
+    @property
+    def time(self) -> float:
+        """The time (s) that has been reached, in a motion that is not over."""
+        return float(self.motion.start[int(self.now[at.AT_INTERVAL])] + self.now[at.SINCE])
+
+    def advance(self, most: int) -> None:
+        """Take at most so many steps. Raises InputError where the states cannot be followed."""
+        most, many = min(most, AT_ONCE), self.many
+        kept = at.KeptSteps(np.zeros((most, 4)), np.zeros((most, many * PLACES_IN_STEP)), np.zeros((most, many)))
+        count = at.follow_states(self.table, self.compiled, self.now, kept, most)
+        if count < 0 or self.count > MOST_STEPS:
+            why = "no step is short enough" if count < 0 else f"{MOST_STEPS} steps are not enough"
+            raise InputError(f"simulate: the state of {self.name} cannot be followed beyond {self.time:.9g} s: {why}")
+        steps, values = kept.steps[:count], kept.states[:count].reshape(-1, many, PLACES_IN_STEP)
+        errors = np.where(np.isnan(kept.errors[:count]), math.inf, kept.errors[:count])  # one that is no number bounds nothing
+        since, length, tried = (steps[:, n].copy() for n in (1, 2, 3))
+        self.parts.append(StepsOfStates(steps[:, 0].astype(np.int64), since, length, tried, values.copy(), errors))
+        self.count += count
+
+    def steps(self) -> StepsOfStates:
+        """Return all steps so far."""
+        self.parts = [StepsOfStates.joined(self.parts)]
+        return self.parts[0]
+
+
+def solve_states(law: FrictionLaw, motion: MotionInIntervals, start: tuple[float, ...], tolerance: float) -> StepsOfStates:
+    """Follow the states of a law, given in the form of the formulas, along a motion to its end.
 
     Raises InputError where the states cannot be followed.
     """
-    tree, many = law.trees()[0], len(law.states)
-    formula = compile_formula(tree, law.parameters(), law.state_trees())
-    constants = np.zeros(formula.size)
-    formula.fill(np.array(law.piece_values(0), float), 0.0, constants)
-    lend_memory(constants)
-    reverses = np.array([float(one.reverses) for one in law.states])
-    scales = np.array([one.scale for one in law.states])
-    compiled = at.LawWithStates(
-        formula.address("state_value"),
-        constants.ctypes.data,
-        many,
-        law.normal_coupling,
-        reverses,
-        scales,
-        max(tolerance, LEAST_TOLERANCE),
-    )
-    now = np.zeros(at.LEVELS + 3 * at.MOST_STATES_HERE)
-    now[at.LEVELS : at.LEVELS + many] = start
-    now[at.LEVELS + 2 * at.MOST_STATES_HERE :][:many] = np.abs(start)
-    table = motion.table()
-    now[at.TRIED] = float(table[0, at.LASTING])
-    found: list[tuple[Floats, Floats, Floats]] = []
-    while now[at.AT_INTERVAL] < len(table):
-        kept = at.KeptSteps(np.zeros((AT_ONCE, 3)), np.zeros((AT_ONCE, many * PLACES_IN_STEP)), np.zeros((AT_ONCE, many)))
-        count = at.follow_states(table, compiled, now, kept, AT_ONCE)
-        if count < 0 or len(found) * AT_ONCE > MOST_STEPS:
-            place = int(now[at.AT_INTERVAL])
-            time = float(motion.start[place] + now[at.SINCE])
-            why = "no step is short enough" if count < 0 else f"{MOST_STEPS} steps are not enough"
-            raise InputError(f"simulate: the state of {type(law).__name__} cannot be followed beyond {time:.9g} s: {why}")
-        found.append((kept.steps[:count], kept.states[:count], kept.errors[:count]))
-        if report is not None and now[at.AT_INTERVAL] < len(table):
-            report(float(motion.start[int(now[at.AT_INTERVAL])] + now[at.SINCE]))
-    steps, states, errors = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    del formula  # its machine code is needed up to here
-    return StepsOfStates(
-        steps[:, 0].astype(np.int64), steps[:, 1], steps[:, 2], states.reshape(-1, many, PLACES_IN_STEP), _finite(errors)
-    )
+    run = StatesUnderWay(law, motion, start, tolerance)
+    while not run.is_over:
+        run.advance(SHORT_RUN if not run.count else AT_ONCE)
+    return run.steps()
 
 
-def _finite(errors: Floats) -> Floats:
-    """Return bounds of errors; one that is no number bounds nothing."""
-    return np.where(np.isnan(errors), math.inf, errors)
+def steps_that_stay(steps: StepsOfStates, before: MotionInIntervals, after: MotionInIntervals) -> int:
+    """Return how many steps along a motion are those along the same motion to another end, bit for bit.
+
+    A step is another one where the interval differs, and where its end shortens the step or would have done.
+    """
+    one, other = before.table(), after.table()
+    common = min(len(one), len(other))
+    began = before.start[:common] == after.start[:common]
+    same = began & (one[:common] == other[:common]).all(axis=1)
+    place = common if same.all() else int(np.argmin(same))
+    count = int(np.searchsorted(steps.interval, place))
+    alike = np.arange(at.INTERVAL_COLUMNS) != at.LASTING
+    if place == common or not (began[place] and (one[place] == other[place])[alike].all()):
+        return count
+    inside = slice(count, int(np.searchsorted(steps.interval, place, side="right")))
+    lasts = min(one[place, at.LASTING], other[place, at.LASTING]), max(one[place, at.LASTING], other[place, at.LASTING])
+    tried = np.append(one[0, at.LASTING], steps.tried)[inside]
+    freely = np.minimum(tried, _longest_step(one[place])) <= at.OF_REST * (lasts[0] - steps.since[inside])
+    freely &= steps.length[inside] > at.SHORTEST_STEP * lasts[1]
+    return count + (len(freely) if freely.all() else int(np.argmin(freely)))
+
+
+def _longest_step(at_interval: Floats) -> float:
+    """Return how long (s) a step may be at most, as the compiled `longest_step` does."""
+    tones = ((at.RATE_TONE, at.RATE_FREQUENCY), (at.LOAD_TONE, at.LOAD_FREQUENCY))
+    found = [2.0 * math.pi / (at.STEPS_PER_PERIOD * at_interval[of]) for tone, of in tones if at_interval[tone] != 0.0]
+    return float(min(found, default=math.inf))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from typing_extensions import override
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.conversion import Number, unit_among
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.foundation.quantities import Choice, Quantity, quantity
@@ -23,15 +23,8 @@ if TYPE_CHECKING:
 
 MOTION = "motion"
 """The name of the table."""
-UNUSED_BODIES: dict[str, dict[str, Any]] = {
-    "N": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
-    "Pa": {"kind": "elastic-slab", "density": 1e3, "wave_speed": 1e3, "thickness": 1.0, "normal_stress": 1e6},
-    "N m": {"kind": "rotating-block", "inertia": 1.0, "stiffness": 1.0, "normal_torque": 1.0},
-}
-"""The [body] of a scenario that has none, by the unit of its normal load: nothing but that unit is used of it."""
 STILL: dict[str, Any] = {"pull_rate": 0.0}
 """The [loading] of a scenario with a [motion]."""
-UNITS_OF_LOAD = ", ".join(repr(one) for one in UNUSED_BODIES)
 STATE_KEYS = ("initial_state", "initial_second_state")
 NO_LOADING = "[motion] gives slip rate and normal load: leave [loading] out"
 NO_START = "[motion] has initial_slip and initial_state: leave [initial] out"
@@ -73,7 +66,7 @@ class MotionTable(ScenarioTable):
         return {
             "slip_rate": Key(_read_varying, meaning="slip rate, a number or a history [motion.slip_rate]"),
             "normal_load": Key(_read_varying, meaning="normal load, a number or a history [motion.normal_load]"),
-            "load_unit": Key(lambda value, place: value, "N", f"unit of plain numbers of the normal load: {UNITS_OF_LOAD}"),
+            "load_unit": Key(lambda value, place: value, "N", "unit of plain numbers of the normal load: 'N', 'Pa', 'N m'"),
             **{name: Key(lambda value, place: value, None, "state of the law at the start, or 'steady'") for name in STATE_KEYS},
         }
 
@@ -89,7 +82,9 @@ class MotionTable(ScenarioTable):
             raise InputError(f"{source.file}: {NO_LOADING}")
         if raw.get("initial") is not None and not (isinstance(raw["initial"], dict) and raw["initial"].get("load") == 0.0):
             raise InputError(f"{source.file}: {NO_START}")
-        motion = _with_load(motion, raw.get("body"), source)
+        from stickslip.extensions.given_motion.load_of_motion import UNUSED_BODIES, with_load  # only where there is a [motion]
+
+        motion = with_load(motion, raw.get("body"), source)
         unit = motion["load_unit"]
         law = read_part("friction", dict(raw["friction"]), source._replace(load_unit=unit))
         start: dict[str, Any] = {"load": 0.0}
@@ -138,32 +133,6 @@ def moved_of(value: GivenMotion, problem: Problem) -> MovedContact:
     load = with_unit_of_load(value.normal_load, value.load_unit)
     starts = {name: getattr(value, name) for name in STATE_KEYS}
     return MovedContact(problem.friction, value.slip_rate, load, value.initial_slip, **starts)
-
-
-def _with_load(motion: Mapping[str, Any], body: Any, source: Source) -> dict[str, Any]:
-    """Return a [motion] with the unit of its normal load, and with that load: that of a [body] if it has none itself.
-
-    Raises InputError if there is no load, or a unit of no load.
-    """
-    of_body = read_part("body", body, source) if isinstance(body, dict) else None
-    load = motion.get("normal_load")
-    unit = motion.get("load_unit", _unit_of(load) if of_body is None else of_body.load_unit)
-    if unit not in tuple(UNUSED_BODIES):
-        raise InputError(f"{source.file}: [motion] load_unit {shown(unit)} is unknown; allowed: {UNITS_OF_LOAD}")
-    if load is None:
-        if of_body is None:
-            raise InputError(f"{source.file}: [motion] normal_load is missing: a number such as '100 N' or '5 MPa', or a history")
-        load = f"{of_body.normal_load!r} {of_body.load_unit}"
-    return dict(motion) | {"normal_load": load, "load_unit": unit}
-
-
-def _unit_of(load: Any) -> str:
-    """Return the unit of a normal load in a file: that of a text, or of the first text among the values of a history."""
-    values = load.get("values", load.get("mean")) if isinstance(load, dict) else load
-    for one in values if isinstance(values, list) else [values]:
-        if found := unit_among(one, " or ".join(UNUSED_BODIES)):
-            return found
-    return "N"
 
 
 def _read_varying(value: Any, place: Any) -> Any:

@@ -174,7 +174,7 @@ FEWEST_CELLS = 12
 
 def _slab_of(problem: Problem) -> ElasticSlab:
     """Return the slab of a problem. Raises InputError for any other body."""
-    return as_slab(problem.body, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
+    return as_slab(problem.body, f"schemes: {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
 
 
 def check_suitable(problem: Problem) -> None:

@@ -54,6 +54,8 @@ ROUNDING_OF_STATE = 1e-15
 """A change of a state by this share (1) of its size is rounding."""
 SHORTEST_STEP = 1e-13
 """A step shorter than this share (1) of its interval cannot be told from nothing: the run ends."""
+OF_REST = 0.7
+"""A step that is longer than this share (1) of the rest of its interval is all of it, or half."""
 SMALL_BESIDE_LARGEST = 1e-3
 """A state smaller than this share (1) of its largest size so far has an absolute error."""
 STEPS_PER_PERIOD = 6.0
@@ -78,7 +80,7 @@ class LawWithStates(NamedTuple):
 
 
 class KeptSteps(NamedTuple):
-    """Room for steps: interval, start and length (s), the states at the points, and the bounds of their errors at the end."""
+    """Room for steps: interval, start, length, and length of the next to be tried (s), states at the points, bounds of errors."""
 
     steps: Floats2
     states: Floats2
@@ -270,7 +272,7 @@ def take_step(at: Floats1, law: LawWithStates, now: Floats1, w: Floats) -> float
     """Take one step in an interval, with the states at its points in `w`; return its length (s), 0 if none is short enough."""
     left = at[LASTING] - now[SINCE]
     length = min(now[TRIED], longest_step(at))
-    if length > 0.7 * left:
+    if length > OF_REST * left:
         length = left if length >= left else 0.5 * left
     while length > SHORTEST_STEP * at[LASTING]:
         for n in range(law.states):
@@ -300,6 +302,7 @@ def follow_states(intervals: Floats2, law: LawWithStates, now: Floats1, kept: Ke
         if length == 0.0:
             return FAILED_STEP
         kept.steps[count, 0], kept.steps[count, 1], kept.steps[count, 2] = now[AT_INTERVAL], now[SINCE], length
+        kept.steps[count, 3] = now[TRIED]
         now[SINCE] += length
         for n in range(many):
             for i in range(PLACES_IN_STEP):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -118,7 +119,22 @@ def _study(records: list[Path], yields: Any, asked: dict[str, Any]) -> SlidingDi
     from stickslip.run import progress_line
 
     with progress_line("slide:") as report:
-        return sliding(records, yields, **asked, progress=report)
+        try:
+            return sliding(records, yields, **asked, progress=report)
+        except InputError as error:
+            raise InputError(_in_options(str(error))) from None
+
+
+def _in_options(message: str) -> str:
+    """Return a message of `sliding` in the words of the command line: arguments as options."""
+    message = message.replace("polarity=-1", "--polarity -1").replace("scale or scale_to_pga", "--scale or --scale-to-pga")
+    message = message.replace("None or 'mean'", "'mean', or left out")
+    if not message.startswith("sliding: "):
+        return message
+    argument = re.match(r"sliding: (scale_to_pga|scale|polarity|unit|baseline|backward) must", message)
+    if argument is None:
+        return f"slide: {message.removeprefix('sliding: ')}"
+    return f"slide: --{argument[1].replace('_', '-')} must{message[argument.end() :]}"
 
 
 def _yields(text: str) -> Any:
