@@ -83,7 +83,7 @@ def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
     return found
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ChainRun(NamesAttributes):
     """A chain that was solved from t = 0 to a time, by `stickslip.simulate`.
 
@@ -196,6 +196,9 @@ class ChainRun(NamesAttributes):
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         return ChainMotion(wanted, found.slip[back], found.slip_rate[back])
+
+    def __repr__(self) -> str:
+        return f"ChainRun of {self.chain.count} blocks: {self.count_of_events} events in {self.duration:g} s"
 
     @property
     def plot(self) -> ChainPlots:
