@@ -120,7 +120,7 @@ class Path:
         return np.asarray((ends[0] - ends[1]) / (2.0 * NUDGE) / self.scales[:-1])
 
     def at(self, target: Floats, way: Floats, guess: float) -> PlaceOnBranch:
-        """Return the cycle in the plane through `target` across `way`, with the direction of the branch there. Raises NoCycleError."""
+        """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError."""
         value, orbit, slopes = self.solved(target, way, guess)
         new = np.linalg.solve(np.vstack([slopes, way]), np.append(np.zeros(len(slopes)), 1.0))
         return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))

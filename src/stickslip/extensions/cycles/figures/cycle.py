@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter_panels, panels, set_scale, zero_line
+from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.style import BLUE, INK, VERMILLION, curve_quantity, label, shown, spans_decades, styled, unit_shown
 from stickslip.foundation.place import Place
 
@@ -40,8 +40,8 @@ def draw_cycle(found: LimitCycle, **place: Unpack[Place]) -> Figure:
     plane = figure.add_subplot(grid[0, 1].get_gridspec()[:, 1])
     plane.plot(shown(drawn["slip_rate"], units["slip_rate"]), shown(drawn["load"], units["load"]), color=BLUE)
     if rate.min() > 0.0 and spans_decades(rate):
-        set_scale(plane, "x", log=True)
-        set_scale(grid[0, 0], "y", log=True)
+        plane.set_xscale("log")
+        grid[0, 0].set_yscale("log")
     plane.set(xlabel=label(drawn["slip_rate"], units["slip_rate"]), ylabel=label(drawn["load"], units["load"]))
     letter_panels([*grid[:, 0], plane], ["one period", "traction, and load (dashed)", "phase plane"])
     return figure
