@@ -97,7 +97,7 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
         return Orbit(now, extent, 1, 0.0)
     period, share = now.time, _share(now, extent)
     for n in range(MOST_ITERATIONS):
-        step = np.linalg.solve(now.slopes(exactly=False) - np.eye(len(place)), -now.missed)
+        step = _step(now)
         tried = _shortened(section, now, step, share, extent)
         period, change = tried.time, abs(tried.time - period)
         new = _share(tried, extent)
@@ -107,6 +107,14 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
         now, share = tried, new
         extent = extent_of(now.history, section.at_onset, now.piece)
     raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
+
+
+def _step(now: Return) -> Floats:
+    """Return the step of Newton's iteration. Raises InputError if the cycles near here cannot be told apart."""
+    try:
+        return np.asarray(np.linalg.solve(now.slopes(exactly=False) - np.eye(len(now.start)), -now.missed))
+    except np.linalg.LinAlgError:
+        raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
 
 
 def _share(one: Return, extent: Floats) -> float:

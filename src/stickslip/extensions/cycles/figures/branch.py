@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -30,18 +31,19 @@ def draw_branch(found: BranchOfCycles, **place: Unpack[Place]) -> Figure:
     figure, grid = panels(2, 1, (6.4, 5.2), place, sharex=True)
     parameter, load_unit = found.parameter, found.problem.load_unit
     words = parameter_name(parameter.name, parameter.declared.meaning)
-    along = quantity("cycle", [one.value for one in found.points], words, "", parameter.unit or "1")
     sizes = {name: [getattr(one.measures, name) for one in found.points] for name in ("amplitude", "period")}
     rates = curve_quantity("cycle", sizes["amplitude"], "slip_rate", load_unit)
     rates.attrs["long_name"] = "amplitude of the slip rate"
+    along = quantity("cycle", [one.value for one in found.points], words, "", parameter.unit or "1")
     periods = quantity("cycle", sizes["period"], "period", "T", "s")
-    unit = unit_shown(along)
-    values = shown(along, unit)
-    for axes, variable in zip(grid[:, 0], (rates, periods), strict=True):
-        own = unit_shown(variable)
-        _draw_cycles(axes, found, values, shown(variable, own))
-        axes.set_ylabel(folded(label(variable, own)))
-    grid[1, 0].set_xlabel(folded(label(along, unit)))
+    drawn = xr.Dataset({"along": along, "amplitude": rates, "period": periods})
+    unit = unit_shown(drawn["along"])
+    values = shown(drawn["along"], unit)
+    for axes, name in zip(grid[:, 0], sizes, strict=True):
+        own = unit_shown(drawn[name])
+        _draw_cycles(axes, found, values, shown(drawn[name], own))
+        axes.set_ylabel(folded(label(drawn[name], own)))
+    grid[1, 0].set_xlabel(folded(label(drawn["along"], unit)))
     letter_panels(grid[:, 0], ["amplitude", "period"])
     add_legend(grid[0, 0], grid[0, 0].get_legend_handles_labels()[0])
     return figure

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Unpack
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 from stickslip.figures.panels import letter_panels, panels, zero_line
@@ -25,8 +26,8 @@ def draw_cycle(found: LimitCycle, **place: Unpack[Place]) -> Figure:
     unit_of_loads = found.problem.load_unit
     time, (rate, traction, load) = found.run.curves_together(CURVES, 0.0, found.run.duration)
     values: Any = {"slip_rate": rate, "traction": traction, "load": load, "time": time}
-    drawn = {name: curve_quantity("time", one, name, unit_of_loads) for name, one in values.items()}
-    units = {name: unit_shown(one) for name, one in drawn.items()}
+    drawn = xr.Dataset({name: curve_quantity("along", one, name, unit_of_loads) for name, one in values.items()})
+    units = {name: unit_shown(drawn[name]) for name in values}
     units["load"] = units["traction"]
     over = shown(drawn["time"], units["time"])
     for axes, name, colour in zip(grid[:, 0], CURVES, (BLUE, VERMILLION), strict=False):
