@@ -127,6 +127,7 @@ REFUSED: list[tuple[Any, tuple[Any, ...], str]] = [
     (problem(), (1.0, (16,)), "blocks must be two or more numbers, such as (16, 32, 64), got"),
     (problem(), (1.0, (32, 16)), "blocks must ascend, got 32, 16"),
     (problem(), (1.0, (2, 16)), "blocks must be a whole number from 4 to 4096"),
+    (problem(initial_excess=-0.5), (1.0,), "the contact of the slab does not slip within 1 s: take a longer duration"),
     (problem(), (1e5,), "duration must be at most 1000 round trips, 2000 s, got 100000 s"),
 ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.chains.compiled import memory as at
+from stickslip.extensions.chains.summary import lines_of
 from stickslip.problem.scenarios import library
 from tests.command_line import Command
 
@@ -35,6 +38,15 @@ def test_run_says_what_happened(command: Command) -> None:
     assert lines[3].endswith("changes of single blocks")
     assert lines[4].startswith("largest: ")
     assert "energy: driver " in shown.out
+
+
+def test_a_balance_that_lacks_more_than_rounding_is_not_called_rounding() -> None:
+    run = ss.simulate("two-blocks")
+    assert "J of rounding" in "".join(lines_of(run))
+    now = run.final.now.copy()
+    now[at.HEAT] += 1e-4
+    worse = replace(run, final=replace(run.final, now=now))
+    assert list(lines_of(worse))[-1].strip() == "the balance lacks 1.0e-04 J, which is more than rounding"
 
 
 def test_a_run_is_kept_shown_continued_and_written_again(command: Command, tmp_path: Path) -> None:

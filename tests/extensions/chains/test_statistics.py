@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.optimize import minimize_scalar
 
@@ -181,8 +182,14 @@ def test_magnitudes_of_moments_and_of_a_run() -> None:
 
 
 REFUSED = [
-    (([],), {}, "magnitudes must be a list of numbers, got an array of shape (0,)"),
-    (("4.0",), {}, "magnitudes must be a list of numbers, got"),
+    (([],), {}, "magnitudes must be the run of a chain or a list of numbers, got an array of shape (0,)"),
+    (("4.0",), {}, "magnitudes must be the run of a chain or a list of numbers, got '4.0'"),
+    ((None,), {}, "magnitudes must be the run of a chain or a list of numbers, got None"),
+    ((np.zeros(3, [("time", float), ("moment", float)]),), {}, "got a table: give the run itself, or magnitudes"),
+    ((pd.DataFrame({"moment": [1.0, 2.0]}),), {}, "got a table: give the run itself, or magnitudes"),
+    (([1.0 + n * 3e-16 for n in range(10)],), {}, "all 10 events from magnitude 1 on have one magnitude"),
+    (([1.0, 2.0, 2.0 + 4e-16, 2.0], 2.0), {}, "events from magnitude 2 on have one magnitude"),
+    (([1.0, 2.0], 1.0, 1e-320), {}, "bin must be 0, for magnitudes that were not rounded, or 2e-09 or more, got 9.9"),
     (([[1.0, 2.0]],), {}, "got an array of shape (1, 2)"),
     (([1.0, math.nan],), {}, "magnitudes must be finite, and number 2 of 2 is nan"),
     (([1.0, 2.0], 3.0), {}, "needs two events, and there are none from magnitude 3 on (as given: give a smaller completeness)"),
@@ -213,3 +220,23 @@ def test_moments_of_zero_and_unknown_scales_are_refused() -> None:
         ss.studies.magnitudes([1.0, 0.0])
     with pytest.raises(ss.InputError, match="scale must be 'ln' or 'moment', got 'log10'"):
         ss.studies.magnitudes([1.0], "log10")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("scale", "got"), [(5, "5"), ([1], "[1]"), ("log", "'log'"), (None, "None")])
+def test_scales_of_any_type_are_refused_in_one_line(scale: Any, got: str) -> None:
+    with pytest.raises(ss.InputError) as error:
+        ss.studies.magnitudes([1.0], scale)
+    assert str(error.value) == f"magnitudes: scale must be 'ln' or 'moment', got {got}"
+
+
+@pytest.mark.parametrize(("magnitudes", "completeness"), [([1, 2, 3.0], None), ([0, 1.0], 0.0), (drawn(9), 0.0)])
+def test_the_law_is_not_said_to_fit_too_few_events(magnitudes: Any, completeness: float | None) -> None:
+    found = ss.studies.gutenberg_richter(magnitudes, completeness)
+    assert found.fit_text == f"{found.events} events are too few to judge whether the law fits"
+    assert "the law fits" in ss.studies.gutenberg_richter(drawn(10), 0.0).fit_text
+
+
+def test_equal_blocks_whose_events_differ_by_rounding_have_no_slope() -> None:
+    chain = ss.Chain(ss.friction.Coulomb(1, 0.8), 3, 1.0, 1.0, 1.0, 1.0, 1e-3)
+    with pytest.raises(ss.InputError, match=r"all 10 events from magnitude 0\.19017 on have one magnitude"):
+        ss.studies.gutenberg_richter(ss.simulate(chain, 5000.0))

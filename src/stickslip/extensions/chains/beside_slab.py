@@ -145,7 +145,7 @@ def chain_beside_slab(
     ------
     InputError
         If the body is no slab under a rigid driver, if its contact has a mass, if pull or normal stress vary, if the contact slides
-        at the start, if the law is one that chains do not follow, or if a number is out of range.
+        at the start or does not slip at all, if the law is one that chains do not follow, or if a number is out of range.
 
     Examples
     --------
@@ -174,6 +174,7 @@ def chain_beside_slab(
         tell("the slab")
         slab = uninterrupted(simulate(given, lasts))
         exact = slab.slip(times) - given.initial_slip
+        check_slips(exact, lasts)
         for count in counts:
             tell(f"{count} blocks")
             half_mass = 0.5 * body.density * body.thickness / count
@@ -210,6 +211,15 @@ def _has_block(problem: Problem) -> bool:
     except InputError:
         return False
     return True
+
+
+def check_slips(slip: Floats, duration: float) -> None:
+    """Refuse a slab that stays at rest: chains would be 0 m away from it, and at no order. Raises InputError."""
+    if not slip.any():
+        raise InputError(
+            f"chain_beside_slab: the contact of the slab does not slip within {duration:.6g} s: take a longer duration, or "
+            "begin at the strength with initial_excess=0"
+        )
 
 
 def checked_counts(blocks: Any) -> list[int]:
@@ -285,15 +295,5 @@ def with_orders(table: pd.DataFrame) -> pd.DataFrame:
         order: np.log(grouped[column].shift() / table[column]) / ratio
         for order, column in (("order", "difference"), ("order_with_mass", "difference_with_mass"))
     }
-    names = [
-        "blocks",
-        "first_block",
-        "difference",
-        "order",
-        "difference_with_mass",
-        "order_with_mass",
-        "front",
-        "airy_front",
-        "peak",
-    ]
-    return table.assign(**found)[names]
+    given = ("blocks", "first_block", "difference", "order", "difference_with_mass", "order_with_mass")
+    return table.assign(**found)[[*given, "front", "airy_front", "peak"]]

@@ -65,7 +65,8 @@ class Chain(CheckedArguments):
     ends : "free", "fixed" or "periodic", default "free"
         Whether the outer blocks have no further neighbour, are held by a spring to a wall at 0, or by each other.
     direction : "both" or "forward", default "both"
-        Whether blocks may slip back, or friction then resists without limit, as in much of the literature.
+        Whether blocks may slip back, or friction then resists without limit, as in much of the literature. Blocks without friction
+        go back in any case.
 
     Raises
     ------

@@ -12,16 +12,17 @@ from __future__ import annotations
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError
 
 Scale = Literal["ln", "moment"]
 """What a magnitude is: "ln" is mu = ln M, "moment" is m = (2/3) log10 M."""
 FACTORS = {"ln": 1.0, "moment": 2.0 / (3.0 * np.log(10.0))}
 """A magnitude divided by ln M."""
+RUN_OR_NUMBERS = "the run of a chain or a list of numbers"
+"""What functions of catalogues take."""
 SYMBOLS = {"ln": r"\mu = \ln M", "moment": r"m = \frac{2}{3} \log_{10} M"}
 """How a figure writes a magnitude."""
 
@@ -49,8 +50,8 @@ def magnitudes(moments: Any, scale: Scale = "ln") -> Floats:
     >>> ss.studies.magnitudes([1.0, 10.0], "moment").round(3).tolist()
     [0.0, 0.667]
     """
-    if scale not in get_args(Scale):
-        raise InputError(f"magnitudes: scale must be 'ln' or 'moment', got {shown(scale)}{nearest(scale, FACTORS)}")
+    if not isinstance(scale, str) or scale not in get_args(Scale):
+        raise InputError(f"magnitudes: scale must be 'ln' or 'moment', got {shown(scale)}")
     given = moments_of(moments)
     return np.asarray(np.log(np.abs(given)) * FACTORS[scale])
 
@@ -60,21 +61,24 @@ def moments_of(source: Any) -> Floats:
     if (events := getattr(source, "events", None)) is not None:
         found = np.asarray(events["moment"], dtype=float)
         return np.asarray(found[found != 0.0])
-    given = numbers_of("magnitudes", "moments", source)
+    given = numbers_of("magnitudes", "moments", source, RUN_OR_NUMBERS)
     if not given.all():
         where = int(np.flatnonzero(given == 0.0)[0])
         raise InputError(f"magnitudes: moments must not be 0, and that of event {where + 1} of {len(given)} is: leave it out")
     return given
 
 
-def numbers_of(who: str, name: str, given: ArrayLike) -> Floats:
-    """Return a list of finite numbers as an array. Raises InputError, which begins with `who`."""
+def numbers_of(who: str, name: str, given: Any, wanted: str = "a list of numbers") -> Floats:
+    """Return a list of finite numbers as an array. Raises InputError, which begins with `who` and says what is `wanted`."""
+    if hasattr(given, "columns") or getattr(getattr(given, "dtype", None), "names", None):
+        raise InputError(f"{who}: {name} must be {wanted}, got a table: give the run itself, or {name}")
     try:
         found = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        raise InputError(f"{who}: {name} must be a list of numbers, got {shown(given)}") from None
+        raise InputError(f"{who}: {name} must be {wanted}, got {shown(given)}") from None
     if found.ndim != 1 or not found.size:
-        raise InputError(f"{who}: {name} must be a list of numbers, got an array of shape {found.shape}")
+        got = f"an array of shape {found.shape}" if found.ndim else shown(given)
+        raise InputError(f"{who}: {name} must be {wanted}, got {got}")
     if not np.isfinite(found).all():
         where = int(np.flatnonzero(~np.isfinite(found))[0])
         raise InputError(f"{who}: {name} must be finite, and number {where + 1} of {len(found)} is {found[where]:g}")

@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from stickslip.extensions.chains.magnitudes import RUN_OR_NUMBERS, numbers_of
 from stickslip.extensions.chains.magnitudes import magnitudes as magnitudes_of
-from stickslip.extensions.chains.magnitudes import numbers_of
-from stickslip.extensions.chains.statistics_asked import ON_GRID, between, check_enough, checked_number, on_grid
+from stickslip.extensions.chains.statistics_asked import ON_GRID, between, check_enough, checked_bin, checked_number, on_grid
 from stickslip.extensions.chains.statistics_likelihood import (
     completeness_of,
     drawn_excess,
@@ -45,6 +45,8 @@ BINS_SHOWN = 25
 """The table of exact magnitudes has about so many bins."""
 CATALOGUES_DRAWN = 1_000
 """How well the law fits is judged by so many drawn catalogues of at most as many events each."""
+JUDGED = 10
+"""How well the law fits fewer events than this is not judged: hardly any of them could be too far from it."""
 BARELY = 0.05
 """The law is said not to fit if a drawn catalogue is as far from it with a smaller probability than this."""
 
@@ -183,6 +185,8 @@ class GutenbergRichter(Study):
     @property
     def fit_text(self) -> str:
         """How well the law fits."""
+        if self.events < JUDGED:
+            return f"{self.events} events are too few to judge whether the law fits"
         verdict = "the law does not fit: b says little" if self.p_value < BARELY else "the law fits"
         return f"{verdict} (distance {self.distance:.3g}; {100.0 * self.p_value:.2g} % of catalogues drawn from it are as far)"
 
@@ -253,10 +257,9 @@ def gutenberg_richter(
     b = 1.012, 0.992 to 1.033
     """
     who = "gutenberg_richter"
-    given = numbers_of(who, "magnitudes", magnitudes_of(magnitudes) if hasattr(magnitudes, "events") else magnitudes)
-    width = checked_number(who, "bin", bin)
-    if width < 0.0:
-        raise InputError(f"{who}: bin must be 0 or more, got {width:g}")
+    listed = magnitudes_of(magnitudes) if hasattr(magnitudes, "events") else magnitudes
+    given = numbers_of(who, "magnitudes", listed, RUN_OR_NUMBERS)
+    width = checked_bin(bin, given)
     if not 0.0 < checked_number(who, "confidence", confidence) < 1.0:
         raise InputError(f"{who}: confidence must lie between 0 and 1, such as 0.95, got {confidence:g}")
     check_whole(f"{who}: resamples", resamples, 20, MOST_RESAMPLES)
@@ -272,7 +275,7 @@ def gutenberg_richter(
         least = phase + math.ceil((least - phase) / width - ON_GRID) * width
         most = phase + math.floor((most - phase) / width + ON_GRID) * width if math.isfinite(most) else most
     excess = between(ordered, least, most, width) - least
-    check_enough(excess, least, most, told)
+    check_enough(excess, least, most, told=told)
     beta = slope(float(excess.mean()), width, most - least)
     means = resampled_means(excess, resamples, seed)
     slopes = np.array([slope(float(mean), width, most - least) for mean in means]) / LN_10

@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.extensions.chains.statistics_likelihood import EQUAL
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 ON_GRID = 1e-6
 """Magnitudes in bins may lie beside the grid by this share of a bin: texts of decimals do."""
+SMALLEST_BIN = 1e-9
+"""Width of the smallest bin, of the largest magnitude if that is above 1: places in smaller ones are lost to rounding."""
 
 
 def between(ordered: Floats, least: float, most: float, width: float) -> Floats:
@@ -38,7 +41,7 @@ def on_grid(ordered: Floats, width: float) -> Floats:
     return np.asarray(middle + np.round(place) * width)
 
 
-def check_enough(excess: Floats, least: float, most: float, told: bool) -> None:
+def check_enough(excess: Floats, least: float, most: float, *, told: bool) -> None:
     """Raise InputError if magnitudes from `least` to `most` say nothing of a slope."""
     where = f"from magnitude {least:.6g} on" if math.isinf(most) else f"from magnitude {least:.6g} to {most:.6g}"
     how = "found by the largest curvature: give a completeness" if told else "as given: give a smaller completeness"
@@ -46,8 +49,18 @@ def check_enough(excess: Floats, least: float, most: float, told: bool) -> None:
         raise InputError(
             f"gutenberg_richter: needs two events, and there {'is one' if len(excess) else 'are none'} {where} ({how})"
         )
-    if excess[0] == excess[-1] and excess[0] in (0.0, most - least):
+    if excess[-1] - excess[0] <= EQUAL and (excess[0] <= EQUAL or abs(excess[0] - (most - least)) <= EQUAL):
         raise InputError(f"gutenberg_richter: all {len(excess)} events {where} have one magnitude, which says nothing of a slope")
+
+
+def checked_bin(given: Any, magnitudes: Floats) -> float:
+    """Return the width of bins, 0 of magnitudes that were not rounded. Raises InputError."""
+    width = checked_number("gutenberg_richter", "bin", given)
+    smallest = SMALLEST_BIN * max(1.0, float(np.abs(magnitudes).max()))
+    if width < 0.0 or 0.0 < width < smallest:
+        allowed = "0 or more" if width < 0.0 else f"0, for magnitudes that were not rounded, or {smallest:.2g} or more"
+        raise InputError(f"gutenberg_richter: bin must be {allowed}, got {width:.6g}")
+    return width
 
 
 def checked_number(who: str, name: str, value: Any) -> float:

@@ -27,6 +27,8 @@ SERIES = 0.05
 """Below this |z| f is its power series, whose next term is then below 1e-15."""
 DRAWN_AT_ONCE = 5_000_000
 """Draw at most so many numbers at once: 40 MB."""
+EQUAL = 1e-9
+"""Magnitudes of events that are equal but for rounding differ by less than this."""
 SHARE_OF_QUARTILES = 0.2
 """Width of the bins for completeness as a share of the distance between the quartiles: 0.1 for b = 1."""
 BINS_ADDED = 2
@@ -123,8 +125,8 @@ def completeness_of(magnitudes: Floats, width: float) -> float:
     if width:
         wide = max(round(wide / width), 1) * width
         phase = float(magnitudes[len(magnitudes) // 4]) - 0.5 * width  # an edge of the bins
-    elif wide == 0.0:
-        return float(low)
+    elif wide <= EQUAL:
+        return float(magnitudes[np.searchsorted(magnitudes, low - EQUAL)])
     else:
         phase = float(low)
     place = np.floor((magnitudes - phase) / wide + (1e-9 if width else 0.0)).astype(np.int64)

@@ -10,11 +10,13 @@ import numpy as np
 from stickslip.foundation.show import about_time, brief, number
 
 if TYPE_CHECKING:
-    from stickslip.extensions.chains.run import ChainRun
-
+    from stickslip.extensions.chains.run import ChainEnergy, ChainRun
 
 ENOUGH_STEPS = 100_000
 """From so many steps of blocks on the time of a step is told: in fewer it is that of the start."""
+
+ROUNDING = 1e-10
+"""Energies that do not balance to this share of the largest are not those of an exact motion that was rounded."""
 
 
 def lines_of(run: ChainRun, took: float | None = None, steps_before: int = 0) -> Iterator[str]:
@@ -42,7 +44,7 @@ def lines_of(run: ChainRun, took: float | None = None, steps_before: int = 0) ->
     told = ", ".join(f"{name} {brief(one, 'J')}" for name, one in shares.items() if one)
     given = f"driver {brief(energy.driver, 'J')} + springs at the start {brief(energy.springs_at_start, 'J')}"
     yield f"energy: {given} = {told or 'nothing'}"
-    yield f"        but for {energy.error:.1e} J of rounding"
+    yield f"        {_balance(energy)}"
     if took is not None and took > 0.0:
         steps = run.moving_steps - steps_before
         each = f", {number(1e6 * took / steps, 3)} us a step of a block" if steps > ENOUGH_STEPS else ""
@@ -52,6 +54,13 @@ def lines_of(run: ChainRun, took: float | None = None, steps_before: int = 0) ->
 def proof_of(run: ChainRun) -> str:
     """Return what is proven of a run."""
     return run.proof()
+
+
+def _balance(energy: ChainEnergy) -> str:
+    """Return by how much energies do not balance."""
+    if abs(energy.error) <= ROUNDING * max(map(abs, energy)):
+        return f"but for {energy.error:.1e} J of rounding"
+    return f"the balance lacks {energy.error:.1e} J, which is more than rounding"
 
 
 def _blocks(count: int) -> str:
