@@ -90,3 +90,33 @@ def test_edges_from_both_sides_of_a_grazed_rest_agree() -> None:
     assert up.edges[0].name == "first stick"
     assert up.edges[0].value == pytest.approx(lost.value, rel=1e-9)
     assert any(one.sticks and one.value < 0.3 for one in up.points), "stick-slip follows, downwards"
+
+
+def swinging(s1: float, amplitude: float) -> ss.Problem:
+    """Return a block under friction that falls, rises and falls again around the pull rate, with less swing than ends in rest."""
+    law = ss.friction.FromExpression(
+        "0.5 + s1*(v/v0-1) - s3*(v/v0-1)**3 + s5*(v/v0-1)**5", {"s1": s1, "s3": 0.2, "s5": 0.4, "v0": "1 m/s"}
+    )
+    load = 0.5 * NORMAL + amplitude * 1e3**0.5
+    return ss.Problem(ss.SpringBlock(1.0, 1e3, NORMAL), law, pull_rate=1.0, initial_rate=1.0, initial_load=load)
+
+
+def test_a_branch_goes_around_a_fold_of_cycles_and_comes_back_unstable() -> None:
+    """By averages over a period the fold lies at s1 = 9 s3^2 / (40 s5), where the amplitude is sqrt(3 s3 / (5 s5)): both to 1e-4.
+
+    On the other side the branch ends where s1 = 0, exactly; the fold is the same from two starts to 1e-9.
+    """
+    folds = []
+    for start in (0.005, -0.005):
+        branch = ss.studies.follow(ss.studies.cycle(swinging(start, 0.85), near=4.0), "friction.parameters.s1", to=0.05, steps=5)
+        folds.append(branch.edges[0])
+    assert {edge.name for edge in folds} == {"fold of cycles"}
+    assert folds[0].value == pytest.approx(9.0 * 0.2**2 / (40.0 * 0.4), rel=1e-4)
+    assert folds[0].value == pytest.approx(folds[1].value, rel=1e-9)
+    assert folds[0].orbit.multipliers[0].real == pytest.approx(1.0, abs=1e-6)
+    at_fold = next(one for one in branch.points if one.edge == "fold of cycles")
+    assert at_fold.measures.amplitude == pytest.approx((3.0 * 0.2 / (5.0 * 0.4)) ** 0.5, rel=1e-3)
+    assert branch.edges[1].name == "steady sliding"
+    assert branch.edges[1].value == pytest.approx(0.0, abs=1e-11)
+    stable = [one.stable for one in branch.points if not one.edge]
+    assert (stable[0], stable[-1]) == (True, False)

@@ -105,7 +105,6 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
             best = tried if new < share else now
             return _checked(Orbit(best, extent_of(best.history, section.at_onset, best.piece), n + 2, change))
         now, share = tried, new
-        extent = extent_of(now.history, section.at_onset, now.piece)
     raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
 
 
