@@ -84,10 +84,12 @@ def test_equal_blocks_are_one_spring_block(law):
     assert slips[:, 0] == pytest.approx(block.slip(np.linspace(0.0, 300.0, 301)), rel=0, abs=1e-8)
 
 
-def test_a_touch_of_zero_rate_is_no_arrest():
-    """Under constant friction the rate is V (1 - cos wt): it touches 0 once in each period."""
+def test_equal_blocks_touch_zero_rate_together():
+    """Under constant friction the rate is V (1 - cos wt): it touches 0 once in each period, which is an event as of one block."""
     run = solve_chain(ss.Chain(ss.friction.Coulomb(1.0, 1.0), 3, 1.0, 2.0, 4.0, 1.0, 1e-2), 125.0, keep="changes")
-    assert run.changes["kind"].tolist() == [CHANGE_NAMES.index("onset")] * 3
+    assert run.count_of_events == 31
+    assert run.changes["kind"].tolist() == [*[CHANGE_NAMES.index("onset")] * 3, *[CHANGE_NAMES.index("arrest")] * 3] * 31 + [0] * 3
+    assert (run.slip == run.slip[0]).all()
     assert run.slip == pytest.approx([1e-2 * (100.0 - np.sin(200.0) / 2.0)] * 3, rel=1e-12, abs=0)
 
 
@@ -119,7 +121,7 @@ CURVED = {
     "rate": ss.friction.HyperbolicRate(1.0, 0.6, 3.0),
     "slip": ss.friction.ExponentialSlipWeakening(1.0, 0.7, 0.1, memory="since-arrest"),
     "net slip": ss.friction.SinusoidalSlip(1.0, 0.2, 10.0),
-    "Carlson and Langer": ss.friction.FromExpression("(1 - s)/(1 + 2*a*v/(1 - s))", static=1.0, s=0.05, a=2.0),
+    "Carlson and Langer": ss.friction.FromExpression("(1 - s)/(1 + 2*a*v/(1 - s))", {"s": 0.05, "a": "2 s/m"}, static=1.0),
     "knots": ss.friction.ParabolicSlipWeakening(1.0, 0.7, 0.2, 0.02),
 }
 
