@@ -10,7 +10,15 @@ import math
 
 from stickslip.engine.series.polynomial import NONE, first_descent
 from stickslip.engine.state.layout import TERMS
-from stickslip.extensions.chains.compiled.loads import load_on, piece_of, put_to_rest, sliding_strength, static_step, time_of
+from stickslip.extensions.chains.compiled.loads import (
+    growth_of_load,
+    load_on,
+    piece_of,
+    put_to_rest,
+    sliding_strength,
+    static_step,
+    time_of,
+)
 from stickslip.extensions.chains.compiled.memory import (
     ARREST,
     BACKWARD,
@@ -28,6 +36,7 @@ from stickslip.extensions.chains.compiled.memory import (
     FREE,
     HEALS,
     KNOT,
+    LARGEST_RATE,
     MODE,
     MOVING,
     ONSET,
@@ -44,15 +53,24 @@ from stickslip.extensions.chains.compiled.memory import (
     StepRoom,
 )
 from stickslip.extensions.chains.compiled.series import write_load
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
 ONSET_BACK = 4
 """Kind of change inside a step, besides those that are kept: a block at rest begins to slip back."""
 
-TOUCH, ROUNDED_FORCE = 1e-13, 4e-15
-"""A slip rate that falls below 0 by no more than the first share (1) of its size in the step, and what a force of the second share
-(1) of the strength makes of it, touches 0 but for rounding: that is no arrest."""
+ROUNDED, ROUNDED_FORCE = 1e-13, 4e-15
+"""Slip that begins at rest, and whose rate falls below 0 by no more than the first share (1) of its size in the step and what a
+force of the second share (1) of the strength makes of it, has not ended: that is rounding."""
+TOUCH = 1e-11
+"""If static friction is sliding friction, a slip rate whose minimum is above 0 by no more than this share (1) of the event's
+largest touches 0: that is an arrest, as of a single block."""
+REFINEMENTS = 8
+"""Newton's steps to the place of a minimum (1): its start is next to it."""
+BRIEF = 1e-5
+"""A rest that would be over, without healing, within this phase (rad) of the fastest motion is a touch in passing (1): the law
+does not heal. It is next to the root of `TOUCH`, as in the engine (`engine.contact_step.stick_or_slip.is_arrest`)."""
 
 
 @kernel
@@ -78,14 +96,15 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> N
         line[k] = mode * (k + 1.0) * row[k + 1]
     line[TERMS - 1] = 0.0
     room.places[j], room.kinds[j] = first_descent(line, spare), ARREST
-    if room.places[j] < NONE:
-        size = 0.0
+    if room.places[j] < NONE and state.blocks[RATE, j] == 0.0:
+        size, length = 0.0, room.span[0]
         for k in range(TERMS):
             size += abs(line[k])
-        length = room.span[0]
-        line[0] += TOUCH * size + ROUNDED_FORCE * state.blocks[STRENGTH, j] / chain.blocks.mass[j] * length * length
+        line[0] += ROUNDED * size + ROUNDED_FORCE * state.blocks[STRENGTH, j] / chain.blocks.mass[j] * length * length
         if first_descent(line, spare) == NONE:
             room.places[j] = NONE
+    elif room.places[j] == NONE and static_step(chain, j) == 0.0:
+        room.places[j] = place_of_touch(state, room, line, spare)
     law, piece, counted = chain.blocks.law[j], state.whole[PIECE, j], state.blocks[COUNTED, j]
     knots = chain.laws.knots[law]
     grows = mode if chain.laws.rules[law, COUNTS_NET] == 1 else 1
@@ -101,6 +120,28 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> N
         place = first_descent(line, spare)
         if place < room.places[j]:
             room.places[j], room.kinds[j] = place, KNOT
+
+
+@kernel
+def place_of_touch(state: Now, room: StepRoom, line: Floats, spare: Floats) -> float:
+    """Return the place of a minimum of a slip rate (m per step) in the step that is 0 but for rounding, or NONE."""
+    size = TOUCH * state.now[LARGEST_RATE] * room.span[0]
+    line[0] -= size
+    place = 0.0 if line[0] <= 0.0 else first_descent(line, spare)
+    line[0] += size
+    if place == NONE:
+        return NONE
+    for n in range(REFINEMENTS):
+        slope = bend = 0.0
+        for k in range(TERMS - 1, 0, -1):
+            bend = bend * place + slope
+            slope = slope * place + k * line[k]
+        if bend <= 0.0 or (n == 0 and slope >= 0.0):
+            return NONE  # it rises from 0, or falls on
+        place -= slope / bend
+        if not 0.0 < place <= 1.0:
+            return NONE
+    return place
 
 
 @kernel
@@ -153,6 +194,13 @@ def pass_knot(chain: ChainNumbers, state: Now, j: int) -> None:
 
 
 @exact
+def is_brief(chain: ChainNumbers, state: Now, j: int, margin: float) -> bool:
+    """Return True if the load makes up for a margin (N), as it grows now, so soon that rest is a touch in passing."""
+    growth = state.whole[MODE, j] * growth_of_load(chain, state, j)
+    return bool(margin * chain.fastest <= BRIEF * growth)
+
+
+@exact
 def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
     """Bring a block to rest, or let it go on in the other direction; return the kind of change."""
     mode = state.whole[MODE, j]
@@ -165,9 +213,10 @@ def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
         if chain.laws.rules[law, COUNTS_NET] == 1:
             state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
         return TURN
-    put_to_rest(chain, state, j)
+    heals = chain.laws.rules[chain.blocks.law[j], HEALS] == 1 and not is_brief(chain, state, j, before_rest - ahead)
+    put_to_rest(chain, state, j, heals)
     if ahead >= state.blocks[STRENGTH, j]:
-        if chain.laws.rules[chain.blocks.law[j], HEALS] == 0:
+        if not heals:
             state.whole[EDGE, j] = mode  # beyond its strength by rounding only: exactly at it
         else:
             state.whole[MODE, j] = mode  # it heals to less than its load, and slips again at once
@@ -181,7 +230,7 @@ def set_moving_at_start(chain: ChainNumbers, state: Now, j: int) -> int:
     if chain.blocks.normal[j] == 0.0:
         state.whole[MODE, j] = FREE
         return FREE
-    put_to_rest(chain, state, j)
+    put_to_rest(chain, state, j, chain.laws.rules[chain.blocks.law[j], HEALS] == 1)
     load, strength = load_on(chain, state, j), state.blocks[STRENGTH, j]
     if load > strength:
         state.whole[MODE, j] = FORWARD

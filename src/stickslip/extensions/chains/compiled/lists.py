@@ -65,7 +65,7 @@ def find_first_due(state: Now, room: StepRoom) -> None:
 
 @kernel
 def first_due(state: Now, room: StepRoom) -> float:
-    """Return the time (s) at which the block that is due first begins to slip."""
+    """Return the time (s) when the block that is due first begins to slip."""
     if room.counts[FIRST_DUE] == UNKNOWN:
         find_first_due(state, room)
     return float(state.blocks[DUE, room.counts[FIRST_DUE]])

@@ -11,7 +11,6 @@ from stickslip.extensions.chains.compiled.memory import (
     COUNTED,
     DUE,
     EDGE,
-    HEALS,
     MODE,
     ORIGIN,
     PIECE,
@@ -56,6 +55,20 @@ def load_on(chain: ChainNumbers, state: Now, j: int) -> float:
     if (last - first) % 2 == 1:
         found += springs.springs[last - 1] * (slips[springs.neighbours[last - 1]] - own)
     return float(found - springs.walls[j] * own + chain.blocks.stiffness[j] * (driver_place(chain, state) - own))
+
+
+@exact
+def growth_of_load(chain: ChainNumbers, state: Now, j: int) -> float:
+    """Return how fast the load (N/s) on a block grows whose own slip rate is 0."""
+    springs, rates, found = chain.springs, state.blocks[RATE], 0.0
+    first, last = springs.starts[j], springs.starts[j + 1]
+    for place in range(first, last - 1, 2):
+        one = springs.springs[place] * rates[springs.neighbours[place]]
+        other = springs.springs[place + 1] * rates[springs.neighbours[place + 1]]
+        found += one + other
+    if (last - first) % 2 == 1:
+        found += springs.springs[last - 1] * rates[springs.neighbours[last - 1]]
+    return float(found + chain.blocks.stiffness[j] * chain.pull_rate)
 
 
 @exact
@@ -107,11 +120,11 @@ def piece_of(chain: ChainNumbers, law: int, counted: float, piece: int) -> int:
 
 
 @exact
-def put_to_rest(chain: ChainNumbers, state: Now, j: int) -> None:
-    """Write that a block rests, with its strength."""
+def put_to_rest(chain: ChainNumbers, state: Now, j: int, heals: bool) -> None:
+    """Write that a block rests, with its strength, after its law has forgotten its slip if it heals."""
     law = chain.blocks.law[j]
     state.whole[MODE, j] = REST
-    if chain.laws.rules[law, HEALS] == 1:
+    if heals:
         state.blocks[COUNTED, j] = 0.0
     state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
     state.blocks[RATE, j] = 0.0

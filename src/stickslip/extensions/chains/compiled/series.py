@@ -127,14 +127,23 @@ def write_series(chain: ChainNumbers, state: Now, room: StepRoom, unit: float) -
                 for k in range(1, TERMS - 2):
                     next_order(chain, state, room, j, k)
             else:
-                series_of_formula(chain, state, room, j, unit)
+                series_of_formula(chain, state, room, j)
 
 
 @exact
-def series_of_formula(chain: ChainNumbers, state: Now, room: StepRoom, j: int, unit: float) -> None:
+def series_of_formula(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Write the series of a moving block from the loads that the series of the last pass give, by its law's own formula."""
-    given, load, rate = room_for(ROOM_OF_INPUT), room_for(TERMS), room_for(ROOM_OF_JET)
-    blocks, laws, row = chain.blocks, chain.laws, room.series[j]
+    rate, row, mode = room_for(ROOM_OF_JET), room.series[j], state.whole[MODE, j]
+    write_jet(chain, state, room, j, rate)
+    for k in range(1, TERMS):
+        row[k] = mode * (rate[k - 1] * room.span[0] / k)
+
+
+@exact
+def write_jet(chain: ChainNumbers, state: Now, room: StepRoom, j: int, rate: Floats) -> None:
+    """Write the series of a moving block's slip rate (m/s), under the loads of the series, and what the law's radii need of it."""
+    given, load, unit = room_for(ROOM_OF_INPUT), room_for(TERMS), room.span[0]
+    blocks, laws = chain.blocks, chain.laws
     law, piece, mode, edge = blocks.law[j], state.whole[PIECE, j], state.whole[MODE, j], state.whole[EDGE, j]
     load[0] = mode * load_on(chain, state, j)
     for k in range(1, TERMS):
@@ -145,8 +154,6 @@ def series_of_formula(chain: ChainNumbers, state: Now, room: StepRoom, j: int, u
     given[6], given[7], given[8], given[9] = laws.levels[law, piece], blocks.mass[j], 0.0, abs(state.blocks[RATE, j])
     given[10], given[11] = 0.0 if edge != 0 else 1.0, static_step(chain, j) if edge != 0 else 0.0
     call_jet(laws.jets_at[law, piece], floats(laws.constants_at[law, piece]), given, load, rate)
-    for k in range(1, TERMS):
-        row[k] = mode * (rate[k - 1] * unit / k)
 
 
 @kernel

@@ -6,6 +6,7 @@ import math
 
 from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.accounts import dissipated, heat_of_step, integral_of_slip, note_rate
+from stickslip.extensions.chains.compiled.discs import proven_length
 from stickslip.extensions.chains.compiled.memory import (
     BLOCK_STEPS,
     COUNTED,
@@ -65,7 +66,7 @@ def expand(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
         return math.inf
     stretch_series(room, share)
     room.span[0] = share * unit
-    return share * unit
+    return share * unit if chain.all_straight == 1 else proven_length(chain, state, room)
 
 
 @kernel
