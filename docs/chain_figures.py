@@ -11,11 +11,14 @@ from typing import Any
 import numpy as np
 
 import stickslip as ss
+from stickslip.extensions.chains.changes_between import changes_between, slips_of
 
 FIGURES = Path(__file__).with_name("figures")
 DRY = ss.friction.Coulomb(static=1.0, dynamic=0.7)
 SLAB = ss.ElasticSlab(density=1.0, wave_speed=1.0, thickness=1.0, normal_stress=1.0)
 COUPLINGS, SEEDS, SPREADS = (1.0, 10.0, 40.0), (1, 2), (0.0, 0.1)
+STRINGS = (32, 64, 128)
+"""Numbers of blocks with friction on every one."""
 UNTIL, TRANSIENT = 20_000.0, 3_000.0
 """How long chains run, and the time (s) whose events are left out."""
 
@@ -40,6 +43,21 @@ def print_slopes() -> None:
                 print(f"{about}, the largest of {events['size'].max()} blocks, beta {found.beta:.3f}, p {found.p_value:.3f}")
 
 
+def print_strings() -> None:
+    """Print how often, and for how long, blocks slip in the first event of all blocks, with friction on every block."""
+    for count in STRINGS:
+        law = ss.friction.Coulomb(static=0.8, dynamic=0.3)
+        stiffness = [0.0] * (count - 1) + [count]
+        run = ss.simulate(ss.Chain(law, count, 1.0 / count, float(count), stiffness, 1.0 / count, 1e-4), 6e4, keep="changes")
+        event = run.events[(run.events["time"] > 2e4) & (run.events["size"] == count)][0]
+        first, last = float(event["time"]), float(event["time"] + event["duration"]) * (1.0 + 1e-12)
+        slips = slips_of(changes_between(run, first, last), run.at(last).slip[0])
+        times, lasts = len(slips.block) / count, float(np.median(slips.arrest - slips.onset))
+        front = float(slips.onset[slips.block == 0].min()) - first
+        said = f"each slips {times:.2f} times, for {lasts:.4f} s; the far end begins {front:.3f} s after the other"
+        print(f"{count} blocks: {said}")
+
+
 def draw() -> None:
     """Draw rupture, chain beside slab, and the front in place of a shock."""
     run = ss.simulate(chain(10.0, 1), 5_000.0)
@@ -59,4 +77,5 @@ def draw() -> None:
 
 if __name__ == "__main__":
     print_slopes()
+    print_strings()
     draw()

@@ -109,3 +109,11 @@ def test_the_starter_runs_and_says_what_its_description_says() -> None:
     sizes = run.events["size"]
     assert sizes.min() == 1
     assert sizes.max() > 10
+
+
+def test_carlson_and_langers_chain_has_events_of_one_block_and_of_all() -> None:
+    """No event is smaller than that of one block between neighbours at rest under the jump alone, 2 s/(kp + 2 kc), to 1e-9."""
+    run = ss.simulate("carlson-langer")
+    assert set(run.events["size"]) >= {1, 100}
+    assert run.events["moment"].min() >= 2.0 * 0.01 / (1.0 + 2.0 * 36.0) * (1.0 - 1e-9)
+    assert abs(run.energy().error) < 1e-10 * run.energy().heat

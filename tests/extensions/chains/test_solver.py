@@ -119,7 +119,7 @@ CURVED = {
     "rate": ss.friction.HyperbolicRate(1.0, 0.6, 3.0),
     "slip": ss.friction.ExponentialSlipWeakening(1.0, 0.7, 0.1, memory="since-arrest"),
     "net slip": ss.friction.SinusoidalSlip(1.0, 0.2, 10.0),
-    "Carlson and Langer": ss.friction.FromExpression("(1 - s)/(1 + 2*a*v/(1 - s))", static=1.0, s=0.05, a=2.0),
+    "Carlson and Langer": ss.friction.FromExpression("(1 - s)/(1 + 2*a*v/(1 - s))", {"s": 0.05, "a": "2 s/m"}, static=1.0),
     "knots": ss.friction.ParabolicSlipWeakening(1.0, 0.7, 0.2, 0.02),
 }
 

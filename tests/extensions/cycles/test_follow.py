@@ -27,7 +27,7 @@ def test_a_branch_loses_stick_turns_back_unstable_and_ends_in_steady_sliding() -
     assert lost.value == pytest.approx(branch.edges[0].value, rel=1e-9), "wherever the branch begins"
     found = ss.studies.find(stribeck(0.2, initial_load=0.0), "pull_rate", 0.3, 0.31, within=1e-6, duration=20.0)
     assert found.low * (1.0 - 1e-6) <= lost.value <= found.high * (1.0 + 1e-6)
-    assert {one.stable for one in whole.points if one.sticks} == {True}
+    assert {one.stable for one in whole.points if one.sticks and not one.edge} == {True}
     assert {one.stable for one in back} == {False}
     lost_too = min(back, key=lambda one: abs(one.value - lost.value))
     assert lost_too.measures.period == pytest.approx(lost.orbit.period, rel=1e-4)
@@ -56,3 +56,67 @@ def test_a_branch_under_rate_and_state_friction_ends_at_the_critical_stiffness()
     shares = [one.measures.amplitude**2 / (critical - one.value) for one in near]
     assert shares == pytest.approx([shares[-1]] * len(shares), rel=1e-2)
     assert {one.stable for one in branch.points} == {True}
+
+
+def two_states(stiffness: float) -> ss.Problem:
+    """Return the block of Gu et al. 1984, section 5 (b1 = a, b2 = 0.84 a, L1 = 0.048 L2, slip law), nearly without inertia."""
+    law = ss.friction.TwoStateRateAndState(
+        reference=0.6, a=A, b=A, distance=DISTANCE, second_b=0.84 * A, second_distance=DISTANCE / 0.048, evolution="slip"
+    )
+    return ss.Problem(ss.SpringBlock(100.0, stiffness, NORMAL), law, pull_rate=SLOW)
+
+
+def test_the_period_doubles_under_two_states_and_the_doubled_cycle_is_there_beyond_the_edge() -> None:
+    """The multiplier is -1 at the edge to 1e-6; beyond it the cycle is unstable, and a stable one has about twice its period."""
+    critical = 802.799465
+    branch = ss.studies.follow(ss.studies.cycle(two_states(0.9 * critical)), "body.stiffness", to=0.85 * critical, steps=3)
+    assert [edge.name for edge in branch.edges] == ["period doubling"]
+    edge = branch.edges[0]
+    assert edge.orbit.multipliers[0].real == pytest.approx(-1.0, abs=1e-6)
+    assert 0.86 < edge.value / critical < 0.87
+    stable = {one.value > edge.value: one.stable for one in branch.points if not one.edge}
+    assert stable == {True: True, False: False}
+    doubled = ss.studies.cycle(two_states(0.86 * critical))
+    assert doubled.stable is True
+    assert doubled.period == pytest.approx(2.0 * edge.orbit.period, rel=0.03)
+
+
+def test_edges_from_both_sides_of_a_grazed_rest_agree() -> None:
+    """Stick is lost where unstable cycles without rest begin to rest: by bisection of runs, and by the least rate, to 1e-9."""
+    lost = ss.studies.follow(ss.studies.cycle(stribeck(0.28, initial_load=0.0)), "pull_rate", to=0.35, steps=5).edges[0]
+    load = DAMPING * 0.2 + NORMAL * (0.3 + FALL * math.exp(-0.2 / OVER))
+    unstable = ss.studies.cycle(stribeck(0.2, initial_rate=0.2, initial_load=load + 5.0), near=0.7)
+    up = ss.studies.follow(unstable, "pull_rate", to=0.5, steps=10)
+    assert up.edges[0].name == "first stick"
+    assert up.edges[0].value == pytest.approx(lost.value, rel=1e-9)
+    assert any(one.sticks and one.value < 0.3 for one in up.points), "stick-slip follows, downwards"
+
+
+def swinging(s1: float, amplitude: float) -> ss.Problem:
+    """Return a block under friction that falls, rises and falls again around the pull rate, with less swing than ends in rest."""
+    law = ss.friction.FromExpression(
+        "0.5 + s1*(v/v0-1) - s3*(v/v0-1)**3 + s5*(v/v0-1)**5", {"s1": s1, "s3": 0.2, "s5": 0.4, "v0": "1 m/s"}
+    )
+    load = 0.5 * NORMAL + amplitude * 1e3**0.5
+    return ss.Problem(ss.SpringBlock(1.0, 1e3, NORMAL), law, pull_rate=1.0, initial_rate=1.0, initial_load=load)
+
+
+def test_a_branch_goes_around_a_fold_of_cycles_and_comes_back_unstable() -> None:
+    """By averages over a period the fold lies at s1 = 9 s3^2 / (40 s5), where the amplitude is sqrt(3 s3 / (5 s5)): both to 1e-4.
+
+    On the other side the branch ends where s1 = 0, exactly; the fold is the same from two starts to 1e-9.
+    """
+    folds = []
+    for start in (0.005, -0.005):
+        branch = ss.studies.follow(ss.studies.cycle(swinging(start, 0.85), near=4.0), "friction.parameters.s1", to=0.05, steps=5)
+        folds.append(branch.edges[0])
+    assert {edge.name for edge in folds} == {"fold of cycles"}
+    assert folds[0].value == pytest.approx(9.0 * 0.2**2 / (40.0 * 0.4), rel=1e-4)
+    assert folds[0].value == pytest.approx(folds[1].value, rel=1e-9)
+    assert folds[0].orbit.multipliers[0].real == pytest.approx(1.0, abs=1e-6)
+    at_fold = next(one for one in branch.points if one.edge == "fold of cycles")
+    assert at_fold.measures.amplitude == pytest.approx((3.0 * 0.2 / (5.0 * 0.4)) ** 0.5, rel=1e-3)
+    assert branch.edges[1].name == "steady sliding"
+    assert branch.edges[1].value == pytest.approx(0.0, abs=1e-11)
+    stable = [one.stable for one in branch.points if not one.edge]
+    assert (stable[0], stable[-1]) == (True, False)

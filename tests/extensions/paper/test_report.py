@@ -41,7 +41,7 @@ def test_svg_has_no_date(folder: Path) -> None:
 
 def test_tables_reopen(folder: Path) -> None:
     claims = pd.read_csv(folder / "claims.csv")
-    assert set(claims.number) == set(range(1, 22))
+    assert set(claims.number) == set(range(1, 23))
     shocks = pd.read_csv(folder / "shocks.csv")
     assert set(shocks.columns) >= {"case", "time [s]", "cause", "rate_before [m/s]", "rate_after [m/s]"}
     events = pd.read_csv(folder / "events.csv")

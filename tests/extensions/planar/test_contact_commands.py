@@ -29,7 +29,7 @@ IN_1D = {
     "sweep": ("planar-patch", "--vary", "friction.static=0.6,0.7"),
 }
 """Arguments for each command that is for a contact of one place."""
-WITHOUT_SCENARIO = {"benchmark", "doctor", "fit", "new", "paper"}
+WITHOUT_SCENARIO = {"benchmark", "doctor", "fit", "magnitudes", "new", "paper"}
 WITH_CONTACT = {"run", "check", "show", "explore"}
 
 

@@ -24,7 +24,7 @@ import pandas as pd
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.compiled.advance import begin
-from stickslip.extensions.chains.compiled.memory import Kept
+from stickslip.extensions.chains.compiled.memory import KeptRows
 from stickslip.extensions.chains.run import ChainRun
 from stickslip.extensions.chains.solver import ChainSolver, solve_chain
 from stickslip.extensions.chains.state import ChainState
@@ -251,7 +251,7 @@ def start_beside(chain: Chain, slip: Floats, rate: Floats, counted: float) -> Ch
     """Return the state of a chain whose free blocks move at the start, and whose law has counted a slip (m)."""
     solver, state = ChainSolver(chain), ChainState.empty(chain.count)
     state.blocks[at.SLIP], state.blocks[at.RATE], state.blocks[at.COUNTED] = slip, rate, counted
-    nothing = Kept(
+    nothing = KeptRows(
         np.empty((0, at.CHANGE_COLUMNS)), np.empty((1, at.EVENT_COLUMNS)), np.empty(0), np.empty((0, 0)), np.empty((0, 0))
     )
     begin(solver.numbers, state.memory, solver.room, nothing)

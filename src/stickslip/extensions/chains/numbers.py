@@ -12,26 +12,24 @@ from stickslip.engine.compiled_formula import CompiledFormula, compile_formula
 from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
-from stickslip.extensions.chains.compiled.memory import Blocks, ChainNumbers, Laws, Room, Springs
+from stickslip.extensions.chains.compiled.memory import Blocks, ChainNumbers, Laws, Springs, StepRoom
 from stickslip.foundation.kernels.uncompiled import lend_memory
-from stickslip.friction import FrictionLaw
-from stickslip.friction.formula import RATE, SLIP, depends_on
-from stickslip.friction.formula.differences import value_and_slopes
+from stickslip.friction import Coulomb, FrictionLaw, LinearSlipWeakening, PiecewiseLinearSlip
 
 SLOWEST = 1e-300
 """Lower bound of the bound of frequencies (1/s), for blocks that no spring holds."""
-ROUNDING = 1e-12
-"""A piece of a law is a straight line of slip if its slopes at some points agree to this share (1) of its size."""
+STRAIGHT_LAWS = (Coulomb, LinearSlipWeakening, PiecewiseLinearSlip)
+"""Laws that are straight in slip from knot to knot, so that moving blocks are a linear system."""
 
 
-class Numbers(NamedTuple):
+class PreparedChain(NamedTuple):
     """The numbers of a chain, and what must live as long as they do: formulas, and their constants."""
 
     chain: ChainNumbers
     owners: tuple[object, ...]
 
 
-def numbers_of(chain: Chain) -> Numbers:
+def numbers_of(chain: Chain) -> PreparedChain:
     """Return the numbers of a chain. Formulas of laws that are not straight in slip are compiled."""
     rows = chain.couplings
     mass, stiffness, normal, damping = (chain.values(name) for name in ("mass", "stiffness", "normal_force", "damping"))
@@ -45,7 +43,9 @@ def numbers_of(chain: Chain) -> Numbers:
     forward, straight = int(chain.direction == "forward"), int(tables.rules[:, at.STRAIGHT].all())
     blocks = Blocks(mass, stiffness, normal, damping, which)
     total = float(stiffness.sum())
-    return Numbers(ChainNumbers(Springs(*rows), blocks, tables, float(chain.pull_rate), forward, fastest, total, straight), owners)
+    return PreparedChain(
+        ChainNumbers(Springs(*rows), blocks, tables, float(chain.pull_rate), forward, fastest, total, straight), owners
+    )
 
 
 def _laws(laws: tuple[FrictionLaw, ...]) -> tuple[Laws, tuple[object, ...]]:
@@ -60,12 +60,12 @@ def _laws(laws: tuple[FrictionLaw, ...]) -> tuple[Laws, tuple[object, ...]]:
         count = len(law.pieces)
         knots[n, 0], knots[n, 1:count] = -np.inf, law.knots
         excess[n] = law.static_excess
-        rules[n] = law.counts == "net", getattr(law, "memory", "all") == "since-arrest", all(is_line(law, i) for i in range(count))
+        rules[n] = law.counts == "net", getattr(law, "memory", "all") == "since-arrest", is_straight(law)
         for i in range(count):
             references[n, i] = law.knots[max(i - 1, 0)] if law.knots else 0.0
             levels[n, i] = law.piece_coefficient(i, references[n, i], 0.0)
             if rules[n, at.STRAIGHT]:
-                slopes[n, i] = _slope(law, i, references[n, i])
+                slopes[n, i] = _slope(law, i)
                 continue
             formula, constants = _formula(law, i, references[n, i])
             owners += [formula, constants]
@@ -83,30 +83,26 @@ def _formula(law: FrictionLaw, i: int, reference: float) -> tuple[CompiledFormul
     return formula, constants
 
 
-def is_line(law: FrictionLaw, i: int) -> bool:
-    """Return True if a piece of a law is a straight line of slip."""
-    tree, numbers = law.trees()[i], law.numbers(i)
-    places, rates = np.array([0.0, 0.3, 1.7, 0.1, 0.9]), np.array([0.0, 0.1, 1.0, 10.0, 0.5])
-    found = value_and_slopes(tree, numbers, places, rates)[1]
-    by_slip, by_rate = (np.broadcast_to(found[k], places.shape) for k in range(2))
-    size = abs(by_slip[0]) + abs(law.piece_coefficient(i, 0.0, 0.0))
-    bends = depends_on(tree, RATE) and bool(by_rate.any())
-    return not (bends or (depends_on(tree, SLIP) and float(np.ptp(by_slip)) > ROUNDING * size))
+def is_straight(law: FrictionLaw) -> bool:
+    """Return True for a law that is straight in slip from knot to knot."""
+    return type(law) in STRAIGHT_LAWS
 
 
-def _slope(law: FrictionLaw, i: int, reference: float) -> float:
-    """Return the slope (1/m) of a piece of a law that is a straight line of slip."""
-    found = value_and_slopes(law.trees()[i], law.numbers(i), np.array([reference]), np.zeros(1))[1]
-    return float(np.broadcast_to(found[0], 1)[0])
+def _slope(law: FrictionLaw, i: int) -> float:
+    """Return the slope (1/m) of a piece of a law that is straight in slip."""
+    if not law.knots:
+        return 0.0
+    ends = (law.knots[0] - 1.0, *law.knots, law.knots[-1] + 1.0)
+    return float(law.slopes(0.5 * (ends[i] + ends[i + 1]))[0])
 
 
-def room_of(count: int) -> Room:
+def room_of(count: int) -> StepRoom:
     """Return room for the steps of so many blocks."""
 
     def whole() -> NDArray[np.int64]:
         return np.zeros(count, np.int64)
 
     lists = whole(), whole(), whole(), whole()
-    return Room(
+    return StepRoom(
         np.empty((count, TERMS)), np.zeros(count), whole(), whole(), *lists, np.zeros(at.NUMBER_OF_COUNTS, np.int64), np.zeros(1)
     )

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from stickslip.extensions.chains.chain import Chain
     from stickslip.extensions.chains.plots import ChainPlots
-    from stickslip.friction import FrictionLaw
 
 Floats = NDArray[np.float64]
 EVENT_TYPE = np.dtype(
@@ -48,7 +47,7 @@ CHANGE_NAMES = ("onset", "arrest", "turn", "knot")
 """Kinds of changes by their number."""
 
 
-class Motion(NamedTuple):
+class ChainMotion(NamedTuple):
     """The motion of all blocks: times (s), and for each time the slip (m) and the slip rate (m/s) of each block."""
 
     times: Floats
@@ -76,13 +75,6 @@ class ChainEnergy(NamedTuple):
         return self.springs + self.kinetic + self.heat + self.dashpots - self.driver - self.springs_at_start
 
 
-def is_straight(law: FrictionLaw) -> bool:
-    """Return True for a law under which the moving blocks are a linear system."""
-    from stickslip.extensions.chains.numbers import is_line
-
-    return all(is_line(law, i) for i in range(len(law.pieces)))
-
-
 def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
     """Return rows of compiled code as an array with named columns."""
     found = np.empty(len(rows), kind)
@@ -91,7 +83,7 @@ def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
     return found
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ChainRun(NamesAttributes):
     """A chain that was solved from t = 0 to a time, by `stickslip.simulate`.
 
@@ -187,11 +179,11 @@ class ChainRun(NamesAttributes):
         springs = energies_of(numbers, self.final), energies_of(numbers, first)
         return ChainEnergy(springs[0], kinetic, float(now[at.HEAT]), float(now[at.DASHPOT]), float(now[at.WORK]), springs[1])
 
-    def motion(self, start: float, end: float, count: int = 1001) -> Motion:
+    def motion(self, start: float, end: float, count: int = 1001) -> ChainMotion:
         """Return the motion at so many even times (s) from `start` to `end`: see `at`."""
         return self.at(np.linspace(start, end, count))
 
-    def at(self, times: ArrayLike) -> Motion:
+    def at(self, times: ArrayLike) -> ChainMotion:
         """Return slip (m) and slip rate (m/s) of all blocks at times (s), calculated again from the snapshot before the first."""
         from stickslip.extensions.chains.solver import motion_from
 
@@ -203,7 +195,10 @@ class ChainRun(NamesAttributes):
         found = motion_from(self.chain, known[-1], np.ascontiguousarray(wanted[order]))
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
-        return Motion(wanted, found.slip[back], found.slip_rate[back])
+        return ChainMotion(wanted, found.slip[back], found.slip_rate[back])
+
+    def __repr__(self) -> str:
+        return f"ChainRun of {self.chain.count} blocks: {self.count_of_events} events in {self.duration:g} s"
 
     @property
     def plot(self) -> ChainPlots:
@@ -214,6 +209,8 @@ class ChainRun(NamesAttributes):
 
     def proof(self) -> str:
         """Return in a sentence what is proven of the run."""
+        from stickslip.extensions.chains.numbers import is_straight
+
         now = self.state.now
         steps, left_out, lacks = int(now[at.STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
         placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"

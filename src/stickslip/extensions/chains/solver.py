@@ -12,9 +12,9 @@ from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.compiled.accounts import energies
 from stickslip.extensions.chains.compiled.advance import advance, begin
-from stickslip.extensions.chains.compiled.memory import ChainNumbers, Kept, Limits
+from stickslip.extensions.chains.compiled.memory import ChainNumbers, KeptRows, Limits
 from stickslip.extensions.chains.numbers import numbers_of, room_of
-from stickslip.extensions.chains.run import ChainRun, Motion
+from stickslip.extensions.chains.run import ChainMotion, ChainRun
 from stickslip.extensions.chains.state import ChainState
 from stickslip.foundation.errors import InputError
 
@@ -27,7 +27,7 @@ MOST_SNAPSHOTS = 256
 """Of states during a run at most so many are kept, from which motion is calculated again."""
 
 
-class Sink(Protocol):
+class RowSink(Protocol):
     """Takes rows of events and of changes as a run goes, so that the run need not keep them."""
 
     def take(self, events: Floats, changes: Floats, state: ChainState) -> None:
@@ -57,8 +57,8 @@ class ChainSolver:
         else:
             self.state = start.copy()
 
-    def _kept(self) -> Kept:
-        return Kept(self._changes, self._events, *self._nothing)
+    def _kept(self) -> KeptRows:
+        return KeptRows(self._changes, self._events, *self._nothing)
 
     def _rows(self) -> tuple[Floats, Floats]:
         counts = self.room.counts
@@ -80,7 +80,7 @@ class ChainSolver:
         answer = at.GOES_ON
         events = np.empty((ROOM_FOR_EVENTS, at.EVENT_COLUMNS))
         while answer == at.GOES_ON:
-            kept = Kept(np.empty((0, at.CHANGE_COLUMNS)), events, *self._nothing)
+            kept = KeptRows(np.empty((0, at.CHANGE_COLUMNS)), events, *self._nothing)
             answer = advance(self.numbers, cut.memory, self.room, kept, Limits(time, 1, BUDGET))
             check_answer(answer, cut)
         return cut
@@ -109,7 +109,7 @@ def solve_chain(
     start: ChainState | None = None,
     *,
     keep: Literal["catalogue", "changes"] = "catalogue",
-    sink: Sink | None = None,
+    sink: RowSink | None = None,
     report: Callable[[float, ChainState], bool | None] | None = None,
 ) -> ChainRun:
     """Solve a chain up to a time (s), from t = 0 or from a state, and return the run.
@@ -147,13 +147,13 @@ def solve_chain(
     )
 
 
-def motion_from(chain: Chain, start: ChainState, times: Floats) -> Motion:
+def motion_from(chain: Chain, start: ChainState, times: Floats) -> ChainMotion:
     """Return slip and slip rate of all blocks at ascending times (s), by going on from a state before the first of them."""
     solver = ChainSolver(chain, start)
     slips, rates = np.empty((len(times), chain.count)), np.empty((len(times), chain.count))
-    kept = Kept(np.empty((0, at.CHANGE_COLUMNS)), np.empty((ROOM_FOR_EVENTS, at.EVENT_COLUMNS)), times, slips, rates)
+    kept = KeptRows(np.empty((0, at.CHANGE_COLUMNS)), np.empty((ROOM_FOR_EVENTS, at.EVENT_COLUMNS)), times, slips, rates)
     answer = at.GOES_ON
     while answer == at.GOES_ON:
         answer = advance(solver.numbers, solver.state.memory, solver.room, kept, Limits(float(times[-1]), 0, BUDGET))
         check_answer(answer, solver.state)
-    return Motion(times, slips, rates)
+    return ChainMotion(times, slips, rates)

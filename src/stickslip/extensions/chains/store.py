@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 DECIDING = ("numbers", "couplings", "drawn", "solver", "state")
 """Modules whose code decides the result of a run, beside compiled code."""
 BUSY = "another run is writing into it"
-CODE = tuple(f"extensions/chains/{one}" for one in ("compiled", *(f"{name}.py" for name in DECIDING)))
+DECIDING_CODE = tuple(f"extensions/chains/{one}" for one in ("compiled", *(f"{name}.py" for name in DECIDING)))
 """The code that decides the result of a run, beside the engine's."""
 IF_FULL = "stickslip.resume continues from the last checkpoint when there is room"
 
@@ -108,7 +108,7 @@ class ChainStore(ChainRows):
         about: Any = opened(path, use_consolidated=False).attrs
         chain = chain_in(path)
         found = checkpoint_in(path, chain)
-        if found.engine != engine_key(*CODE):
+        if found.engine != engine_key(*DECIDING_CODE):
             raise InputError(
                 f"{path}: cannot be resumed: another version of stickslip made it, and this one would go on in other digits; run it"
                 " again from the start"
@@ -179,7 +179,7 @@ class ChainStore(ChainRows):
             arrays[SNAPSHOT + name] = Variable(("snapshot", *dims), np.stack([each.arrays[name] for each in kept]))
         about: Mapping[str, Any] = {
             CHAIN_FORMAT.kind: CHAIN_FORMAT.version,
-            "engine": engine_key(*CODE),
+            "engine": engine_key(*DECIDING_CODE),
             "digest": self.digest,
             EVENT: self.written[EVENT],
             CHANGE: self.written[CHANGE],

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from stickslip.extension import Extension
+from stickslip.extension import Command, Extension
 
 
 class CyclesExtension(Extension):
     """The studies `cycle` and `follow`."""
 
     name = "cycles"
+
+    def commands(self) -> Mapping[str, Sequence[Command]]:
+        """Return the command, which does both."""
+        from stickslip.extensions.cycles.commands.cycle import cycle
+
+        return {"Questions that need many runs": (cycle,)}
 
     def public(self) -> Mapping[str, str]:
         """Return the studies and the classes of their results."""

@@ -31,7 +31,7 @@ MEANING = {
 SAME_STEP = 1e-13
 """An edge within a step is found to this share of the step (1)."""
 CLOSE_TO_REST, NEARER, MOST_NEARER = 1e-7, 0.05, 30
-"""A branch is followed until its least slip rate is this share of the greatest, each time this much nearer, at most so often (1)."""
+"""A branch is followed to this share (1) of the pull rate as least slip rate, each time this much nearer, at most so often."""
 SMALLEST_BISECTED = 1e-12
 """Width (1, share of the range) to which a value is bisected beyond which there is no cycle."""
 WIDER, MOST_WIDER = 4.0, 12

@@ -3,27 +3,32 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.orbit import Orbit, near_end
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem import INITIAL_STATES, LoadingHistory, Problem
 from stickslip.problem.bodies import as_on_spring
-from stickslip.problem.run_options import DURATION, RUN_RTOL
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling, uninterrupted
-from stickslip.run.find import unsettled
 from stickslip.run.simulate import simulate
 from stickslip.run.study import MAX_PIECES
 
+NEAR = Quantity("s", "duration of the run at whose end a cycle is looked for", above=0)
+TOLERANCE_OF_RUNS = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-6)
 RTOL = 1e-12
 """Default tolerance of the runs (1)."""
 FIRST_NEAR, LONGER, ATTEMPTS = 4.0, 8.0, 4
 """Without a duration: the first run lasts so many times what a cycle may take, the next longer by a factor, up to so many runs."""
+WHOSE = {"rigid": "", "belt": "", "loop": "body in a position loop", "uniform": "slab or string", "layered": "body of layers"}
+"""Kinds of bodies, with what is said of those whose cycles are not found; on a belt a body moves as one whose spring is pulled."""
 INSTEAD = "a run and its events say how it moves, and find where that changes"
 """What can be done where no cycle is looked for."""
 
@@ -79,17 +84,25 @@ def cycle(
     """
     scenario = Scenario(problem, 1.0) if isinstance(problem, Problem) else read_source("cycle", problem)
     check_can_be_followed(scenario.problem, "cycle")
-    RUN_RTOL.check("cycle", "rtol", rtol)
+    TOLERANCE_OF_RUNS.check("cycle", "rtol", rtol)
     first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
-        return LimitCycle(_searched(unsettled(scenario.problem), first, attempts, rtol, tell), scenario)
+        return LimitCycle(_searched(without_load(scenario.problem), first, attempts, rtol, tell), scenario)
 
 
 def _first_run(scenario: Scenario, near: float | str | WithUnit | None, *, given: bool) -> float:
     """Return the duration (s) of the first run."""
     if near is not None:
-        return float(DURATION.check("cycle", "near", near))
+        return float(NEAR.check("cycle", "near", near))
     return scenario.duration if given else FIRST_NEAR * time_of_cycle(scenario.problem)
+
+
+def without_load(problem: Problem) -> Problem:
+    """Return a problem that starts in steady sliding as one that starts without load: in a run only rounding would disturb it."""
+    if not (problem.has_initial_rate and problem.starts_steadily):
+        return problem
+    states: dict[str, Any] = dict.fromkeys(INITIAL_STATES[: len(problem.friction.states)], "steady")
+    return replace(problem, initial_rate=None, initial_load=0.0, **states)
 
 
 def time_of_cycle(problem: Problem) -> float:
@@ -110,7 +123,7 @@ def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: 
         except InputError:
             if attempt == attempts - 1:
                 raise
-        lasts *= LONGER
+        lasts = max(LONGER * lasts, FIRST_NEAR * time_of_cycle(problem))
     raise AssertionError("there is at least one attempt")
 
 
@@ -119,13 +132,13 @@ def check_can_be_followed(problem: Problem, who: str) -> None:
     body, law = problem.body, problem.friction
     name = type(law).__name__
     why = ""
-    if body.structure != "rigid":
-        why = f"cycles are found of rigid bodies on a spring, and this is a {body.noun}"
+    if whose := WHOSE[body.structure]:
+        why = f"cycles are found of rigid bodies on a spring, and this is a {whose}"
     elif body.is_free:
         why = "without a spring nothing brings the body back"
     elif as_on_spring(body).has_stops:
         why = "cycles against hard stops are not found"
-    elif problem.ground is not None or problem.force is not None or problem.normal_varies:
+    elif any(one is not None for one in (problem.ground_velocity, problem.ground_acceleration, problem.force, problem.normal_load)):
         why = "what pulls and presses must be steady: there is moving ground, a force, or a normal load that varies"
     elif isinstance(problem.pull_rate, LoadingHistory):
         why = "the pull rate must be a number, and it varies in time"

@@ -198,7 +198,7 @@ class _Following:
             return None
         same = abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
         straight = abs(float(new.way @ now.way)) >= STRAIGHT
-        if not (same and straight) or new.orbit.sticks != path.at_onset:
+        if not (same and straight) or new.orbit.sticks != now.orbit.sticks:
             return None
         return new if new.way @ now.way > 0.0 else replace(new, way=-new.way)
 
@@ -231,7 +231,7 @@ class _Following:
             if found is not None:
                 self._edge(CycleEdge(STEADY_END, found, now.orbit))
                 return None
-        if now.orbit.section.problem.friction.sticks:
+        if now.orbit.section.problem.friction.sticks and not now.orbit.sticks:
             touched = first_stick(path, now)
             if touched is not None:
                 self._edge(touched[0])
@@ -259,7 +259,7 @@ class _Following:
         return None
 
     def _with_rest(self, path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
-        """Return where cycles with rest begin, at an edge where the slip rate touches 0; those of laws with states are not found."""
+        """Return where cycles with rest begin, at an edge where the slip rate touches 0; under laws with states none is found."""
         if last.orbit.section.problem.friction.states:
             return None
         other = self._other(path, edge, at_onset=True)

@@ -27,9 +27,15 @@ NEUTRAL = 1e-9
 """A multiplier this close to the unit circle (1) is on it, as far as can be told."""
 
 
+NEARLY_ALL = 0.99
+"""Where the contact rests for more than this share of a period (1), the time of slip says more."""
+
+
 def is_stable(multipliers: Floats) -> bool | None:
     """Return True if all multipliers lie inside the unit circle, False if one lies outside; None: it cannot be told."""
     size = float(np.abs(multipliers).max())
+    if math.isnan(size):
+        return None
     return None if abs(size - 1.0) <= NEUTRAL else size < 1.0
 
 
@@ -134,7 +140,12 @@ class LimitCycle(Study):
         problem, found = self.problem, self.measures
         rates = [brief(one, problem.unit_of("slip_rate")) for one in (found.least_rate, found.greatest_rate)]
         loads = [brief(one, problem.load_unit) for one in (found.least_traction, found.greatest_traction)]
-        rests = f"rests for {100.0 * found.stick_share:.4g} % of it" if self.orbit.sticks else "never rests"
+        slips = brief((1.0 - found.stick_share) * self.period, "s")
+        rests = (
+            f"rests for {100.0 * found.stick_share:.4g} % of it" if found.stick_share < NEARLY_ALL else f"slips for {slips} of it"
+        )
+        if not self.orbit.sticks:
+            rests = "never rests"
         return (
             f"a cycle of {brief(self.period, 's', 9)}: the contact {rests}, slips {brief(found.slip, problem.unit_of('slip'))},"
             f" at {rates[0]} to {rates[1]}, under a traction of {loads[0]} to {loads[1]}"
@@ -144,7 +155,9 @@ class LimitCycle(Study):
     def stability_text(self) -> str:
         """Say in one sentence what becomes of a small disturbance."""
         largest = self.multipliers[0]
-        if self.orbit.section.at_onset and not len(self.orbit.place):
+        if self.orbit.grazes:
+            return "neither stable nor unstable: the contact rests for an instant only, and no multiplier holds there"
+        if self.orbit.section.at_onset:
             return "stable: each rest ends all disturbances, because only the load is left then (multiplier 0, exactly)"
         size = abs(complex(largest))
         how = f"multiplies a small disturbance by up to {brief(size, '')}"

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.section import Crossings, Return, Section, coordinates, crossings, onsets
+from stickslip.extensions.cycles.section import Return, Section, coordinates, crossings, onsets
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -26,6 +26,8 @@ MOST_MEETINGS = 16
 """Largest number of meetings with the section in one period (1) that is looked for."""
 CLOSES = 1e-2
 """A run that comes back this close (1, share of its extent) is taken to close there."""
+INSTANT = 1e-6
+"""A rest shorter than this share (1) of the period is an instant."""
 NOTHING = 1e-9
 """A slip rate that varies by less than this share (1) of the pull rate is steady sliding."""
 
@@ -48,7 +50,7 @@ class Orbit:
 
     @property
     def place(self) -> Floats:
-        """Where the cycle meets the section: load and states, or the states alone."""
+        """Where the cycle meets the section: load and states, or nothing at an onset."""
         return self.closed.start
 
     @property
@@ -61,12 +63,19 @@ class Orbit:
         """True if the contact rests once in a period."""
         return self.closed.sticks
 
+    @property
+    def grazes(self) -> bool:
+        """True if the contact rests for an instant only: what follows from a disturbance then depends on its sign."""
+        end, history = self.closed, self.closed.history
+        rests = history.start[: end.piece + 1][history.store.mode[: end.piece + 1] == 0]
+        return self.section.at_onset and len(rests) > 0 and self.period - float(rests[0]) <= INSTANT * self.period
+
     @cached_property
     def multipliers(self) -> NDArray[Any]:
         """What a return multiplies disturbances by, the largest first: one less than there are load, slip rate and states."""
-        found = np.linalg.eigvals(self.closed.slopes())
         if self.section.at_onset:
-            found = np.append(found, 0.0)
+            return np.array([np.nan if self.grazes else 0.0])
+        found = np.linalg.eigvals(self.closed.slopes())
         return found[np.argsort(-np.abs(found), kind="stable")]
 
 
@@ -88,7 +97,7 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
         return Orbit(now, extent, 1, 0.0)
     period, share = now.time, _share(now, extent)
     for n in range(MOST_ITERATIONS):
-        step = np.linalg.solve(now.slopes(exactly=False) - np.eye(len(place)), -now.missed)
+        step = _step(now)
         tried = _shortened(section, now, step, share, extent)
         period, change = tried.time, abs(tried.time - period)
         new = _share(tried, extent)
@@ -96,8 +105,15 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
             best = tried if new < share else now
             return _checked(Orbit(best, extent_of(best.history, section.at_onset, best.piece), n + 2, change))
         now, share = tried, new
-        extent = extent_of(now.history, section.at_onset, now.piece)
     raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
+
+
+def _step(now: Return) -> Floats:
+    """Return the step of Newton's iteration. Raises InputError if the cycles near here cannot be told apart."""
+    try:
+        return np.asarray(np.linalg.solve(now.slopes(exactly=False) - np.eye(len(now.start)), -now.missed))
+    except np.linalg.LinAlgError:
+        raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
 
 
 def _share(one: Return, extent: Floats) -> float:
@@ -130,37 +146,27 @@ def _checked(orbit: Orbit) -> Orbit:
 
 def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
     """Return the cycle near the end of a run. Raises InputError if there is none."""
-    at_onset = len(onsets(history).time) > 1
+    at_onset = len(onsets(history).time) > 1 and not problem.friction.states
     met = crossings(history, at_onset)
     if len(met.time) < 2:
         raise InputError(
             "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes the pull rate twice:"
             " give a longer run (near), or another start"
         )
-    places = coordinates(values_at(history, _positions(history, met, at_onset)), at_onset)
-    every = _meetings(history, places, at_onset)
+    if at_onset:
+        return closed(Section(problem, at_onset, rtol), np.zeros(0), float(met.time[-1] - met.time[-2]))
+    places = coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
+    every = _meetings(history, places)
     found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
-    return found if at_onset or not found.sticks else from_onset(found)
+    if problem.friction.states or not found.sticks:
+        return found
+    return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
 
 
-def from_onset(orbit: Orbit) -> Orbit:
-    """Return a cycle that rests, from the onset of its slip."""
-    end, section = orbit.closed, Section(orbit.section.problem, at_onset=True, rtol=orbit.section.rtol)
-    met = onsets(end.history)
-    if not len(met.time):
-        return orbit
-    place = coordinates(values_at(end.history, end.history.just_before(met.piece[:1] + 1)), at_onset=True)[:, 0]
-    return closed(section, place, orbit.period)
-
-
-def _positions(history: History, met: Crossings, at_onset: bool) -> Positions:
-    return history.just_before(met.piece + 1) if at_onset else Positions.inside(met.piece, met.place)
-
-
-def _meetings(history: History, places: Floats, at_onset: bool) -> int:
+def _meetings(history: History, places: Floats) -> int:
     """Return after how many meetings with the section the run closes, 1 if it does so nowhere."""
-    extent = extent_of(history, at_onset, len(history) - 1)
+    extent = extent_of(history, False, len(history) - 1)
     for every in range(1, min(MOST_MEETINGS, places.shape[1] - 1) + 1):
-        if not len(extent) or np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= CLOSES * extent):
+        if np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= CLOSES * extent):
             return every
     return 1

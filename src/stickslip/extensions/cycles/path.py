@@ -70,7 +70,7 @@ class Path:
 
         Raises NoCycleError.
         """
-        at, slopes = target.copy(), None
+        at, slopes = target.copy(), np.zeros((0, 0))
         best: tuple[float, float, Return, Floats] | None = None
         for n in range(ROUNDS):
             now, slopes = self._returned(at, guess, slopes, renew=n < 3)
@@ -94,7 +94,7 @@ class Path:
             raise NoCycleError("follow: Newton's iteration finds no cycle here")
         return best[1], Orbit(best[2], best[3], ROUNDS, 0.0), slopes
 
-    def _returned(self, at: Floats, guess: float, known: Floats | None, *, renew: bool) -> tuple[Return, Floats]:
+    def _returned(self, at: Floats, guess: float, known: Floats, *, renew: bool) -> tuple[Return, Floats]:
         """Return the run from a start, and the derivative of what it misses by start and parameter, over their scales."""
         value, place = float(at[-1] * self.range), at[:-1] * self.scales[:-1]
         try:
@@ -103,10 +103,10 @@ class Path:
             raise NoCycleError(str(error)) from None
         if not len(place):
             return now, np.zeros((0, 1))
-        if known is not None and not renew:
+        if known.size and not renew:
             return now, known
         by_place = (now.slopes(exactly=False) - np.eye(len(place))) * self.scales[:-1] / self.scales[:-1, None]
-        if known is not None:
+        if known.size:
             return now, np.column_stack([by_place, known[:, -1]])
         return now, np.column_stack([by_place, self._by_value(place, value, now.time)])
 
@@ -120,7 +120,7 @@ class Path:
         return np.asarray((ends[0] - ends[1]) / (2.0 * NUDGE) / self.scales[:-1])
 
     def at(self, target: Floats, way: Floats, guess: float) -> PlaceOnBranch:
-        """Return the cycle in the plane through `target` across `way`, with the direction of the branch there. Raises NoCycleError."""
+        """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError."""
         value, orbit, slopes = self.solved(target, way, guess)
         new = np.linalg.solve(np.vstack([slopes, way]), np.append(np.zeros(len(slopes)), 1.0))
         return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))

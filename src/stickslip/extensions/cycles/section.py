@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.tangent import FIRST_STATE, LOAD, RATE, RigidMotion, Tangent, pace_at, values_at
+from stickslip.extensions.cycles.tangent import RATE, Tangent, pace_at, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem import INITIAL_STATES, Problem
+from stickslip.run import uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import uninterrupted
 
 SAMPLES = np.linspace(0.0, 1.0, 17)
 """Places (1) in each piece between which a passage is looked for."""
@@ -39,7 +39,7 @@ class Return:
     """A run from a section to its return there."""
 
     start: Floats
-    """Load and states, of a section at an onset the states alone, where it starts."""
+    """Load and states where it starts; none at an onset, where a law without states leaves nothing open."""
     end: Floats
     """The same at the return."""
     time: float
@@ -55,22 +55,13 @@ class Return:
         return np.asarray(self.end - self.start)
 
     def slopes(self, *, exactly: bool = True) -> Floats:
-        """Return the derivative of the return by the start."""
-        motion, section = RigidMotion(self.section.problem), self.section
-        if not len(self.start):
+        """Return the derivative of the return by the start; there is none at an onset, where all is fixed."""
+        if self.section.at_onset:
             return np.zeros((0, 0))
         grown = Tangent(self.history, self.piece, self.place).grown(exactly=exactly)
         pace = pace_at(self.history, self.piece, self.place)
-        if section.at_onset:
-            ends = ((0, 0.0), (self.piece, self.place))
-            at_start, at_end = (values_at(self.history, Positions.inside(*at))[:, 0] for at in ends)
-            leaves, arrives = motion.begins_slip(at_start, 1), motion.begins_slip(at_end, 1)
-            ways = np.eye(motion.size)[:, FIRST_STATE:]
-            ways[LOAD] = -leaves[FIRST_STATE:]
-            onto = np.eye(motion.size) - np.outer(pace, arrives) / (arrives @ pace)
-            return np.asarray((onto @ grown @ ways)[FIRST_STATE:])
         onto = grown - np.outer(pace, grown[RATE]) / pace[RATE]
-        kept = [LOAD, *range(FIRST_STATE, motion.size)]
+        kept = np.delete(np.arange(len(pace)), RATE)
         return np.asarray(onto[np.ix_(kept, kept)])
 
     @cached_property
@@ -86,21 +77,20 @@ class Section:
 
     problem: Problem
     at_onset: bool
-    """True if it is at the onset of forward slip, False if it is where the slip rate passes the pull rate upwards."""
+    """True at the onset of forward slip, under a law without states; False where the slip rate passes the pull rate upwards."""
     rtol: float = 1e-12
 
     def start_at(self, place: Floats) -> Problem:
         """Return the problem that starts at a place on the section."""
-        law, inner = self.problem.friction, place if self.at_onset else place[1:]
         states: dict[str, Any] = dict.fromkeys(INITIAL_STATES)
+        if self.at_onset:
+            return replace(self.problem, initial_load=None, initial_excess=0.0, initial_rate=None, **states)
+        law = self.problem.friction
         if law.states:
-            seen = np.ravel(law.outer_state(np.array(one_argument(tuple(inner.tolist())))))
+            seen = np.ravel(law.outer_state(np.array(one_argument(tuple(place[1:].tolist())))))
             states |= dict(zip(INITIAL_STATES, seen.tolist(), strict=False))
-        load: dict[str, Any] = {"initial_load": None, "initial_excess": 0.0, "initial_rate": None}
-        if not self.at_onset:
-            rate = self.problem.first_pull_rate
-            load = {"initial_load": float(place[0]), "initial_excess": None, "initial_rate": rate}
-        return replace(self.problem, **load, **states)
+        rate = self.problem.first_pull_rate
+        return replace(self.problem, initial_load=float(place[0]), initial_excess=None, initial_rate=rate, **states)
 
     def returned(self, place: Floats, guess: float, tries: int = MOST_TRIES) -> Return:
         """Return the run from a place on the section to its return next to a `guess` of the time (s) that it takes.
@@ -127,7 +117,7 @@ class Section:
 
 def coordinates(values: Floats, at_onset: bool) -> Floats:
     """Return what may vary on a section, of load, slip rate and states."""
-    return values[FIRST_STATE:] if at_onset else np.delete(values, RATE, axis=0)
+    return values[:0] if at_onset else np.delete(values, RATE, axis=0)
 
 
 def crossings(history: History, at_onset: bool) -> Crossings:

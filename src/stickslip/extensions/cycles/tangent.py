@@ -197,7 +197,7 @@ class Tangent:
         found = each[:, 0]
         for part in range(1, parts):
             found = each[:, part] @ found
-        return found
+        return np.asarray(found)
 
     def _at_event(self, piece: int) -> Floats:
         """Return the factor of disturbances between a piece and the one before it."""

@@ -42,9 +42,9 @@ from stickslip.extensions.chains.compiled.memory import (
     WORK,
     WORK_BEFORE,
     ChainNumbers,
-    Kept,
+    KeptRows,
     Now,
-    Room,
+    StepRoom,
 )
 from stickslip.extensions.chains.compiled.series import moved, speed
 from stickslip.foundation.kernels.kernels import entry, kernel
@@ -86,7 +86,7 @@ def pull_of_driver(chain: ChainNumbers, state: Now) -> float:
 
 
 @kernel
-def note_slipping(state: Now, room: Room, j: int) -> None:
+def note_slipping(state: Now, room: StepRoom, j: int) -> None:
     """Write that a block slips in the event in progress."""
     if state.whole[SLIPPED, j] == 0:
         state.whole[SLIPPED, j] = 1
@@ -105,7 +105,7 @@ def begin_event(chain: ChainNumbers, state: Now, first: int) -> None:
 
 
 @kernel
-def end_event(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
+def end_event(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows) -> None:
     """Write the row of the event that ends now."""
     now, count, moment = state.now, room.counts[HAVE_SLIPPED], 0.0
     for n in range(count):
@@ -125,7 +125,7 @@ def end_event(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
 
 
 @kernel
-def note_rate(state: Now, room: Room, j: int, place: float, length: float) -> None:
+def note_rate(state: Now, room: StepRoom, j: int, place: float, length: float) -> None:
     """Keep the largest slip rate (m/s) of a block over a step up to a place, if it is the largest of the event so far."""
     row, largest, power = room.series[j], 0.0, 1.0
     for k in range(1, TERMS):
@@ -144,7 +144,7 @@ def note_rate(state: Now, room: Room, j: int, place: float, length: float) -> No
 
 
 @kernel
-def dissipated(room: Room, j: int, place: float) -> float:
+def dissipated(room: StepRoom, j: int, place: float) -> float:
     """Return the integral of (d slip/dx)^2 from 0 to a place."""
     row, found = room.series[j], 0.0
     powers = room_for(TWICE)
@@ -158,7 +158,7 @@ def dissipated(room: Room, j: int, place: float) -> float:
 
 
 @kernel
-def integral_of_slip(room: Room, j: int, place: float) -> float:
+def integral_of_slip(room: StepRoom, j: int, place: float) -> float:
     """Return the integral of a block's slip since the start of the step from 0 to a place."""
     row, value = room.series[j], 0.0
     for k in range(TERMS - 1, 0, -1):
@@ -167,7 +167,7 @@ def integral_of_slip(room: Room, j: int, place: float) -> float:
 
 
 @kernel
-def heat_of_step(chain: ChainNumbers, state: Now, room: Room, j: int, span: tuple[float, float]) -> float:
+def heat_of_step(chain: ChainNumbers, state: Now, room: StepRoom, j: int, span: tuple[float, float]) -> float:
     """Return the heat (J) of a block's friction over a step, before the block is moved; `span` is its length (s) and its end.
 
     It is exact for friction that is straight in slip; for any other law it is the sum of Gauss over the law's own values.

@@ -43,10 +43,10 @@ from stickslip.extensions.chains.compiled.memory import (
     WATCHED,
     WORK,
     ChainNumbers,
-    Kept,
+    KeptRows,
     Limits,
     Now,
-    Room,
+    StepRoom,
 )
 from stickslip.extensions.chains.compiled.series import remainder_of_step
 from stickslip.extensions.chains.compiled.steps import commit, expand, measure_end, take_samples
@@ -59,7 +59,7 @@ SCAN = 16
 
 
 @kernel
-def change_blocks(chain: ChainNumbers, state: Now, room: Room, kept: Kept, place: float) -> int:
+def change_blocks(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, place: float) -> int:
     """Carry out all changes at a place of the step that has been taken; return how many there are."""
     found = 0
     for n in range(room.counts[MOVING]):
@@ -92,7 +92,7 @@ def change_blocks(chain: ChainNumbers, state: Now, room: Room, kept: Kept, place
 
 
 @kernel
-def begin_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: float) -> None:
+def begin_due(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, time: float) -> None:
     """Let blocks slip that are due at a time (s), which is now, in the event in progress or in a new one."""
     if state.now[IN_EVENT] == 0.0:
         state.now[ORIGIN], state.now[SINCE] = time, 0.0
@@ -101,7 +101,7 @@ def begin_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: flo
 
 
 @kernel
-def start_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: float) -> int:
+def start_due(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, time: float) -> int:
     """Let all blocks slip that are due at a time (s), which is now; return how many there are."""
     found = 0
     for j in range(len(state.blocks[DUE])):
@@ -116,7 +116,7 @@ def start_due(chain: ChainNumbers, state: Now, room: Room, kept: Kept, time: flo
 
 
 @kernel
-def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+def step(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, limits: Limits) -> int:
     """Take a step of the moving blocks, and the changes at its end; return DONE if it would lead beyond the time to reach."""
     now, length = state.now, expand(chain, state, room)
     if length == math.inf:
@@ -147,14 +147,14 @@ def step(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits
 
 
 @kernel
-def finish_event(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
+def finish_event(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows) -> None:
     """Write the row of the event that ends, and count time from here on as one number."""
     end_event(chain, state, room, kept)
     state.now[ORIGIN], state.now[SINCE] = time_of(state), 0.0
 
 
 @kernel
-def pass_rest(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+def pass_rest(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, limits: Limits) -> int:
     """Pass over rest of all blocks at once, to the next onset; return DONE if it lies beyond the time to reach."""
     now = state.now
     due, here = first_due(state, room), time_of(state)
@@ -175,7 +175,7 @@ def pass_rest(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: L
 
 
 @entry
-def begin(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
+def begin(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows) -> None:
     """Set up the state at t = 0, from the slip of all blocks."""
     count = len(chain.blocks.mass)
     state.now[PULL] = pull_of_driver(chain, state)
@@ -198,7 +198,7 @@ def begin(chain: ChainNumbers, state: Now, room: Room, kept: Kept) -> None:
 
 
 @entry
-def advance(chain: ChainNumbers, state: Now, room: Room, kept: Kept, limits: Limits) -> int:
+def advance(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, limits: Limits) -> int:
     """Let a chain go on until a time, or until the budget or the room for rows is used up."""
     find_lists(chain, state, room)
     room.counts[CHANGE_ROWS] = room.counts[EVENT_ROWS] = 0

@@ -39,9 +39,9 @@ from stickslip.extensions.chains.compiled.memory import (
     TURN,
     WATCHED,
     ChainNumbers,
-    Kept,
+    KeptRows,
     Now,
-    Room,
+    StepRoom,
 )
 from stickslip.extensions.chains.compiled.series import write_load
 from stickslip.foundation.kernels.kernels import exact, kernel
@@ -56,7 +56,7 @@ TOUCH, ROUNDED_FORCE = 1e-13, 4e-15
 
 
 @kernel
-def note_change(state: Now, room: Room, kept: Kept, j: int, kind: int) -> None:
+def note_change(state: Now, room: StepRoom, kept: KeptRows, j: int, kind: int) -> None:
     """Count a change, and keep it if there is room."""
     state.now[CHANGES] += 1.0
     n = room.counts[CHANGE_ROWS]
@@ -68,7 +68,7 @@ def note_change(state: Now, room: Room, kept: Kept, j: int, kind: int) -> None:
 
 
 @kernel
-def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+def find_in_moving(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Write where in the step a moving block first comes to rest or passes a knot of its law."""
     mode, row, line, spare = state.whole[MODE, j], room.series[j], room_for(TERMS), room_for(TERMS)
     room.places[j] = NONE
@@ -104,7 +104,7 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+def find_at_rest(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Write where in the step a block at rest beside moving ones first reaches its strength."""
     load, margin, spare = room_for(TERMS), room_for(TERMS), room_for(TERMS)
     strength, edge = state.blocks[STRENGTH, j], state.whole[EDGE, j]
@@ -123,7 +123,7 @@ def find_at_rest(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def first_place(chain: ChainNumbers, state: Now, room: Room) -> float:
+def first_place(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
     """Look for changes of moving blocks and those beside them in a step, and return the first place of one in [0, 1]; NONE."""
     first = NONE
     for n in range(room.counts[MOVING]):
@@ -136,7 +136,7 @@ def first_place(chain: ChainNumbers, state: Now, room: Room) -> float:
 
 
 @kernel
-def begin_slip(state: Now, room: Room, kept: Kept, j: int, mode: int) -> None:
+def begin_slip(state: Now, room: StepRoom, kept: KeptRows, j: int, mode: int) -> None:
     """Let a block leave rest exactly at its strength."""
     state.whole[MODE, j], state.whole[EDGE, j] = mode, mode
     state.blocks[RATE, j] = 0.0

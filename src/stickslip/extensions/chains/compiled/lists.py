@@ -21,7 +21,7 @@ from stickslip.extensions.chains.compiled.memory import (
     WATCHED,
     ChainNumbers,
     Now,
-    Room,
+    StepRoom,
 )
 from stickslip.foundation.kernels.kernels import kernel
 
@@ -30,7 +30,7 @@ UNKNOWN = -1
 
 
 @kernel
-def find_lists(chain: ChainNumbers, state: Now, room: Room) -> None:
+def find_lists(chain: ChainNumbers, state: Now, room: StepRoom) -> None:
     """Make the lists of moving blocks, of those beside them, and of those that have slipped; they follow from the modes."""
     springs, count = chain.springs, len(chain.blocks.mass)
     room.counts[MOVING] = room.counts[WATCHED] = room.counts[HAVE_SLIPPED] = 0
@@ -54,7 +54,7 @@ def find_lists(chain: ChainNumbers, state: Now, room: Room) -> None:
 
 
 @kernel
-def find_first_due(state: Now, room: Room) -> None:
+def find_first_due(state: Now, room: StepRoom) -> None:
     """Look for the block that is due first."""
     first, least = 0, state.blocks[DUE, 0]
     for j in range(1, len(state.blocks[DUE])):
@@ -64,7 +64,7 @@ def find_first_due(state: Now, room: Room) -> None:
 
 
 @kernel
-def first_due(state: Now, room: Room) -> float:
+def first_due(state: Now, room: StepRoom) -> float:
     """Return the time (s) at which the block that is due first begins to slip."""
     if room.counts[FIRST_DUE] == UNKNOWN:
         find_first_due(state, room)
@@ -72,7 +72,7 @@ def first_due(state: Now, room: Room) -> float:
 
 
 @kernel
-def drop_due(state: Now, room: Room, j: int) -> None:
+def drop_due(state: Now, room: StepRoom, j: int) -> None:
     """Write that a block is not due at a known time any more."""
     state.blocks[DUE, j] = math.inf
     if room.counts[FIRST_DUE] == j:
@@ -80,7 +80,7 @@ def drop_due(state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def insert_moving(room: Room, j: int) -> None:
+def insert_moving(room: StepRoom, j: int) -> None:
     """Put a block into the list of moving ones, which is sorted."""
     n = room.counts[MOVING]
     while n > 0 and room.moving[n - 1] > j:
@@ -91,7 +91,7 @@ def insert_moving(room: Room, j: int) -> None:
 
 
 @kernel
-def moves_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+def moves_from_now(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Put a block that has begun to slip into the lists, and its neighbours at rest among those that are watched."""
     springs = chain.springs
     insert_moving(room, j)
@@ -110,7 +110,7 @@ def moves_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def forget_watched(room: Room, j: int) -> None:
+def forget_watched(room: StepRoom, j: int) -> None:
     """Take a block from the list of those that are watched."""
     last = room.counts[WATCHED] - 1
     for n in range(last + 1):
@@ -121,7 +121,7 @@ def forget_watched(room: Room, j: int) -> None:
 
 
 @kernel
-def rests_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+def rests_from_now(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Take a block that has come to rest from the list of moving ones, and let neighbours be that no moving block is beside."""
     springs, n = chain.springs, 0
     while room.moving[n] != j:
@@ -144,7 +144,7 @@ def rests_from_now(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
+def becomes_quiet(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Write when a block is due that rests among resting ones."""
     set_due(chain, state, j)
     first = room.counts[FIRST_DUE]
@@ -155,7 +155,7 @@ def becomes_quiet(chain: ChainNumbers, state: Now, room: Room, j: int) -> None:
 
 
 @kernel
-def rubbing(state: Now, room: Room) -> int:
+def rubbing(state: Now, room: StepRoom) -> int:
     """Return how many blocks slip against friction."""
     found = 0
     for n in range(room.counts[MOVING]):

@@ -108,7 +108,7 @@ class Now(NamedTuple):
     whole: Integers2
 
 
-class Room(NamedTuple):
+class StepRoom(NamedTuple):
     """Room for a step: series of blocks, places of changes in the step, and lists of blocks, each with its length in `counts`."""
 
     series: Floats2
@@ -129,7 +129,7 @@ MOVING, WATCHED, HAVE_SLIPPED, FIRST_DUE, CHANGE_ROWS, EVENT_ROWS, SAMPLES = ran
 NUMBER_OF_COUNTS = 7
 
 
-class Kept(NamedTuple):
+class KeptRows(NamedTuple):
     """Rows that are written: changes if there is room for any, events, and samples of slip and rate at given times (s)."""
 
     changes: Floats2

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import load_on, sliding_strength, static_step
 from stickslip.extensions.chains.compiled.memory import (
@@ -26,7 +25,7 @@ from stickslip.extensions.chains.compiled.memory import (
     STRAIGHT,
     ChainNumbers,
     Now,
-    Room,
+    StepRoom,
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import exact, inlined, kernel
@@ -47,7 +46,7 @@ SHORT = 0.5
 
 
 @exact
-def load_term(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> float:
+def load_term(chain: ChainNumbers, state: Now, room: StepRoom, j: int, k: int) -> float:
     """Return the k-th coefficient (N), k > 0, of the force of the springs to other blocks and to walls."""
     springs, series, modes = chain.springs, room.series, state.whole[MODE]
     own, found = 0.0 if modes[j] == REST else series[j, k], 0.0
@@ -87,7 +86,7 @@ def weakening_of(chain: ChainNumbers, state: Now, j: int) -> float:
 
 
 @exact
-def begin_series(chain: ChainNumbers, state: Now, room: Room, j: int, unit: float) -> None:
+def begin_series(chain: ChainNumbers, state: Now, room: StepRoom, j: int, unit: float) -> None:
     """Write the orders of the series of a moving block that its state gives: slip, slip rate, and acceleration."""
     row = room.series[j]
     row[0] = 0.0
@@ -96,7 +95,7 @@ def begin_series(chain: ChainNumbers, state: Now, room: Room, j: int, unit: floa
 
 
 @exact
-def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> None:
+def next_order(chain: ChainNumbers, state: Now, room: StepRoom, j: int, k: int) -> None:
     """Write order k + 2 of the series of a block whose friction is straight in slip."""
     blocks, row, unit = chain.blocks, room.series[j], room.span[0]
     force = load_term(chain, state, room, j, k) - weakening_of(chain, state, j) * row[k]
@@ -108,7 +107,7 @@ def next_order(chain: ChainNumbers, state: Now, room: Room, j: int, k: int) -> N
 
 
 @exact
-def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> None:
+def write_series(chain: ChainNumbers, state: Now, room: StepRoom, unit: float) -> None:
     """Write the series of all moving blocks, in powers of the time in units (s)."""
     count, room.span[0] = room.counts[MOVING], unit
     for n in range(count):
@@ -132,7 +131,7 @@ def write_series(chain: ChainNumbers, state: Now, room: Room, unit: float) -> No
 
 
 @exact
-def series_of_formula(chain: ChainNumbers, state: Now, room: Room, j: int, unit: float) -> None:
+def series_of_formula(chain: ChainNumbers, state: Now, room: StepRoom, j: int, unit: float) -> None:
     """Write the series of a moving block from the loads that the series of the last pass give, by its law's own formula."""
     given, load, rate = room_for(ROOM_OF_INPUT), room_for(TERMS), room_for(ROOM_OF_JET)
     blocks, laws, row = chain.blocks, chain.laws, room.series[j]
@@ -151,7 +150,7 @@ def series_of_formula(chain: ChainNumbers, state: Now, room: Room, j: int, unit:
 
 
 @kernel
-def length_of_step(room: Room) -> float:
+def length_of_step(room: StepRoom) -> float:
     """Return the length of a step (in units) after which the last terms of all series are below the tolerance."""
     last = before = first = second = third = 0.0
     for n in range(room.counts[MOVING]):
@@ -165,12 +164,12 @@ def length_of_step(room: Room) -> float:
     length = 1.0
     for _ in range(4):
         size = length * max(first, length * max(second, length * third))
-        allowed = quick_log2(TOLERANCE * size)
+        allowed = math.log(TOLERANCE * (size if size > 0.0 else max(last, before, 1e-300)))
         longest = LONGEST
         if last > 0.0:
-            longest = min(longest, quick_exp2((allowed - quick_log2(last)) / (TERMS - 1)))
+            longest = min(longest, math.exp((allowed - math.log(last)) / (TERMS - 1)))
         if before > 0.0:
-            longest = min(longest, quick_exp2((allowed - quick_log2(before)) / (TERMS - 2)))
+            longest = min(longest, math.exp((allowed - math.log(before)) / (TERMS - 2)))
         length = longest
         if length > SHORT:
             break
@@ -178,7 +177,7 @@ def length_of_step(room: Room) -> float:
 
 
 @exact
-def stretch_series(room: Room, length: float) -> None:
+def stretch_series(room: StepRoom, length: float) -> None:
     """Make [0, 1] the step: replace x by `length` times x in all series."""
     for n in range(room.counts[MOVING]):
         row = room.series[room.moving[n]]
@@ -189,7 +188,7 @@ def stretch_series(room: Room, length: float) -> None:
 
 
 @kernel
-def remainder_of_step(room: Room, phase: float) -> float:
+def remainder_of_step(room: StepRoom, phase: float) -> float:
     """Return a bound of the remainder of the series over a step, as a share of its motion; `phase` is fastest times length."""
     motion = left_out = 0.0
     for n in range(room.counts[MOVING]):
@@ -218,7 +217,7 @@ def speed(row: Floats, x: float) -> float:
 
 
 @exact
-def write_load(chain: ChainNumbers, state: Now, room: Room, j: int, out: Floats) -> None:
+def write_load(chain: ChainNumbers, state: Now, room: StepRoom, j: int, out: Floats) -> None:
     """Write the series of the load (N) on a block at rest over the step."""
     out[0] = load_on(chain, state, j)
     for k in range(1, TERMS):

@@ -30,9 +30,9 @@ from stickslip.extensions.chains.compiled.memory import (
     WATCHED,
     WORK,
     ChainNumbers,
-    Kept,
+    KeptRows,
     Now,
-    Room,
+    StepRoom,
 )
 from stickslip.extensions.chains.compiled.series import (
     UNIT,
@@ -51,7 +51,7 @@ if a term overflows (1), and the shortest unit (s)."""
 
 
 @kernel
-def expand(chain: ChainNumbers, state: Now, room: Room) -> float:
+def expand(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
     """Write the series of the moving blocks over a step, and return its length (s); inf if a term is no number."""
     unit, last = UNIT / chain.fastest, state.now[LAST_STEP]
     if chain.all_straight == 0 and last > 0.0:
@@ -69,7 +69,7 @@ def expand(chain: ChainNumbers, state: Now, room: Room) -> float:
 
 
 @kernel
-def is_finite(room: Room) -> bool:
+def is_finite(room: StepRoom) -> bool:
     """Return True if the last terms of all series are numbers."""
     total = 0.0
     for n in range(room.counts[MOVING]):
@@ -78,7 +78,7 @@ def is_finite(room: Room) -> bool:
 
 
 @kernel
-def take_samples(state: Now, room: Room, kept: Kept, length: float, reach: float) -> None:
+def take_samples(state: Now, room: StepRoom, kept: KeptRows, length: float, reach: float) -> None:
     """Write slip and slip rate at the times that lie within a reach (s) from now, of a step of a length (s), or of rest: 0."""
     while room.counts[SAMPLES] < len(kept.sample_times):
         n = room.counts[SAMPLES]
@@ -97,7 +97,7 @@ def take_samples(state: Now, room: Room, kept: Kept, length: float, reach: float
 
 
 @kernel
-def commit(chain: ChainNumbers, state: Now, room: Room, length: float, place: float) -> None:
+def commit(chain: ChainNumbers, state: Now, room: StepRoom, length: float, place: float) -> None:
     """Move all moving blocks to a place in the step, of a length in s, and count energies."""
     now, blocks, duration = state.now, state.blocks, length * place
     lost = given = 0.0
@@ -132,7 +132,7 @@ def commit(chain: ChainNumbers, state: Now, room: Room, length: float, place: fl
 
 
 @kernel
-def measure_end(chain: ChainNumbers, state: Now, room: Room, length: float, place: float) -> None:
+def measure_end(chain: ChainNumbers, state: Now, room: StepRoom, length: float, place: float) -> None:
     """Keep how far the acceleration at the end of a step is from that of the force there, as a share of the strength."""
     for n in range(room.counts[MOVING]):
         j = room.moving[n]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Unpack
 
+import xarray as xr
 from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter_panels, panels, set_scale, zero_line
+from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.style import BLUE, INK, VERMILLION, curve_quantity, label, shown, spans_decades, styled, unit_shown
 from stickslip.foundation.place import Place
 
@@ -25,8 +26,8 @@ def draw_cycle(found: LimitCycle, **place: Unpack[Place]) -> Figure:
     unit_of_loads = found.problem.load_unit
     time, (rate, traction, load) = found.run.curves_together(CURVES, 0.0, found.run.duration)
     values: Any = {"slip_rate": rate, "traction": traction, "load": load, "time": time}
-    drawn = {name: curve_quantity("time", one, name, unit_of_loads) for name, one in values.items()}
-    units = {name: unit_shown(one) for name, one in drawn.items()}
+    drawn = xr.Dataset({name: curve_quantity("along", one, name, unit_of_loads) for name, one in values.items()})
+    units = {name: unit_shown(drawn[name]) for name in values}
     units["load"] = units["traction"]
     over = shown(drawn["time"], units["time"])
     for axes, name, colour in zip(grid[:, 0], CURVES, (BLUE, VERMILLION), strict=False):
@@ -40,8 +41,8 @@ def draw_cycle(found: LimitCycle, **place: Unpack[Place]) -> Figure:
     plane = figure.add_subplot(grid[0, 1].get_gridspec()[:, 1])
     plane.plot(shown(drawn["slip_rate"], units["slip_rate"]), shown(drawn["load"], units["load"]), color=BLUE)
     if rate.min() > 0.0 and spans_decades(rate):
-        set_scale(plane, "x", log=True)
-        set_scale(grid[0, 0], "y", log=True)
+        plane.set_xscale("log")
+        grid[0, 0].set_yscale("log")
     plane.set(xlabel=label(drawn["slip_rate"], units["slip_rate"]), ylabel=label(drawn["load"], units["load"]))
     letter_panels([*grid[:, 0], plane], ["one period", "traction, and load (dashed)", "phase plane"])
     return figure

@@ -14,7 +14,7 @@ from stickslip.foundation.arrays import Floats
 BLOCKS_OF_CHAIN, UNTIL, TRANSIENT = 100, 8_000.0, 2_000.0
 """Blocks of each chain, how long it runs (s), and the time (s) at the start whose events are left out."""
 DRY = ss.friction.Coulomb(static=1.0, dynamic=0.7)
-CHAINS: dict[str, tuple[float, int, ss.FrictionLaw]] = {
+CHAINS: dict[str, tuple[float, int, ss.friction.FrictionLaw]] = {
     "kc/kp = 1": (1.0, 1, DRY),
     "kc/kp = 10": (10.0, 1, DRY),
     "kc/kp = 10, another start": (10.0, 2, DRY),
@@ -34,7 +34,7 @@ FITS = 0.05
 """The law is said to fit if more of the catalogues drawn from it than this share are as far."""
 
 
-def chain(coupling: float, seed: int, law: ss.FrictionLaw) -> ss.Chain:
+def chain(coupling: float, seed: int, law: ss.friction.FrictionLaw) -> ss.Chain:
     """Return a chain of equal blocks that start out of place, and slip forward only."""
     start = ss.Drawn("uniform", -0.5 / math.sqrt(coupling), 0.0, seed=seed)
     return ss.Chain(law, BLOCKS_OF_CHAIN, 1.0, coupling, 1.0, 1.0, 1e-3, initial_slip=start, direction="forward")
