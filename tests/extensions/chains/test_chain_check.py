@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -120,6 +121,15 @@ def test_check_says_what_is_known_before_a_run(command: Command) -> None:
     assert "[body]" not in out
     assert "nearly one block" in command("check", "chain", "--set", "coupling=1 MN/m").out
     assert "nearly 50 blocks of their own" in command("check", "chain", "--set", "coupling=0.001 N/m").out
+
+
+@pytest.mark.parametrize(("duration", "wanted"), [(1e4, "at most some 44000 onsets"), (1e9, "at most some 4.4e+09 onsets, a few")])
+def test_frequencies_are_in_one_unit_and_onsets_written_out(duration: float, wanted: str) -> None:
+    """The driver goes 10 m or 1000 km; blocks that slip alone slip 2 times 0.2 N or 0.26 N over 1001 N/m."""
+    changes = {"run.duration": duration, "chain.coupling": 1e3}
+    found = dict(ChainExamination(ss.scenarios["two-blocks"].with_values(changes)).findings())
+    assert re.match(r"1 to 44\.73 rad/s where all blocks move", found["frequencies"])
+    assert wanted in found["size"]
 
 
 @pytest.mark.parametrize(

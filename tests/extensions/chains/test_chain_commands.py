@@ -86,6 +86,14 @@ def test_events_are_written_with_all_digits(tmp_path: Path, suffix: str) -> None
     assert np.array_equal(table["heat (J)"], run.events["heat"])
     with pytest.raises(ss.InputError, match=r"must end in \.csv, \.parquet, \.nc"):
         run.to_csv(tmp_path / "a.txt")
+    with pytest.raises(ss.InputError) as caught:
+        run.to_csv(tmp_path / f"nowhere/a{suffix}")
+    assert str(caught.value) == f"{tmp_path}/nowhere/a{suffix}: cannot be written: No such file or directory"
+
+
+def test_a_folder_that_is_not_there_is_said_so(command: Command) -> None:
+    for words in (("show", "a.zarr"), ("run", "--resume", "a.zarr")):
+        assert command(*words).err.strip() == "stickslip: a.zarr: no such file or folder"
 
 
 def test_a_run_ends_after_so_many_events(command: Command) -> None:

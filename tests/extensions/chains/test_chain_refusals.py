@@ -71,6 +71,13 @@ BAD = [
     ("[run]", '[body]\nkind = "spring-block"\nmass = 2\n[run]', "a scenario with a [chain] has no [body]: leave it out"),
     ("[run]", "[loading]\npull_rate = 1e-3\n[run]", "has no [loading]: leave it out; [chain] has pull_rate"),
     ("[run]", "[initial]\nslip = 1.0\n[run]", "has no [initial]: leave it out; [chain] has initial_slip"),
+    (
+        "[run]",
+        '[body]\nkind = "spring-block"\nmass = 1.0\nstiffness = 1.0\nnormal_force = 1.0\n[run]',
+        "has no [body]: leave it out",
+    ),
+    ("[run]", "[loading]\npull_rate = 0\n[run]", "has no [loading]: leave it out"),
+    ("[run]", "[initial]\nload = 0\n[run]", "has no [initial]: leave it out"),
     ('kind = "coulomb"', 'kind = "coulom"', "[friction] kind 'coulom' is unknown; did you mean 'coulomb'?"),
     ('pull_rate = "1 mm/s"', 'pull_rate = "1 mm"', "[chain] pull_rate must be a number in m/s"),
     ('pull_rate = "1 mm/s"', 'pull_rate = "-1 mm/s"\ndirection = "forward"', "direction 'forward' needs a pull_rate of 0 or more"),

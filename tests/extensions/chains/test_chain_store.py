@@ -122,6 +122,18 @@ def test_a_run_ends_after_so_many_events_and_goes_on_from_there(tmp_path: Path, 
     _same(ss.resume(tmp_path / "a.zarr"), whole)
 
 
+@pytest.mark.parametrize("duration", [299.0, 100.0])
+def test_a_run_does_not_end_before_the_time_that_it_has_reached(tmp_path: Path, duration: float) -> None:
+    """Its last event is over long before: the state that it goes on from is older than its end."""
+    ss.simulate(_chain(), 300.0, checkpoint=tmp_path / "a.zarr")
+    with pytest.raises(ss.InputError) as caught:
+        ss.resume(tmp_path / "a.zarr", duration)
+    said = f"the run has already reached 300 s: a duration of {duration:g} s lies before that"
+    assert str(caught.value) == f"{tmp_path / 'a.zarr'}: {said}"
+    assert store_layout.open_chain(tmp_path / "a.zarr").duration == 300.0
+    assert ss.resume(tmp_path / "a.zarr", 300.0).duration == 300.0
+
+
 def test_snapshots_are_bounded_in_number_and_in_memory() -> None:
     for count in (3, 100_000):
         kept, state = Snapshots(), ChainState.empty(count)

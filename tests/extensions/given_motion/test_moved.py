@@ -216,6 +216,8 @@ IN_FILES = [
     ('normal_load = "5 MPa"', "", "[motion] normal_load is missing"),
     ("[motion]", "[loading]\npull_rate = 1.0\n[motion]", "[motion] gives slip rate and normal load: leave [loading] out"),
     ("[motion]", "[initial]\nstate = 1.0\n[motion]", "[motion] has initial_slip and initial_state: leave [initial] out"),
+    ("[motion]", "[loading]\npull_rate = 0.0\n[motion]", "[motion] gives slip rate and normal load: leave [loading] out"),
+    ("[motion]", "[initial]\nload = 0.0\n[motion]", "[motion] has initial_slip and initial_state: leave [initial] out"),
     ('"1 um/s", "10 um/s"', '"1 um/s", 0.0, 0.0', "[motion.slip_rate] 2 times but 3 values"),
     ('"5 MPa"', "true", "[motion] normal_load must be a number, or a table [motion.normal_load], got True"),
     ("[run]", "[run]\nevents = 3", "[run] events has no effect with a [motion], which says how the contact moves: leave it out"),

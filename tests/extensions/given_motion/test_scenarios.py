@@ -102,6 +102,7 @@ WRONG = [
     ("[motion]\nnormal_load = '5 MPa'\nload_unit = 'N'\n", "[motion] normal_load is in Pa, and load_unit is 'N'"),
     ("[motion]\n", "[motion] normal_load is missing: a number such as '100 N' or '5 MPa', or a history"),
     (BODY.replace("density = 3e3", "density = 0.0"), "[body] density must be greater than 0 kg/m^3, got 0"),
+    (BODY + "normal_load = '5 MPa'\n", "[motion] has normal_load: leave [body] out, whose load is taken where it has none"),
     ("[loading]\npull_rate = 1.0\n" + STRESS, "[motion] gives slip rate and normal load: leave [loading] out"),
     ("[initial]\nload = 1.0\n" + STRESS, "[motion] has initial_slip and initial_state: leave [initial] out"),
 ]

@@ -19,9 +19,16 @@ FORMATS_OF_EVENTS = (".csv", ".parquet", ".nc")
 
 def write_events(run: ChainRun, path: str | Path) -> Path:
     """Write the events of a run as .csv, .parquet or .nc, with all digits, and return the path. Raises InputError."""
+    file = as_path("to_csv: path", path)
+    try:
+        return _written(run, file)
+    except OSError as error:
+        raise InputError(f"{file}: cannot be written: {error.strerror or error}") from None
+
+
+def _written(run: ChainRun, file: Path) -> Path:
     import stickslip
 
-    file = as_path("to_csv: path", path)
     made = f"stickslip {stickslip.__version__}: events of a chain{f', {run.title}' if run.title else ''}"
     table = run.events_table()
     named = table.rename(columns={name: f"{name} ({unit})" for name, unit in EVENT_UNITS.items() if unit != "1"})

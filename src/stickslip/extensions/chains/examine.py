@@ -102,7 +102,7 @@ class ChainExamination:
         if driven > 0.0 and most >= 1.0:
             takes = ", a few microseconds each and for each block that moves" if most > MANY_ONSETS else ""
             smallest = brief(float(slips.min()), "m")
-            yield "size", f"a block that slips alone slips {smallest} or more: at most some {number(most, 2)} onsets{takes}"
+            yield "size", f"a block that slips alone slips {smallest} or more: at most some {_rounded(most)} onsets{takes}"
 
     def _hints(self) -> Iterator[str]:
         chain, pull = self.chain, float(self.before.pull.mean())
@@ -117,6 +117,11 @@ class ChainExamination:
             )
         elif 4.0 * coupling < SOFT * pull:
             yield f"the springs between blocks are so soft that these are nearly {chain.count} blocks of their own"
+
+
+def _rounded(count: float) -> str:
+    """Return a large number with two digits that count, written out up to a million."""
+    return f"{count:.2g}" if count > MANY_ONSETS else f"{float(f'{count:.2g}'):.0f}"
 
 
 def _periods(low: float, high: float) -> str:

@@ -103,13 +103,13 @@ def resume_chain(path: Path, duration: float | str | WithUnit | None = None, **g
     with ChainStore.at(path) as store:
         asked: Any = store.duration if duration is None else duration
         options = CallOptions(asked, checkpoint=path, **given).checked("resume")
-        state = store.state
-        if options.duration < state.time:
-            raise InputError(f"resume: {path}: the run has already reached {state.time:.9g} s: take a longer duration")
+        if duration is not None and options.duration < store.reached:
+            wanted = f"a duration of {options.duration:.9g} s lies before that"
+            raise InputError(f"{path}: the run has already reached {store.reached:.9g} s: {wanted}")
         if options.max_events is not None and options.max_events <= store.count_of_events:
             raise InputError(f"resume: {path}: the run already has {store.count_of_events} events: take more of them")
         store.duration = float(options.duration)
-        return followed(ChainSolver(store.chain, state, store.keeps_changes), options, store)
+        return followed(ChainSolver(store.chain, store.state, store.keeps_changes), options, store)
 
 
 def followed(solver: ChainSolver, options: CallOptions, rows: ChainRows) -> ChainRun:

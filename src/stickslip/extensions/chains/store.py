@@ -73,6 +73,8 @@ class ChainStore(ChainRows):
     """Numbers of rows in the folder."""
     start: ChainState | None = None
     """The state that the run continues from."""
+    reached: float = 0.0
+    """The time (s) up to which the run is in the folder."""
 
     # ---- begin, or go on ---------------------------------------------------------------------------------------------------------
 
@@ -117,7 +119,7 @@ class ChainStore(ChainRows):
         store.written |= found.rows
         store.count_of_events, store.count_of_changes = store.written[EVENT], store.written[CHANGE]
         store.snapshots = Snapshots(found.snapshots, found.every, found.calls)
-        store.start = found.state
+        store.start, store.reached = found.state, found.reached
         return store
 
     @property

@@ -86,7 +86,7 @@ class ChainTable(ScenarioTable):
     @override
     def completed(self, raw: Mapping[str, Any], source: Source) -> Mapping[str, Any]:
         for name, cure in INSTEAD_OF.items():
-            if name in raw and raw[name] != UNUSED[name]:
+            if name in raw:
                 raise InputError(f"{source.file}: a scenario with a [chain] has no [{name}]: leave it out; {cure}")
         if isinstance(law := raw.get("friction"), dict):
             _check_law(law, source)

@@ -27,6 +27,7 @@ STILL: dict[str, Any] = {"pull_rate": 0.0}
 """The [loading] of a scenario with a [motion]."""
 STATE_KEYS = ("initial_state", "initial_second_state")
 NO_LOADING = "[motion] gives slip rate and normal load: leave [loading] out"
+NO_BODY = "[motion] has normal_load: leave [body] out, whose load is taken where it has none"
 NO_START = "[motion] has initial_slip and initial_state: leave [initial] out"
 NEVER_STICKS_AT = 1.0
 """A state for the unused start of the unused body, where none is given."""
@@ -77,11 +78,10 @@ class MotionTable(ScenarioTable):
             return raw  # which is refused in its turn
         if "friction" not in raw:
             raise InputError(f"{source.file}: [friction] is missing")
-        loading = raw.get("loading", {})
-        if not isinstance(loading, dict) or any(one != 0.0 for one in loading.values()):
-            raise InputError(f"{source.file}: {NO_LOADING}")
-        if raw.get("initial") is not None and not (isinstance(raw["initial"], dict) and raw["initial"].get("load") == 0.0):
-            raise InputError(f"{source.file}: {NO_START}")
+        reasons = {"loading": NO_LOADING, "initial": NO_START} | ({"body": NO_BODY} if "normal_load" in motion else {})
+        for name, why in reasons.items():
+            if name in raw:
+                raise InputError(f"{source.file}: {why}")
         from stickslip.extensions.given_motion.load_of_motion import UNUSED_BODIES, with_load  # only where there is a [motion]
 
         motion = with_load(motion, raw.get("body"), source)

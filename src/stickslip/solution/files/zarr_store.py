@@ -67,7 +67,8 @@ class FolderFormat:
     def opened(self, path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
         """Return the group in a folder after checking its attributes. Raises InputError."""
         if not (path / zarr_folder.METADATA).exists():
-            raise InputError(f"{path}: not {self.what}: it is no folder of zarr")
+            why = f"not {self.what}: it is no folder of zarr" if path.exists() else "no such file or folder"
+            raise InputError(f"{path}: {why}")
         group = zarr_folder.opened(path, mode, use_consolidated)
         version = group.attrs.get(self.kind, "none")
         if version != self.version:
