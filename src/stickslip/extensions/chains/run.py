@@ -171,7 +171,7 @@ class ChainRun(ShownAsTable, NamesAttributes):
     @property
     def count_of_changes(self) -> int:
         """The number of changes of blocks, whether they are kept or not."""
-        return int(self.state.now[at.CHANGES])
+        return int(self.state.now[at.COUNT_OF_CHANGES])
 
     @property
     def count_of_events(self) -> int:
@@ -191,7 +191,7 @@ class ChainRun(ShownAsTable, NamesAttributes):
     @property
     def slip_rate(self) -> Floats:
         """The slip rate of each block at the end (m/s)."""
-        return np.array(self.final.blocks[at.RATE])
+        return np.array(self.final.blocks[at.RATE_NOW])
 
     def energy(self) -> ChainEnergy:
         """Return the energies at the end (J) and their balance."""
@@ -200,7 +200,7 @@ class ChainRun(ShownAsTable, NamesAttributes):
 
         numbers, first, now = numbers_of(self.chain).chain, ChainState.empty(self.chain.count), self.final.now
         first.blocks[at.SLIP] = self.chain.values("initial_slip")
-        kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE] ** 2)
+        kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE_NOW] ** 2)
         springs = energies_of(numbers, self.final), energies_of(numbers, first)
         return ChainEnergy(springs[0], kinetic, float(now[at.HEAT]), float(now[at.DASHPOT]), float(now[at.WORK]), springs[1])
 
@@ -238,7 +238,7 @@ class ChainRun(ShownAsTable, NamesAttributes):
         from stickslip.extensions.chains.numbers import is_straight
 
         now = self.state.now
-        steps, left_out, lacks = int(now[at.STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
+        steps, left_out, lacks = int(now[at.COUNT_OF_STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
         placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"
         if all(is_straight(law) for law in self.chain.laws[0]):
             return (

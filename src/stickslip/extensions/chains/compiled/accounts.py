@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from numpy.polynomial.legendre import leggauss
 
+from stickslip.engine import TERMS
 from stickslip.engine.series.polynomial import extremes
-from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import driver_place, friction_at, time_of
 from stickslip.extensions.chains.compiled.memory import (
     COUNTED,

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
+from stickslip.engine import TERMS
 from stickslip.engine.series.polynomial import NONE, first_descent
-from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import (
     growth_of_load,
     load_on,
@@ -21,6 +21,7 @@ from stickslip.extensions.chains.compiled.loads import (
 )
 from stickslip.extensions.chains.compiled.memory import (
     ARREST,
+    AT_STRENGTH,
     BACKWARD,
     CHANGE_BLOCK,
     CHANGE_KIND,
@@ -28,12 +29,10 @@ from stickslip.extensions.chains.compiled.memory import (
     CHANGE_SINCE,
     CHANGE_SLIP,
     CHANGE_TIME,
-    CHANGES,
+    COUNT_OF_CHANGES,
     COUNTED,
     COUNTS_NET,
-    EDGE,
     FORWARD,
-    FREE,
     HEALS,
     KNOT,
     LARGEST_RATE,
@@ -41,12 +40,13 @@ from stickslip.extensions.chains.compiled.memory import (
     MOVING,
     ONSET,
     PIECE,
-    RATE,
+    RATE_NOW,
     SINCE,
     SLIP,
     STRENGTH,
     TURN,
     WATCHED,
+    WITHOUT_FRICTION,
     ChainNumbers,
     KeptRows,
     Now,
@@ -76,7 +76,7 @@ does not heal. It is next to the root of `TOUCH`, as in the engine (`engine.cont
 @kernel
 def note_change(state: Now, room: StepRoom, kept: KeptRows, j: int, kind: int) -> None:
     """Count a change, and keep it if there is room."""
-    state.now[CHANGES] += 1.0
+    state.now[COUNT_OF_CHANGES] += 1.0
     n = room.counts[CHANGE_ROWS]
     if n < len(kept.changes):
         row = kept.changes[n]
@@ -90,13 +90,13 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> N
     """Write where in the step a moving block first comes to rest or passes a knot of its law."""
     mode, row, line, spare = state.whole[MODE, j], room.series[j], room_for(TERMS), room_for(TERMS)
     room.places[j] = NONE
-    if mode == FREE:
+    if mode == WITHOUT_FRICTION:
         return
     for k in range(TERMS - 1):
         line[k] = mode * (k + 1.0) * row[k + 1]
     line[TERMS - 1] = 0.0
     room.places[j], room.kinds[j] = first_descent(line, spare), ARREST
-    if room.places[j] < NONE and state.blocks[RATE, j] == 0.0:
+    if room.places[j] < NONE and state.blocks[RATE_NOW, j] == 0.0:
         size, length = 0.0, room.span[0]
         for k in range(TERMS):
             size += abs(line[k])
@@ -148,7 +148,7 @@ def place_of_touch(state: Now, room: StepRoom, line: Floats, spare: Floats) -> f
 def find_at_rest(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Write where in the step a block at rest beside moving ones first reaches its strength."""
     load, margin, spare = room_for(TERMS), room_for(TERMS), room_for(TERMS)
-    strength, edge = state.blocks[STRENGTH, j], state.whole[EDGE, j]
+    strength, edge = state.blocks[STRENGTH, j], state.whole[AT_STRENGTH, j]
     write_load(chain, state, room, j, load)
     for k in range(1, TERMS):
         margin[k] = -load[k]
@@ -179,8 +179,8 @@ def first_place(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
 @kernel
 def begin_slip(state: Now, room: StepRoom, kept: KeptRows, j: int, mode: int) -> None:
     """Let a block leave rest exactly at its strength."""
-    state.whole[MODE, j], state.whole[EDGE, j] = mode, mode
-    state.blocks[RATE, j] = 0.0
+    state.whole[MODE, j], state.whole[AT_STRENGTH, j] = mode, mode
+    state.blocks[RATE_NOW, j] = 0.0
     note_change(state, room, kept, j, ONSET)
 
 
@@ -204,7 +204,7 @@ def is_brief(chain: ChainNumbers, state: Now, j: int, margin: float) -> bool:
 def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
     """Bring a block to rest, or let it go on in the other direction; return the kind of change."""
     mode = state.whole[MODE, j]
-    state.blocks[RATE, j], state.whole[EDGE, j] = 0.0, 0
+    state.blocks[RATE_NOW, j], state.whole[AT_STRENGTH, j] = 0.0, 0
     ahead = mode * load_on(chain, state, j)
     before_rest = sliding_strength(chain, state, j) + static_step(chain, j)
     if ahead < -before_rest and chain.forward_only == 0:
@@ -217,7 +217,7 @@ def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
     put_to_rest(chain, state, j, heals)
     if ahead >= state.blocks[STRENGTH, j]:
         if not heals:
-            state.whole[EDGE, j] = mode  # beyond its strength by rounding only: exactly at it
+            state.whole[AT_STRENGTH, j] = mode  # beyond its strength by rounding only: exactly at it
         else:
             state.whole[MODE, j] = mode  # it heals to less than its load, and slips again at once
             return TURN
@@ -228,8 +228,8 @@ def arrest(chain: ChainNumbers, state: Now, j: int) -> int:
 def set_moving_at_start(chain: ChainNumbers, state: Now, j: int) -> int:
     """Let a block slip at t = 0 if its load is beyond its strength; return its mode."""
     if chain.blocks.normal[j] == 0.0:
-        state.whole[MODE, j] = FREE
-        return FREE
+        state.whole[MODE, j] = WITHOUT_FRICTION
+        return WITHOUT_FRICTION
     put_to_rest(chain, state, j, chain.laws.rules[chain.blocks.law[j], HEALS] == 1)
     load, strength = load_on(chain, state, j), state.blocks[STRENGTH, j]
     if load > strength:

@@ -16,13 +16,13 @@ from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import STATES, TERMS
 from stickslip.extensions.chains.compiled.memory import (
     COUNTED,
-    FREE,
     MODE,
     MOVING,
     PIECE,
-    RATE,
+    RATE_NOW,
     STRAIGHT,
     STRENGTH,
+    WITHOUT_FRICTION,
     ChainNumbers,
     Now,
     StepRoom,
@@ -32,7 +32,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import kernel
 from stickslip.foundation.kernels.memory.addresses import call_radii, floats, room_for
 
-ALLOWED = 1e-12
+ALLOWED_IN_DISC = 1e-12
 """Largest force that a step may lack, as a share of the block's strength (1)."""
 RADII = np.array([3.3, 4.4, 2.5, 6.4, 1.9, 1.45, 1.2])
 """Radii of discs to try, in lengths of the step (1)."""
@@ -40,11 +40,11 @@ VANISH = TERMS - 2
 """So many coefficients of the force that lacks vanish."""
 SHRUNK = RADII ** -float(VANISH)
 """On the step that force is smaller than on each of the discs by these factors (1)."""
-ATTEMPTS = 60
+ATTEMPTS_AT_DISC = 60
 """Shorten a step at most this many times (1)."""
-SHORTEST, LONGEST, SAFETY = 0.2, 0.9, 0.97
+SHORTEST_DISC, LONGEST_DISC, SAFETY = 0.2, 0.9, 0.97
 """A step is shortened by a factor (1) between the first two, next to the estimated one times the third."""
-HOPELESS = 1e100
+HOPELESS_DISC = 1e100
 """A share above this (1) means that the law has a singularity on the disc."""
 MARGIN = 1.01
 """Factor (1) that covers the rounding of bounds."""
@@ -56,12 +56,15 @@ BALL_SLIP, BALL_RATE, BALL_FRICTION, BALL_AT_SLIP, BALL_AT_RATE = 0, 1, 2 + STAT
 @kernel
 def proven_length(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
     """Shorten a step, whose series are made, until it is proven; return its length (s), or inf if no length can be proven."""
-    for _ in range(ATTEMPTS):
+    for _ in range(ATTEMPTS_AT_DISC):
         share = share_of_step(chain, state, room)
         room.span[1] = share
-        if share <= ALLOWED:
+        if share <= ALLOWED_IN_DISC:
             return float(room.span[0])
-        shorter = min(LONGEST, max(SHORTEST, SAFETY * quick_exp2((quick_log2(ALLOWED) - quick_log2(share)) * (1.0 / VANISH))))
+        shorter = min(
+            LONGEST_DISC,
+            max(SHORTEST_DISC, SAFETY * quick_exp2((quick_log2(ALLOWED_IN_DISC) - quick_log2(share)) * (1.0 / VANISH))),
+        )
         stretch_series(room, shorter)
         room.span[0] *= shorter
     return math.inf
@@ -76,7 +79,7 @@ def share_of_step(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
     for n in range(room.counts[MOVING]):
         j = room.moving[n]
         strength = state.blocks[STRENGTH, j]
-        if state.whole[MODE, j] == FREE or strength == 0.0:
+        if state.whole[MODE, j] == WITHOUT_FRICTION or strength == 0.0:
             strength = largest
         if strength > 0.0:
             share = max(share, least_force(chain, state, room, j, strength) / strength)
@@ -86,9 +89,9 @@ def share_of_step(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
 @kernel
 def least_force(chain: ChainNumbers, state: Now, room: StepRoom, j: int, strength: float) -> float:
     """Return the least bound (N) by any disc, or the first that is small beside the strength (N)."""
-    load, jet, least = room_for(TERMS), room_for(ROOM_OF_JET), HOPELESS * strength
+    load, jet, least = room_for(TERMS), room_for(ROOM_OF_JET), HOPELESS_DISC * strength
     write_load(chain, state, room, j, load)
-    is_curved = state.whole[MODE, j] != FREE and chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 0
+    is_curved = state.whole[MODE, j] != WITHOUT_FRICTION and chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 0
     if is_curved:
         write_jet(chain, state, room, j, jet)
     for n in range(len(RADII)):
@@ -101,7 +104,7 @@ def least_force(chain: ChainNumbers, state: Now, room: StepRoom, j: int, strengt
         found *= MARGIN * SHRUNK[n]
         if found < least:  # not if it is no number
             least = found
-        if least <= ALLOWED * strength:
+        if least <= ALLOWED_IN_DISC * strength:
             break
     return least
 
@@ -147,6 +150,6 @@ def friction_on_disc(chain: ChainNumbers, state: Now, room: StepRoom, j: int, di
     law, piece = chain.blocks.law[j], state.whole[PIECE, j]
     ball[BALL_SLIP], ball[BALL_RATE] = slip_on_disc(row, ratio), rate_on_disc(row, ratio) / room.span[0]
     ball[BALL_FRICTION] = math.inf
-    ball[BALL_AT_SLIP], ball[BALL_AT_RATE] = state.blocks[COUNTED, j] - laws.references[law, piece], abs(state.blocks[RATE, j])
+    ball[BALL_AT_SLIP], ball[BALL_AT_RATE] = state.blocks[COUNTED, j] - laws.references[law, piece], abs(state.blocks[RATE_NOW, j])
     call_radii(laws.radii_at[law, piece], floats(laws.constants_at[law, piece]), jet, ball)
     return float(chain.blocks.normal[j] * ball[BALL_FRICTION])

@@ -12,13 +12,13 @@ from stickslip.extensions.chains.compiled.loads import set_due
 from stickslip.extensions.chains.compiled.memory import (
     DUE,
     FIRST_DUE,
-    FREE,
     HAVE_SLIPPED,
     MODE,
     MOVING,
     REST,
     SLIPPED,
     WATCHED,
+    WITHOUT_FRICTION,
     ChainNumbers,
     Now,
     StepRoom,
@@ -159,6 +159,6 @@ def rubbing(state: Now, room: StepRoom) -> int:
     """Return how many blocks slip against friction."""
     found = 0
     for n in range(room.counts[MOVING]):
-        if state.whole[MODE, room.moving[n]] != FREE:
+        if state.whole[MODE, room.moving[n]] != WITHOUT_FRICTION:
             found += 1
     return found

@@ -8,13 +8,13 @@ from __future__ import annotations
 import math
 
 from stickslip.extensions.chains.compiled.memory import (
+    AT_STRENGTH,
     COUNTED,
     DUE,
-    EDGE,
     MODE,
     ORIGIN,
     PIECE,
-    RATE,
+    RATE_NOW,
     REST,
     SINCE,
     SLIP,
@@ -60,7 +60,7 @@ def load_on(chain: ChainNumbers, state: Now, j: int) -> float:
 @exact
 def growth_of_load(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return how fast the load (N/s) on a block grows whose own slip rate is 0."""
-    springs, rates, found = chain.springs, state.blocks[RATE], 0.0
+    springs, rates, found = chain.springs, state.blocks[RATE_NOW], 0.0
     first, last = springs.starts[j], springs.starts[j + 1]
     for place in range(first, last - 1, 2):
         one = springs.springs[place] * rates[springs.neighbours[place]]
@@ -86,7 +86,7 @@ def friction_at(chain: ChainNumbers, state: Now, j: int, counted: float, rate: f
 @exact
 def sliding_strength(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return the magnitude of friction (N) on a block that slips, at its slip and slip rate."""
-    return float(friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE, j])))
+    return float(friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE_NOW, j])))
 
 
 @exact
@@ -101,10 +101,10 @@ def set_due(chain: ChainNumbers, state: Now, j: int) -> None:
     loading = chain.blocks.stiffness[j] * chain.pull_rate
     load, strength, wait = load_on(chain, state, j), state.blocks[STRENGTH, j], math.inf
     if loading > 0.0:
-        wait = 0.0 if state.whole[EDGE, j] == 1 else max(0.0, (strength - load) / loading)
+        wait = 0.0 if state.whole[AT_STRENGTH, j] == 1 else max(0.0, (strength - load) / loading)
     elif loading < 0.0:
-        wait = 0.0 if state.whole[EDGE, j] == -1 else max(0.0, (strength + load) / -loading)
-    state.whole[EDGE, j] = 0
+        wait = 0.0 if state.whole[AT_STRENGTH, j] == -1 else max(0.0, (strength + load) / -loading)
+    state.whole[AT_STRENGTH, j] = 0
     state.blocks[DUE, j] = time_of(state) + wait
 
 
@@ -127,5 +127,5 @@ def put_to_rest(chain: ChainNumbers, state: Now, j: int, heals: bool) -> None:
     if heals:
         state.blocks[COUNTED, j] = 0.0
     state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
-    state.blocks[RATE, j] = 0.0
+    state.blocks[RATE_NOW, j] = 0.0
     state.blocks[STRENGTH, j] = sliding_strength(chain, state, j) + static_step(chain, j)
