@@ -17,11 +17,7 @@ from benchmarks.loaded import THINGS, lines_of, loaded
 import stickslip
 
 PACKAGE = Path(stickslip.__file__).parent
-<<<<<<< HEAD
 MOST = {"simulate": 25_100, "uniqueness": 15_500}
-=======
-MOST = {"simulate": 25_237, "uniqueness": 15_500}
->>>>>>> f-C
 """Largest number of lines of the package that may be loaded. Most of them are those of the engine's loop, of the law and of the
 body: what few runs need is imported when it is used. Uniqueness loads kernels since its proofs are compiled (13 600 before),
 and the kinds of drivers, by which a body says how it is ended. A run loads 170 lines more since rigid bodies may lack a spring,

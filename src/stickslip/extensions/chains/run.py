@@ -239,7 +239,7 @@ class ChainRun(ShownAsTable, NamesAttributes):
 
         now = self.state.now
         steps, left_out, lacks = int(now[at.COUNT_OF_STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
-        placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"
+        placed = "no change lies before the one that ends a step (proven for the polynomials of the step)"
         if all(is_straight(law) for law in self.chain.laws[0]):
             return (
                 f"In each of {steps} steps the terms left out of the series move no block further than {left_out:.1e} of the "
