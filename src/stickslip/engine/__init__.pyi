@@ -1,6 +1,7 @@
 # What others take from engine. Each name is imported when it is first used; all else is the room's own.
 
 from stickslip.engine.compiled_formula import (
+    CompiledFormula,  # The compiled functions of a friction formula; `size` is the number of constants they need.
     compile_formula,  # Return the compiled functions of a formula; equal formulas in problems that follow each other share them.
 )
 from stickslip.engine.history.history import (
@@ -87,6 +88,7 @@ __all__ = [
     "TERMS",
     "Cause",
     "Checkpoint",
+    "CompiledFormula",
     "Epoch",
     "Floats",
     "History",

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine import TERMS, compile_formula
-from stickslip.engine.compiled_formula import CompiledFormula
+from stickslip.engine import TERMS, CompiledFormula, compile_formula
 from stickslip.extensions.chains.chain import Chain
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.compiled.memory import Blocks, ChainNumbers, Laws, Springs, StepRoom
