@@ -39,6 +39,17 @@ def changes_but_knots(run: ChainRun) -> np.ndarray:
     return run.changes[run.changes["kind"] != CHANGE_NAMES.index("knot")]
 
 
+def without_touches(changes: np.ndarray) -> np.ndarray:
+    """Leave out an arrest whose block slips again within 1e-5 s, and that onset: DOP853 does not see where a rate touches 0."""
+    kept, last = np.ones(len(changes), bool), {}
+    for n, change in enumerate(changes):
+        before = last.get(change["block"], n)
+        if change["kind"] == 0 and changes["kind"][before] == 1 and change["time"] - changes["time"][before] < 1e-5:
+            kept[[before, n]] = False
+        last[change["block"]] = n
+    return changes[kept]
+
+
 # ---- printed numbers and single blocks -------------------------------------------------------------------------------------
 
 
@@ -111,7 +122,7 @@ def test_blocks_without_coupling_are_blocks_of_their_own():
 def test_random_chains_agree_with_dop853(seed):
     one = random_chain(seed)
     run, other = solve_chain(one, 60.0, keep="changes"), solve(one, 60.0)
-    own = changes_but_knots(run)
+    own = without_touches(changes_but_knots(run))
     assert own["block"].tolist() == other.changes[:, 1].tolist()
     assert own["time"] == pytest.approx(other.changes[:, 0], rel=0, abs=1e-6)
     assert run.slip == pytest.approx(other.slip, rel=0, abs=1e-8)

@@ -100,7 +100,8 @@ def check_answer(answer: int, state: ChainState) -> None:
     if answer == at.HANGS:
         raise InputError(f"simulate: the chain changes again and again at t = {state.time:.9g} s, without any time between")
     if answer == at.NOT_FINITE:
-        raise InputError(f"simulate: the motion of the chain is not finite after t = {state.time:.9g} s")
+        where = f"after t = {state.time:.9g} s"
+        raise InputError(f"simulate: the motion of the chain is not finite {where}, or no step from there can be proven")
 
 
 def solve_chain(

@@ -66,6 +66,8 @@ force of the second share (1) of the strength makes of it, has not ended: that i
 TOUCH = 1e-11
 """If static friction is sliding friction, a slip rate whose minimum is above 0 by no more than this share (1) of the event's
 largest touches 0: that is an arrest, as of a single block."""
+FALLING = 1e-8
+"""Before a touch the rate falls faster than by this share (1) of the event's largest in a radian of the fastest motion."""
 REFINEMENTS = 8
 """Newton's steps to the place of a minimum (1): its start is next to it."""
 BRIEF = 1e-5
@@ -103,8 +105,8 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> N
         line[0] += ROUNDED * size + ROUNDED_FORCE * state.blocks[STRENGTH, j] / chain.blocks.mass[j] * length * length
         if first_descent(line, spare) == NONE:
             room.places[j] = NONE
-    elif room.places[j] == NONE and static_step(chain, j) == 0.0:
-        room.places[j] = place_of_touch(state, room, line, spare)
+    elif room.places[j] == NONE and state.blocks[RATE_NOW, j] != 0.0 and static_step(chain, j) == 0.0:
+        room.places[j] = place_of_touch(chain, state, room, line, spare)
     law, piece, counted = chain.blocks.law[j], state.whole[PIECE, j], state.blocks[COUNTED, j]
     knots = chain.laws.knots[law]
     grows = mode if chain.laws.rules[law, COUNTS_NET] == 1 else 1
@@ -123,12 +125,12 @@ def find_in_moving(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> N
 
 
 @kernel
-def place_of_touch(state: Now, room: StepRoom, line: Floats, spare: Floats) -> float:
+def place_of_touch(chain: ChainNumbers, state: Now, room: StepRoom, line: Floats, spare: Floats) -> float:
     """Return the place of a minimum of a slip rate (m per step) in the step that is 0 but for rounding, or NONE."""
-    size = TOUCH * state.now[LARGEST_RATE] * room.span[0]
-    line[0] -= size
+    size, first = state.now[LARGEST_RATE] * room.span[0], line[0]
+    line[0] = first - TOUCH * size
     place = 0.0 if line[0] <= 0.0 else first_descent(line, spare)
-    line[0] += size
+    line[0] = first
     if place == NONE:
         return NONE
     for n in range(REFINEMENTS):
@@ -136,8 +138,8 @@ def place_of_touch(state: Now, room: StepRoom, line: Floats, spare: Floats) -> f
         for k in range(TERMS - 1, 0, -1):
             bend = bend * place + slope
             slope = slope * place + k * line[k]
-        if bend <= 0.0 or (n == 0 and slope >= 0.0):
-            return NONE  # it rises from 0, or falls on
+        if bend <= 0.0 or (n == 0 and slope >= -FALLING * size * chain.fastest * room.span[0]):
+            return NONE  # it rises from 0, but for rounding, or falls on
         place -= slope / bend
         if not 0.0 < place <= 1.0:
             return NONE

@@ -33,7 +33,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.kernels import kernel
 from stickslip.foundation.kernels.memory.addresses import call_radii, floats, room_for
 
-ALLOWED_IN_DISC = 1e-12
+MOST_LACKING = 1e-12
 """Largest force that a step may lack, as a share of the block's strength (1)."""
 RADII = np.array([3.3, 4.4, 2.5, 6.4, 1.9, 1.45, 1.2])
 """Radii of discs to try, in lengths of the step (1)."""
@@ -41,7 +41,7 @@ VANISH = TERMS - 2
 """So many coefficients of the force that lacks vanish."""
 SHRUNK = RADII ** -float(VANISH)
 """On the step that force is smaller than on each of the discs by these factors (1)."""
-ATTEMPTS_AT_DISC = 60
+MOST_ATTEMPTS = 60
 """Shorten a step at most this many times (1)."""
 SHORTEST_DISC, LONGEST_DISC, SAFETY = 0.2, 0.9, 0.97
 """A step is shortened by a factor (1) between the first two, next to the estimated one times the third."""
@@ -57,14 +57,13 @@ BALL_SLIP, BALL_RATE, BALL_FRICTION, BALL_AT_SLIP, BALL_AT_RATE = 0, 1, 2 + STAT
 @kernel
 def proven_length(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
     """Shorten a step, whose series are made, until it is proven; return its length (s), or inf if no length can be proven."""
-    for _ in range(ATTEMPTS_AT_DISC):
+    for _ in range(MOST_ATTEMPTS):
         share = share_of_step(chain, state, room)
         room.span[1] = share
-        if share <= ALLOWED_IN_DISC:
+        if share <= MOST_LACKING:
             return float(room.span[0])
         shorter = min(
-            LONGEST_DISC,
-            max(SHORTEST_DISC, SAFETY * quick_exp2((quick_log2(ALLOWED_IN_DISC) - quick_log2(share)) * (1.0 / VANISH))),
+            LONGEST_DISC, max(SHORTEST_DISC, SAFETY * quick_exp2((quick_log2(MOST_LACKING) - quick_log2(share)) * (1.0 / VANISH)))
         )
         stretch_series(room, shorter)
         room.span[0] *= shorter
@@ -105,7 +104,7 @@ def least_force(chain: ChainNumbers, state: Now, room: StepRoom, j: int, strengt
         found *= MARGIN * SHRUNK[n]
         if found < least:  # not if it is no number
             least = found
-        if least <= ALLOWED_IN_DISC * strength:
+        if least <= MOST_LACKING * strength:
             break
     return least
 
