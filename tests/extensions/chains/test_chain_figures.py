@@ -127,7 +127,3 @@ def test_a_run_without_events_says_so() -> None:
     for draw in (ChainPlots(quiet).catalogue, ChainPlots(quiet).rupture):
         with pytest.raises(ss.InputError, match=r"no .*event"):
             draw()
-
-
-def test_a_run_says_what_it_is_in_one_line() -> None:
-    assert repr(run()) == f"ChainRun of 10 blocks: {len(run().events)} events in 1000 s"

@@ -84,10 +84,12 @@ def test_equal_blocks_are_one_spring_block(law):
     assert slips[:, 0] == pytest.approx(block.slip(np.linspace(0.0, 300.0, 301)), rel=0, abs=1e-8)
 
 
-def test_a_touch_of_zero_rate_is_no_arrest():
-    """Under constant friction the rate is V (1 - cos wt): it touches 0 once in each period."""
+def test_equal_blocks_touch_zero_rate_together():
+    """Under constant friction the rate is V (1 - cos wt): it touches 0 once in each period, which is an event as of one block."""
     run = solve_chain(ss.Chain(ss.friction.Coulomb(1.0, 1.0), 3, 1.0, 2.0, 4.0, 1.0, 1e-2), 125.0, keep="changes")
-    assert run.changes["kind"].tolist() == [CHANGE_NAMES.index("onset")] * 3
+    assert run.count_of_events == 31
+    assert run.changes["kind"].tolist() == [*[CHANGE_NAMES.index("onset")] * 3, *[CHANGE_NAMES.index("arrest")] * 3] * 31 + [0] * 3
+    assert (run.slip == run.slip[0]).all()
     assert run.slip == pytest.approx([1e-2 * (100.0 - np.sin(200.0) / 2.0)] * 3, rel=1e-12, abs=0)
 
 

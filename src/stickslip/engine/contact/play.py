@@ -1,4 +1,4 @@
-"""Backlash: a play between a rigid body and the end of its spring, in which the spring gives no force.
+"""Backlash: a play between a rigid body and the end of its spring, where the spring gives no force.
 
 The end of the spring has been pulled as far as D. With the lag e = D - u behind it and half the play b, the spring gives K (e - b)
 where e > b, K (e + b) where e < -b, and nothing in between. `Counts.side` is 1, -1 and 0 there; `Params.stiffness` is K or 0, and
@@ -20,7 +20,7 @@ from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import room_for
 
 ROUNDING = 2.0**-48
-"""The lag is at an edge if it is nearer to it than this share (1) of the ways from which it follows, or of that in a round trip."""
+"""The lag is at an edge if it is nearer to it than this share (1) of the ways that it follows from, or of that in a round trip."""
 LEAST_SHARE = 2.0**-60
 """A step ends no nearer to its start than at this share (1) of it: an edge there is met at once."""
 

@@ -76,7 +76,7 @@ def hangs(run: Run) -> bool:
 
 @kernel
 def cut_at_edge(run: Run, rate: Floats) -> Cut:
-    """Cut a step in which nothing but the end of a spring moves where that meets an edge of the play beside it."""
+    """Cut a step, while nothing but the end of a spring moves, where that meets an edge of the play beside it."""
     end = call_part(run.play, run, Task.EDGE_IN_SLIP, 1.0) if run.params.play > 0.0 else NONE
     if end > 1.0 - TIE:
         return Cut(StepEvent.NONE, 0, 1.0)

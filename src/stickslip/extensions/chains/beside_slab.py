@@ -250,7 +250,7 @@ def run_beside(problem: Problem, count: int, first: str, duration: float) -> Cha
 def start_beside(chain: Chain, slip: Floats, rate: Floats, counted: float) -> ChainState:
     """Return the state of a chain whose free blocks move at the start, and whose law has counted a slip (m)."""
     solver, state = ChainSolver(chain), ChainState.empty(chain.count)
-    state.blocks[at.SLIP], state.blocks[at.RATE], state.blocks[at.COUNTED] = slip, rate, counted
+    state.blocks[at.SLIP], state.blocks[at.RATE_NOW], state.blocks[at.COUNTED] = slip, rate, counted
     nothing = KeptRows(
         np.empty((0, at.CHANGE_COLUMNS)), np.empty((1, at.EVENT_COLUMNS)), np.empty(0), np.empty((0, 0)), np.empty((0, 0))
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -15,8 +15,9 @@ from stickslip.extensions.chains.couplings import Couplings, array_of, checked_c
 from stickslip.extensions.chains.drawn import Drawn
 from stickslip.foundation.arguments import CheckedArguments, check_whole, shown
 from stickslip.foundation.conversion import Number
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Quantity, check_fields, quantity
+from stickslip.foundation.show import MOST_SHOWN
 from stickslip.friction import FrictionLaw
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ class Chain(CheckedArguments):
 
     def _checked_blocks(self) -> Any:
         given = self.blocks
-        several = isinstance(given, tuple | list)
+        several = isinstance(given, tuple | list) or (isinstance(given, np.ndarray) and given.ndim > 0)
         if several and len(given) != 2:
             raise InputError(f"Chain: blocks must be a number, or the rows and columns of a lattice, got {len(given)} numbers")
         sides = tuple(check_whole("Chain: blocks", one) for one in (given if several else (given,)))
@@ -129,16 +130,23 @@ class Chain(CheckedArguments):
                 except InputError as error:
                     raise InputError(f"{error}, drawn for block {i}: {given.text}") from None
             return given
-        if isinstance(given, list | tuple | np.ndarray) and np.ndim(given) > 0:
-            if np.shape(given) not in {(self.count,), self.shape}:
+        if isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim > 0):
+            shape = shape_of(given)
+            if shape and shape not in {(self.count,), self.shape}:
                 wanted = f"{self.count} numbers" + (
                     f", or {self.shape[0]} rows of {self.shape[1]}," if len(self.shape) == 2 else ""
                 )
-                raise InputError(
-                    f"Chain: {name} must have {wanted} as there are blocks, got {' by '.join(map(str, np.shape(given)))}"
-                )
-            return array_of(kind, name, given)
+                raise InputError(f"Chain: {name} must have {wanted} as there are blocks, got {' by '.join(map(str, shape))}")
+            flat = [one for row in given for one in row] if len(shape) == 2 and isinstance(given, list | tuple) else given
+            return array_of(kind, name, flat)
         return kind.check("Chain", name, given)
+
+    def __repr__(self) -> str:
+        given = ((one, getattr(self, one.name)) for one in fields(self))
+        told = (
+            f"{one.name}={short(value)}" for one, value in given if one.default is MISSING or short(value) != short(one.default)
+        )
+        return f"Chain({', '.join(told)})"
 
     # ---- what follows ---------------------------------------------------------------------------------------------------------
 
@@ -154,6 +162,8 @@ class Chain(CheckedArguments):
 
     def values(self, name: str) -> Floats:
         """Return the numbers of all blocks (SI) by name: "mass", "stiffness", "normal_force", "damping" or "initial_slip"."""
+        if not isinstance(name, str) or name not in OF_BLOCKS:
+            raise InputError(f"Chain: {shown(name)} is no number of each block; {nearest(str(name), OF_BLOCKS)}")
         kind, given = OF_BLOCKS[name], getattr(self, name)
         if isinstance(given, Drawn):
             return given.values(self.count, kind.unit)
@@ -195,6 +205,23 @@ class Chain(CheckedArguments):
         from stickslip.extensions.chains.run import ChainRun
 
         return ChainRun
+
+
+def shape_of(given: Any) -> tuple[int, ...]:
+    """Return the shape of a list or an array, or () for a list of lists of unequal length, whose first list is then refused."""
+    try:
+        return np.shape(given)
+    except ValueError:
+        return ()
+
+
+def short(value: Any) -> str:
+    """Return what a chain is given as a short text: of many numbers their count, the least and the greatest."""
+    if isinstance(value, np.ndarray) and value.dtype.kind == "f":
+        return f"<{value.size} numbers, {value.min():.6g} to {value.max():.6g}>" if value.size > MOST_SHOWN else str(value.tolist())
+    if isinstance(value, list | tuple | np.ndarray) and len(value) > MOST_SHOWN:
+        return f"<{len(value)} laws, {len(set(map(repr, value)))} different>"
+    return repr(value)
 
 
 def check_law(law: Any) -> None:

@@ -50,7 +50,7 @@ def checked_coupling(value: Any, shape: tuple[int, ...], ends: str) -> Any:
                 f"{WHERE} of a lattice must be a number or a pair (along rows, along columns), got {len(pair)} numbers"
             )
         return tuple(one_stiffness(f"coupling {way}", one) for way, one in zip(("along rows", "along columns"), pair, strict=True))
-    if isinstance(value, list | tuple | np.ndarray) and np.ndim(value) > 0:
+    if isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0):
         count = {"free": shape[0] - 1, "periodic": shape[0], "fixed": shape[0] + 1}[ends]
         if len(value) != count:
             raise InputError(f"{WHERE} of {shape[0]} blocks with {ends} ends must have {count} springs, got {len(value)}")

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 class Distribution(NamedTuple):
-    """The numbers of a distribution by name, whether each is in the unit of what is drawn, and how n numbers are drawn."""
+    """The numbers of a distribution by name, whether each is in the unit of the drawn ones, and how n numbers are drawn."""
 
     numbers: tuple[str, ...]
     has_unit: tuple[bool, ...]

@@ -53,7 +53,7 @@ def _laws(laws: tuple[FrictionLaw, ...]) -> tuple[Laws, tuple[object, ...]]:
     knots = np.full(shape, np.inf)
     levels, slopes, references, excess = np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(len(laws))
     rules = np.zeros((len(laws), 3), np.int64)
-    values_at, jets_at, constants_at = (np.zeros(shape, np.int64) for _ in range(3))
+    values_at, jets_at, radii_at, constants_at = (np.zeros(shape, np.int64) for _ in range(4))
     owners: list[object] = []
     for n, law in enumerate(laws):
         count = len(law.pieces)
@@ -69,8 +69,8 @@ def _laws(laws: tuple[FrictionLaw, ...]) -> tuple[Laws, tuple[object, ...]]:
             formula, constants = _formula(law, i, references[n, i])
             owners += [formula, constants]
             values_at[n, i], jets_at[n, i] = formula.address("value"), formula.address("motion_jet")
-            constants_at[n, i] = constants.ctypes.data
-    return Laws(knots, levels, slopes, references, excess, rules, values_at, jets_at, constants_at), tuple(owners)
+            radii_at[n, i], constants_at[n, i] = formula.address("radii"), constants.ctypes.data
+    return Laws(knots, levels, slopes, references, excess, rules, values_at, jets_at, radii_at, constants_at), tuple(owners)
 
 
 def _formula(law: FrictionLaw, i: int, reference: float) -> tuple[CompiledFormula, NDArray[np.float64]]:
@@ -103,5 +103,5 @@ def room_of(count: int) -> StepRoom:
 
     lists = whole(), whole(), whole(), whole()
     return StepRoom(
-        np.empty((count, TERMS)), np.zeros(count), whole(), whole(), *lists, np.zeros(at.NUMBER_OF_COUNTS, np.int64), np.zeros(1)
+        np.empty((count, TERMS)), np.zeros(count), whole(), whole(), *lists, np.zeros(at.NUMBER_OF_COUNTS, np.int64), np.zeros(2)
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,8 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.extensions.chains.compiled import memory as at
 from stickslip.extensions.chains.state import ChainState
-from stickslip.foundation.arguments import NamesAttributes
+from stickslip.foundation.arguments import NamesAttributes, check_whole
+from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.show import ShownAsTable
 from stickslip.problem import STATUSES, Status, Stop
 
 if TYPE_CHECKING:
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.chains.plots import ChainPlots
 
 Floats = NDArray[np.float64]
+TIME = Quantity("s", "time")
 EVENT_TYPE = np.dtype(
     [
         ("time", float),
@@ -83,8 +88,23 @@ def structured(rows: Floats, kind: np.dtype[Any]) -> NDArray[Any]:
     return found
 
 
+def checked_times(times: Any) -> Floats:
+    """Return times (s), given as one or as a list of them, as an array. Raises InputError."""
+    if has_unit(times):
+        times = without_unit(times, TIME.unit)
+    if not isinstance(times, np.ndarray) or times.dtype.kind not in "fiu":
+        several = list(times) if isinstance(times, Iterable) and not isinstance(times, str | bytes) else [times]
+        times = np.array([TIME.check("ChainRun", "a time", one) for one in several])
+    found = np.atleast_1d(times).astype(float)
+    if found.ndim > 1:
+        raise InputError(f"ChainRun: times must be a number or a list of numbers, got {' by '.join(map(str, found.shape))}")
+    if not found.size:
+        raise InputError("ChainRun: times must be at least one, got none")
+    return found
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class ChainRun(NamesAttributes):
+class ChainRun(ShownAsTable, NamesAttributes):
     """A chain that was solved from t = 0 to a time, by `stickslip.simulate`.
 
     An event lasts from the first onset after rest of all blocks to their next rest. Blocks that change at the same instant change
@@ -109,6 +129,11 @@ class ChainRun(NamesAttributes):
     final: ChainState
     status: Status = STATUSES[Stop.FINISHED]
     title: str = ""
+
+    def _lines(self) -> list[tuple[str]]:
+        from stickslip.extensions.chains.summary import lines_of
+
+        return [(line,) for line in lines_of(self)]
 
     @cached_property
     def events(self) -> NDArray[Any]:
@@ -146,7 +171,7 @@ class ChainRun(NamesAttributes):
     @property
     def count_of_changes(self) -> int:
         """The number of changes of blocks, whether they are kept or not."""
-        return int(self.state.now[at.CHANGES])
+        return int(self.state.now[at.COUNT_OF_CHANGES])
 
     @property
     def count_of_events(self) -> int:
@@ -166,7 +191,7 @@ class ChainRun(NamesAttributes):
     @property
     def slip_rate(self) -> Floats:
         """The slip rate of each block at the end (m/s)."""
-        return np.array(self.final.blocks[at.RATE])
+        return np.array(self.final.blocks[at.RATE_NOW])
 
     def energy(self) -> ChainEnergy:
         """Return the energies at the end (J) and their balance."""
@@ -175,30 +200,31 @@ class ChainRun(NamesAttributes):
 
         numbers, first, now = numbers_of(self.chain).chain, ChainState.empty(self.chain.count), self.final.now
         first.blocks[at.SLIP] = self.chain.values("initial_slip")
-        kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE] ** 2)
+        kinetic = 0.5 * float(self.chain.values("mass") @ self.final.blocks[at.RATE_NOW] ** 2)
         springs = energies_of(numbers, self.final), energies_of(numbers, first)
         return ChainEnergy(springs[0], kinetic, float(now[at.HEAT]), float(now[at.DASHPOT]), float(now[at.WORK]), springs[1])
 
-    def motion(self, start: float, end: float, count: int = 1001) -> ChainMotion:
+    def motion(self, start: float | str, end: float | str, count: int = 1001) -> ChainMotion:
         """Return the motion at so many even times (s) from `start` to `end`: see `at`."""
-        return self.at(np.linspace(start, end, count))
+        first, last = (TIME.check("ChainRun", name, one) for name, one in (("start", start), ("end", end)))
+        return self.at(np.linspace(first, last, check_whole("ChainRun: count", count)))
 
     def at(self, times: ArrayLike) -> ChainMotion:
-        """Return slip (m) and slip rate (m/s) of all blocks at times (s), calculated again from the snapshot before the first."""
+        """Return slip (m) and slip rate (m/s) of all blocks at times (s), calculated again from the snapshot before the first.
+
+        A time may be a text with a unit.
+        """
         from stickslip.extensions.chains.solver import motion_from
 
-        wanted = np.atleast_1d(np.asarray(times, float))
-        if not (wanted.size and np.all(wanted >= 0.0) and np.all(wanted <= self.duration)):
-            raise InputError(f"ChainRun: times must lie from 0 to {self.duration:g} s")
+        wanted = checked_times(times)
+        for one in wanted[~((wanted >= 0.0) & (wanted <= self.duration))][:1]:
+            raise InputError(f"ChainRun: times must lie from 0 to {self.duration:g} s, got {one:g} s")
         order = np.argsort(wanted, kind="stable")
         known = [one for one in self.snapshots if one.time <= wanted.min()] or self.snapshots[:1]
         found = motion_from(self.chain, known[-1], np.ascontiguousarray(wanted[order]))
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         return ChainMotion(wanted, found.slip[back], found.slip_rate[back])
-
-    def __repr__(self) -> str:
-        return f"ChainRun of {self.chain.count} blocks: {self.count_of_events} events in {self.duration:g} s"
 
     @property
     def plot(self) -> ChainPlots:
@@ -212,14 +238,14 @@ class ChainRun(NamesAttributes):
         from stickslip.extensions.chains.numbers import is_straight
 
         now = self.state.now
-        steps, left_out, lacks = int(now[at.STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
-        placed = "no change lies before the one at which a step ends (proven for the polynomials of the step)"
+        steps, left_out, lacks = int(now[at.COUNT_OF_STEPS]), float(now[at.DEFECT]), float(now[at.RESIDUAL])
+        placed = "no change lies before the one that ends a step (proven for the polynomials of the step)"
         if all(is_straight(law) for law in self.chain.laws[0]):
             return (
                 f"In each of {steps} steps the terms left out of the series move no block further than {left_out:.1e} of the "
                 f"largest motion in the step (proven, but for rounding), and {placed}."
             )
         return (
-            f"At the end of each of {steps} steps the equation of every block holds to {lacks:.1e} of its strength (measured, not "
-            f"proven), and {placed}."
+            f"In each of {steps} steps the force that the equation of any block lacks is at most {left_out:.1e} of its strength "
+            f"(proven on complex discs, but for rounding, with which it is {lacks:.1e} at the ends of steps), and {placed}."
         )

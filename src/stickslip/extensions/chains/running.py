@@ -148,7 +148,7 @@ class ChainInProgress:
             changes = changes[: self._back_to(before, events, self.taken)]
             self.has_enough = True
         self.rows.take(events, changes)
-        self.taken = int(self.solver.state.now[at.CHANGES])
+        self.taken = int(self.solver.state.now[at.COUNT_OF_CHANGES])
         self.snapshots.add(self.solver.state)
         return ENOUGH_EVENTS if self.has_enough else Stop.FINISHED if done else Stop.NONE
 
@@ -160,7 +160,7 @@ class ChainInProgress:
         while self.solver.state.now[at.EVENTS] < wanted:
             done, _, _ = self.solver.go_on(last)
             last = math.nextafter(last, math.inf) if done else last
-        return int(self.solver.state.now[at.CHANGES]) - taken
+        return int(self.solver.state.now[at.COUNT_OF_CHANGES]) - taken
 
     def grow(self) -> bool:
         """Return True: rows are taken after each call."""
@@ -173,7 +173,7 @@ class ChainInProgress:
         """Return the progress of the run: see `Solver.report`."""
         state, duration = self.solver.state, float(self.options.duration)
         now = min(state.time, duration)
-        moving, changes = int(np.count_nonzero(state.blocks[at.RATE])), int(state.now[at.CHANGES])
+        moving, changes = int(np.count_nonzero(state.blocks[at.RATE_NOW])), int(state.now[at.COUNT_OF_CHANGES])
         events = self.rows.count_of_events
         return ChainReport(now, duration, events, self.options.max_events, changes, moving, *pace.at(now, now / duration))
 

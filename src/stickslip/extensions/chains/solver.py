@@ -24,7 +24,7 @@ BUDGET = 100_000
 ROOM_FOR_EVENTS = 8192
 ROOM_FOR_CHANGES = 65_536
 MOST_SNAPSHOTS = 256
-"""Of states during a run at most so many are kept, from which motion is calculated again."""
+"""Of states during a run at most so many are kept, so that motion is calculated again from them."""
 
 
 class RowSink(Protocol):

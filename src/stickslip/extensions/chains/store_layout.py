@@ -230,7 +230,7 @@ def checkpoint_in(path: Path, chain: Chain) -> ChainCheckpoint:
     many = len(arrays[f"{SNAPSHOT}now"])
     snapshots = [checked_state({name: arrays[SNAPSHOT + name][i] for name in empty.arrays}, chain) for i in range(many)]
     state, final = (checked_state({name: arrays[of + name] for name in empty.arrays}, chain) for of in ("", FINAL))
-    told = {EVENT: state.now[at.EVENTS], CHANGE: state.now[at.CHANGES]}
+    told = {EVENT: state.now[at.EVENTS], CHANGE: state.now[at.COUNT_OF_CHANGES]}
     if wrong := next((kind for kind, count in rows.items() if told[kind] != count), None):
         raise InputError(f"its {STATE_FILE} has {rows[wrong]} rows of {wrong}, and a state after {told[wrong]:.0f} of them")
     counts = whole_number(about, "every", path, 1), whole_number(about, "calls", path, 0)
@@ -253,11 +253,11 @@ def checked_state(arrays: Mapping[str, Any], chain: Chain) -> ChainState:
         if arrays[name].shape != like.shape or arrays[name].dtype != like.dtype:
             raise InputError(f"its {STATE_FILE} has the array {name!r} in another form than that of {chain.count} blocks")
     state = ChainState(**{name: np.array(one, order="C") for name, one in arrays.items()})
-    moving = state.blocks[[at.SLIP, at.RATE, at.COUNTED, at.STRENGTH, at.SLIP_BEFORE]]
+    moving = state.blocks[[at.SLIP, at.RATE_NOW, at.COUNTED, at.STRENGTH, at.SLIP_BEFORE]]
     if not (np.isfinite(state.now).all() and np.isfinite(moving).all() and not np.isnan(state.blocks).any()):
         raise InputError(f"its {STATE_FILE} has numbers that are not finite")
     pieces = max(len(law.pieces) for law in chain.laws[0])
-    bounds = {at.MODE: (-1, 2), at.PIECE: (0, pieces - 1), at.EDGE: (-1, 1), at.SLIPPED: (0, 1)}
+    bounds = {at.MODE: (-1, 2), at.PIECE: (0, pieces - 1), at.AT_STRENGTH: (-1, 1), at.SLIPPED: (0, 1)}
     wrong = any((state.whole[row] < low).any() or (state.whole[row] > high).any() for row, (low, high) in bounds.items())
     if wrong or not 0 <= state.now[at.FIRST_BLOCK] < chain.count:
         raise InputError(f"its {STATE_FILE} has whole numbers that no state has")

@@ -8,25 +8,20 @@ from stickslip.extension import Command, Extension
 
 
 class CyclesExtension(Extension):
-    """The studies `cycle` and `follow`."""
+    """The studies `cycle` and `follow`, and the command that does both."""
 
     name = "cycles"
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
-        """Return the command, which does both."""
+        """Return the command."""
         from stickslip.extensions.cycles.commands.cycle import cycle
 
         return {"Questions that need many runs": (cycle,)}
 
     def public(self) -> Mapping[str, str]:
         """Return the studies and the classes of their results."""
-        home = "stickslip.extensions.cycles"
-        return {
-            "studies.BranchOfCycles": f"{home}.branch:BranchOfCycles",
-            "studies.LimitCycle": f"{home}.limit_cycle:LimitCycle",
-            "studies.cycle": f"{home}.find_cycle:cycle",
-            "studies.follow": f"{home}.follow:follow",
-        }
+        homes = {"BranchOfCycles": "branch", "LimitCycle": "limit_cycle", "cycle": "find_cycle", "follow": "follow"}
+        return {f"studies.{name}": f"stickslip.extensions.cycles.{module}:{name}" for name, module in homes.items()}
 
 
 EXTENSION = CyclesExtension()

@@ -42,7 +42,7 @@ STRAIGHT, SAME_PERIOD = 0.8, 0.3
 VANISHING = 2e-3
 """A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding."""
 NEXT_TO_EDGE = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-"""Distances (1, shares of the range) from an edge at which a branch is taken up again, with or without rest."""
+"""Distances (1, shares of the range) from an edge, where a branch is taken up again, with or without rest."""
 CLOSE_PERIOD = 0.1
 """Cycles that meet at an edge have periods that differ by no more than this share (1), next to it."""
 MOST_PARTS = 4
@@ -63,7 +63,7 @@ def follow(
     Parameters
     ----------
     cycle : LimitCycle
-        The cycle at which the branch begins, from `stickslip.studies.cycle`.
+        The cycle where the branch begins, from `stickslip.studies.cycle`.
     along : str
         The parameter that is varied, as in a sweep: "pull_rate", "body.stiffness", "friction.parameters.v1" ...
     to : float or str
@@ -89,7 +89,7 @@ def follow(
     -----
     Start and parameter are changed together along the branch (pseudo-arclength), so that it can turn back. Edges: a fold of cycles
     (multiplier +1), period doubling (-1), Neimark-Sacker (a pair on the unit circle), loss of stick (the arrest is grazed), first
-    stick, and steady sliding, in which a cycle vanishes. Branches that begin at an edge are not followed, but for those with and
+    stick, and steady sliding, where a cycle vanishes. Branches that begin at an edge are not followed, but for those with and
     without rest that meet where stick is lost.
 
     Examples

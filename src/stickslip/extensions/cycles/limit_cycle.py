@@ -126,7 +126,7 @@ class LimitCycle(Study):
 
     @property
     def stick_share(self) -> float:
-        """The share of the period in which the contact rests (1)."""
+        """The share of rest in the period (1)."""
         return self.measures.stick_share
 
     @cached_property

@@ -10,7 +10,7 @@ from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.foundation.arrays import Floats
 
-FINE = np.linspace(0.0, 1.0, 33)
+FINE_PLACES = np.linspace(0.0, 1.0, 33)
 """Places (1) in each piece between which a largest value is looked for."""
 ROUNDING = 1e-12
 """A slip rate of this share (1) of the greatest is rounding, where the contact rests."""
@@ -34,7 +34,7 @@ class Measures(NamedTuple):
     least_traction: float
     """The least traction (N)."""
     stick_share: float
-    """The share of the period in which the contact rests (1)."""
+    """The share of rest in the period (1)."""
 
     @property
     def amplitude(self) -> float:
@@ -84,15 +84,15 @@ def _slip_time(history: History, ends: Floats) -> float:
 def _extremes(history: History, ends: Floats, of: Any) -> tuple[float, float]:
     """Return the least and the greatest value that a function of history and positions has in the first pieces."""
     pieces = np.arange(len(ends))
-    places = ends[:, None] * FINE
-    values = of(history, Positions.inside(np.repeat(pieces, len(FINE)), places.ravel())).reshape(places.shape)
+    places = ends[:, None] * FINE_PLACES
+    values = of(history, Positions.inside(np.repeat(pieces, len(FINE_PLACES)), places.ravel())).reshape(places.shape)
     found = []
     for sign in (-1.0, 1.0):
         piece, best = np.unravel_index(int(np.argmax(sign * values)), values.shape)
-        width, middle, value = ends[piece] / (len(FINE) - 1), places[piece, best], sign * values[piece, best]
+        width, middle, value = ends[piece] / (len(FINE_PLACES) - 1), places[piece, best], sign * values[piece, best]
         for _ in range(CLOSER):
-            near = np.clip(middle + width * np.linspace(-1.0, 1.0, len(FINE)), 0.0, ends[piece])
-            tried = sign * of(history, Positions.inside(np.full(len(FINE), piece), near))
-            value, middle, width = max(value, tried.max()), near[int(tried.argmax())], 2.0 * width / (len(FINE) - 1)
+            near = np.clip(middle + width * np.linspace(-1.0, 1.0, len(FINE_PLACES)), 0.0, ends[piece])
+            tried = sign * of(history, Positions.inside(np.full(len(FINE_PLACES), piece), near))
+            value, middle, width = max(value, tried.max()), near[int(tried.argmax())], 2.0 * width / (len(FINE_PLACES) - 1)
         found.append(float(sign * value))
     return found[0], found[1]

@@ -18,7 +18,7 @@ from stickslip.problem import Problem
 
 MOST_ITERATIONS, MOST_HALVINGS = 20, 6
 """Newton's iterations (1), and how often a step is halved that leads away."""
-SETTLED = 1e-11
+CLOSED_SHARE = 1e-11
 """Newton's iteration ends where the return misses the start by less than this share (1) of the cycle's extent."""
 GOOD_ENOUGH = 1e-7
 """A cycle is found if at last it misses by no more than this share (1)."""
@@ -28,7 +28,7 @@ CLOSES = 1e-2
 """A run that comes back this close (1, share of its extent) is taken to close there."""
 INSTANT = 1e-6
 """A rest shorter than this share (1) of the period is an instant."""
-NOTHING = 1e-9
+STEADY_SHARE = 1e-9
 """A slip rate that varies by less than this share (1) of the pull rate is steady sliding."""
 
 
@@ -101,7 +101,7 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
         tried = _shortened(section, now, step, share, extent)
         period, change = tried.time, abs(tried.time - period)
         new = _share(tried, extent)
-        if new <= SETTLED or (share <= GOOD_ENOUGH and new >= 0.5 * share):
+        if new <= CLOSED_SHARE or (share <= GOOD_ENOUGH and new >= 0.5 * share):
             best = tried if new < share else now
             return _checked(Orbit(best, extent_of(best.history, section.at_onset, best.piece), n + 2, change))
         now, share = tried, new
@@ -139,7 +139,7 @@ def _checked(orbit: Orbit) -> Orbit:
     now = orbit.closed
     piece = np.repeat(np.arange(now.piece + 1), 3)
     rates = now.history.rate(Positions.inside(piece, np.tile([0.0, 0.5, 1.0], now.piece + 1)))
-    if np.ptp(rates) <= NOTHING * now.section.problem.first_pull_rate:
+    if np.ptp(rates) <= STEADY_SHARE * now.section.problem.first_pull_rate:
         raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
     return orbit
 

@@ -16,12 +16,12 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
-ROUNDS = 12
+NEWTON_ROUNDS = 12
 """Largest number of Newton's iterations in a step (1)."""
 CLOSED, STILL_CLOSED = 1e-11, 1e-8
 """A cycle closes to this share of its extent (1); where rounding forbids that, to the second."""
 NUDGE = 1e-6
-"""Share of the range (1) by which the parameter is moved to see how the return changes."""
+"""The parameter is moved by this share (1) of its range to see how the return changes."""
 TRIES = 2
 """How often a run to a return may be doubled (1)."""
 
@@ -66,13 +66,13 @@ class Path:
         return np.append(place, value) / self.scales
 
     def solved(self, target: Floats, way: Floats, guess: float) -> tuple[float, Orbit, Floats]:
-        """Return the value and the cycle in the plane through `target` across `way`, and the derivative of what a return misses.
+        """Return the value and the cycle in the plane through `target` across `way`, and the derivative of the miss of a return.
 
         Raises NoCycleError.
         """
         at, slopes = target.copy(), np.zeros((0, 0))
         best: tuple[float, float, Return, Floats] | None = None
-        for n in range(ROUNDS):
+        for n in range(NEWTON_ROUNDS):
             now, slopes = self._returned(at, guess, slopes, renew=n < 3)
             guess = now.time
             extent = extent_of(now.history, self.at_onset, now.piece)
@@ -92,10 +92,10 @@ class Path:
         assert best is not None
         if best[0] > STILL_CLOSED:
             raise NoCycleError("follow: Newton's iteration finds no cycle here")
-        return best[1], Orbit(best[2], best[3], ROUNDS, 0.0), slopes
+        return best[1], Orbit(best[2], best[3], NEWTON_ROUNDS, 0.0), slopes
 
     def _returned(self, at: Floats, guess: float, known: Floats, *, renew: bool) -> tuple[Return, Floats]:
-        """Return the run from a start, and the derivative of what it misses by start and parameter, over their scales."""
+        """Return the run from a start, and the derivative of its miss by start and parameter, over their scales."""
         value, place = float(at[-1] * self.range), at[:-1] * self.scales[:-1]
         try:
             now = self.section(value).returned(place, guess, TRIES)

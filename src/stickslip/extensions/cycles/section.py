@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.tangent import RATE, Tangent, pace_at, values_at
+from stickslip.extensions.cycles.tangent import RATE_ROW, Tangent, pace_at, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
@@ -60,8 +60,8 @@ class Return:
             return np.zeros((0, 0))
         grown = Tangent(self.history, self.piece, self.place).grown(exactly=exactly)
         pace = pace_at(self.history, self.piece, self.place)
-        onto = grown - np.outer(pace, grown[RATE]) / pace[RATE]
-        kept = np.delete(np.arange(len(pace)), RATE)
+        onto = grown - np.outer(pace, grown[RATE_ROW]) / pace[RATE_ROW]
+        kept = np.delete(np.arange(len(pace)), RATE_ROW)
         return np.asarray(onto[np.ix_(kept, kept)])
 
     @cached_property
@@ -117,7 +117,7 @@ class Section:
 
 def coordinates(values: Floats, at_onset: bool) -> Floats:
     """Return what may vary on a section, of load, slip rate and states."""
-    return values[:0] if at_onset else np.delete(values, RATE, axis=0)
+    return values[:0] if at_onset else np.delete(values, RATE_ROW, axis=0)
 
 
 def crossings(history: History, at_onset: bool) -> Crossings:

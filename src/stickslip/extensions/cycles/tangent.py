@@ -30,7 +30,7 @@ STAGES = 8
 """Points of Radau's method on each part of a piece, whose order is twice that less one."""
 TOLERANCE, MOST_PARTS = 1e-11, 64
 """Pieces are divided until the result changes by less than this share (1) of the largest so far, into no more parts than this."""
-LOAD, RATE, FIRST_STATE = range(3)
+LOAD_ROW, RATE_ROW, FIRST_STATE_ROW = range(3)
 """Places of load, slip rate and the first state in a disturbance."""
 
 
@@ -43,7 +43,7 @@ def _radau() -> tuple[Floats, Floats]:
     return places, (places[:, None] ** powers / powers) @ np.linalg.inv(places[:, None] ** (powers - 1))
 
 
-PLACES, COEFFICIENTS = _radau()
+RADAU_PLACES, COEFFICIENTS = _radau()
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class RigidMotion:
     @cached_property
     def size(self) -> int:
         """The number of load, slip rate and states."""
-        return FIRST_STATE + len(self.problem.friction.states)
+        return FIRST_STATE_ROW + len(self.problem.friction.states)
 
     def _law(self, direction: int) -> Any:
         law = self.problem.friction
@@ -71,7 +71,7 @@ class RigidMotion:
     def state_pace(self, values: Floats, direction: int) -> list[float]:
         """Return dw/dt of each state at one point."""
         law, signs = self._law(direction), self._signs(direction)
-        seen, rate = signs * values[FIRST_STATE:], abs(float(values[RATE]))
+        seen, rate = signs * values[FIRST_STATE_ROW:], abs(float(values[RATE_ROW]))
         trees = law.state_trees()
         return [
             sign * float(value_and_slopes(tree, law.numbers(), 0.0, rate, *seen)[0])
@@ -82,31 +82,31 @@ class RigidMotion:
         """Return the derivatives of dy/dt by y at points with one direction; a row of `values` has L, v or a state of all."""
         problem, law, signs = self.problem, self._law(direction), self._signs(direction)
         body, count = as_on_spring(problem.body), len(values)
-        rate, seen = np.abs(values[RATE]), [sign * state for sign, state in zip(signs, values[FIRST_STATE:], strict=True)]
+        rate, seen = np.abs(values[RATE_ROW]), [sign * state for sign, state in zip(signs, values[FIRST_STATE_ROW:], strict=True)]
         found = np.zeros((values.shape[1], count, count))
         if direction:
             mu = law.slopes(0.0, rate, one_argument(seen))
-            found[:, LOAD, RATE] = -body.stiffness
-            found[:, RATE, LOAD] = 1.0 / body.inertia
-            found[:, RATE, RATE] = -(body.total_damping + problem.normal * mu[1]) / body.inertia
+            found[:, LOAD_ROW, RATE_ROW] = -body.stiffness
+            found[:, RATE_ROW, LOAD_ROW] = 1.0 / body.inertia
+            found[:, RATE_ROW, RATE_ROW] = -(body.total_damping + problem.normal * mu[1]) / body.inertia
             for n, sign in enumerate(signs):
-                found[:, RATE, FIRST_STATE + n] = -direction * sign * problem.normal * mu[2 + n] / body.inertia
+                found[:, RATE_ROW, FIRST_STATE_ROW + n] = -direction * sign * problem.normal * mu[2 + n] / body.inertia
         for n, tree in enumerate(law.state_trees()):
             by = value_and_slopes(tree, law.numbers(), np.zeros(len(rate)), rate, *seen)[1]
             if direction:
-                found[:, FIRST_STATE + n, RATE] = signs[n] * direction * by[1]
+                found[:, FIRST_STATE_ROW + n, RATE_ROW] = signs[n] * direction * by[1]
             for other, sign in enumerate(signs):
-                found[:, FIRST_STATE + n, FIRST_STATE + other] = signs[n] * sign * by[2 + other]
+                found[:, FIRST_STATE_ROW + n, FIRST_STATE_ROW + other] = signs[n] * sign * by[2 + other]
         return found
 
     def begins_slip(self, values: Floats, direction: int) -> Floats:
         """Return the derivative by y of the load beyond the strength, with the sign of the load, where rest ends."""
         problem, signs, law = self.problem, self._signs(direction), self._law(direction)
         found = np.zeros(len(values))
-        found[LOAD] = 1.0
+        found[LOAD_ROW] = 1.0
         if len(signs):
-            slopes = law.slopes(0.0, 0.0, one_argument(tuple(signs * values[FIRST_STATE:])))
-            found[FIRST_STATE:] = -direction * signs * problem.normal * slopes[2:]
+            slopes = law.slopes(0.0, 0.0, one_argument(tuple(signs * values[FIRST_STATE_ROW:])))
+            found[FIRST_STATE_ROW:] = -direction * signs * problem.normal * slopes[2:]
         return found
 
 
@@ -124,7 +124,7 @@ def pace_at(history: History, piece: int, place: float) -> Floats:
     values = values_at(history, Positions.inside(piece, place))[:, 0]
     by_place = float(np.polynomial.polynomial.polyval(place, np.polynomial.polynomial.polyder(store.rate[piece])))
     grows = by_place / float(store.speed[piece] + 2.0 * store.bend[piece] * place) if direction else 0.0
-    loads = history.problem.body.stiffness * (history.problem.first_pull_rate - values[RATE])
+    loads = history.problem.body.stiffness * (history.problem.first_pull_rate - values[RATE_ROW])
     return np.array([loads, grows, *RigidMotion(history.problem).state_pace(values, direction)])
 
 
@@ -182,7 +182,7 @@ class Tangent:
         length = np.repeat(np.where(pieces == self.last, self.place, 1.0) / parts, parts)
         piece = np.repeat(pieces, parts)
         begin = length * np.tile(np.arange(parts), count)
-        xi = begin[:, None] + length[:, None] * PLACES
+        xi = begin[:, None] + length[:, None] * RADAU_PLACES
         at = Positions.inside(np.repeat(piece, STAGES), xi.ravel())
         slopes, values, mode = np.empty((xi.size, size, size)), values_at(self.history, at), store.mode[at.piece]
         for direction in np.unique(mode).tolist():
@@ -209,7 +209,7 @@ class Tangent:
             return np.eye(size)
         low, high = pace_at(history, piece - 1, 1.0), pace_at(history, piece, 0.0)
         left = values_at(history, Positions.inside(piece - 1, 1.0))[:, 0]
-        normal = self.motion.begins_slip(left, after) if before == 0 else np.eye(size)[RATE]
+        normal = self.motion.begins_slip(left, after) if before == 0 else np.eye(size)[RATE_ROW]
         found: Floats = np.eye(size) + np.outer(high - low, normal) / (normal @ low)
         return found
 

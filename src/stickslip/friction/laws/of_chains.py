@@ -30,7 +30,7 @@ class CarlsonLanger(FrictionLaw):
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     drop: float = quantity("1", "share of static friction that is lost at once as slip begins, at most 1", at_least=0)
-    rate: Number = quantity("m/s", "slip rate at which half of what is left is lost", above=0)
+    rate: Number = quantity("m/s", "slip rate where half of the rest is lost", above=0)
 
     @override
     def check(self) -> None:

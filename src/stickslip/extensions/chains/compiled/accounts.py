@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from numpy.polynomial.legendre import leggauss
 
+from stickslip.engine import TERMS
 from stickslip.engine.series.polynomial import extremes
-from stickslip.engine.state.layout import TERMS
 from stickslip.extensions.chains.compiled.loads import driver_place, friction_at, time_of
 from stickslip.extensions.chains.compiled.memory import (
     COUNTED,
@@ -108,10 +108,10 @@ def begin_event(chain: ChainNumbers, state: Now, first: int) -> None:
 def end_event(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows) -> None:
     """Write the row of the event that ends now."""
     now, count, moment = state.now, room.counts[HAVE_SLIPPED], 0.0
-    for n in range(count):
-        j = room.slipped[n]
-        moment += state.blocks[SLIP, j] - state.blocks[SLIP_BEFORE, j]
-        state.whole[SLIPPED, j] = 0
+    for j in range(len(chain.blocks.mass)):  # in the order of blocks: that of the list depends on calls
+        if state.whole[SLIPPED, j] == 1:
+            moment += state.blocks[SLIP, j] - state.blocks[SLIP_BEFORE, j]
+            state.whole[SLIPPED, j] = 0
     row = kept.events[room.counts[EVENT_ROWS]]
     room.counts[EVENT_ROWS] += 1
     room.counts[HAVE_SLIPPED] = 0

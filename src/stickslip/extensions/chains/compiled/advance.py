@@ -72,6 +72,7 @@ def change_blocks(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRow
         if room.places[j] == place:
             room.changed[found] = j
             found += 1
+    sort_changed(room, found)
     for n in range(found):
         j = room.changed[n]
         kind = room.kinds[j]
@@ -89,6 +90,17 @@ def change_blocks(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRow
         elif room.kinds[j] == ONSET or room.kinds[j] == ONSET_BACK:
             moves_from_now(chain, state, room, j)
     return found
+
+
+@kernel
+def sort_changed(room: StepRoom, count: int) -> None:
+    """Sort the blocks that change, so that their order does not depend on that of the lists, which a resumed run makes anew."""
+    for n in range(1, count):
+        j, place = room.changed[n], n
+        while place > 0 and room.changed[place - 1] > j:
+            room.changed[place] = room.changed[place - 1]
+            place -= 1
+        room.changed[place] = j
 
 
 @kernel
@@ -132,7 +144,8 @@ def step(chain: ChainNumbers, state: Now, room: StepRoom, kept: KeptRows, limits
             commit(chain, state, room, length, left / length)
         return DONE
     take_samples(state, room, kept, length, end * length)
-    now[DEFECT] = max(now[DEFECT], remainder_of_step(room, length * chain.fastest))
+    lacks = remainder_of_step(room, length * chain.fastest) if chain.all_straight == 1 else room.span[1]
+    now[DEFECT] = max(now[DEFECT], lacks)
     commit(chain, state, room, length, end)
     now[LAST_STEP] = length
     if chain.all_straight == 0:

@@ -12,13 +12,13 @@ from stickslip.extensions.chains.compiled.loads import set_due
 from stickslip.extensions.chains.compiled.memory import (
     DUE,
     FIRST_DUE,
-    FREE,
     HAVE_SLIPPED,
     MODE,
     MOVING,
     REST,
     SLIPPED,
     WATCHED,
+    WITHOUT_FRICTION,
     ChainNumbers,
     Now,
     StepRoom,
@@ -65,7 +65,7 @@ def find_first_due(state: Now, room: StepRoom) -> None:
 
 @kernel
 def first_due(state: Now, room: StepRoom) -> float:
-    """Return the time (s) at which the block that is due first begins to slip."""
+    """Return the time (s) when the block that is due first begins to slip."""
     if room.counts[FIRST_DUE] == UNKNOWN:
         find_first_due(state, room)
     return float(state.blocks[DUE, room.counts[FIRST_DUE]])
@@ -159,6 +159,6 @@ def rubbing(state: Now, room: StepRoom) -> int:
     """Return how many blocks slip against friction."""
     found = 0
     for n in range(room.counts[MOVING]):
-        if state.whole[MODE, room.moving[n]] != FREE:
+        if state.whole[MODE, room.moving[n]] != WITHOUT_FRICTION:
             found += 1
     return found

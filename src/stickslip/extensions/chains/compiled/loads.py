@@ -8,14 +8,13 @@ from __future__ import annotations
 import math
 
 from stickslip.extensions.chains.compiled.memory import (
+    AT_STRENGTH,
     COUNTED,
     DUE,
-    EDGE,
-    HEALS,
     MODE,
     ORIGIN,
     PIECE,
-    RATE,
+    RATE_NOW,
     REST,
     SINCE,
     SLIP,
@@ -59,6 +58,20 @@ def load_on(chain: ChainNumbers, state: Now, j: int) -> float:
 
 
 @exact
+def growth_of_load(chain: ChainNumbers, state: Now, j: int) -> float:
+    """Return how fast the load (N/s) on a block grows whose own slip rate is 0."""
+    springs, rates, found = chain.springs, state.blocks[RATE_NOW], 0.0
+    first, last = springs.starts[j], springs.starts[j + 1]
+    for place in range(first, last - 1, 2):
+        one = springs.springs[place] * rates[springs.neighbours[place]]
+        other = springs.springs[place + 1] * rates[springs.neighbours[place + 1]]
+        found += one + other
+    if (last - first) % 2 == 1:
+        found += springs.springs[last - 1] * rates[springs.neighbours[last - 1]]
+    return float(found + chain.blocks.stiffness[j] * chain.pull_rate)
+
+
+@exact
 def friction_at(chain: ChainNumbers, state: Now, j: int, counted: float, rate: float) -> float:
     """Return the magnitude of friction (N) on a block at a slip that its law counts (m) and a slip rate (m/s), by its piece."""
     law, piece, laws = chain.blocks.law[j], state.whole[PIECE, j], chain.laws
@@ -73,7 +86,7 @@ def friction_at(chain: ChainNumbers, state: Now, j: int, counted: float, rate: f
 @exact
 def sliding_strength(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return the magnitude of friction (N) on a block that slips, at its slip and slip rate."""
-    return float(friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE, j])))
+    return float(friction_at(chain, state, j, state.blocks[COUNTED, j], abs(state.blocks[RATE_NOW, j])))
 
 
 @exact
@@ -88,10 +101,10 @@ def set_due(chain: ChainNumbers, state: Now, j: int) -> None:
     loading = chain.blocks.stiffness[j] * chain.pull_rate
     load, strength, wait = load_on(chain, state, j), state.blocks[STRENGTH, j], math.inf
     if loading > 0.0:
-        wait = 0.0 if state.whole[EDGE, j] == 1 else max(0.0, (strength - load) / loading)
+        wait = 0.0 if state.whole[AT_STRENGTH, j] == 1 else max(0.0, (strength - load) / loading)
     elif loading < 0.0:
-        wait = 0.0 if state.whole[EDGE, j] == -1 else max(0.0, (strength + load) / -loading)
-    state.whole[EDGE, j] = 0
+        wait = 0.0 if state.whole[AT_STRENGTH, j] == -1 else max(0.0, (strength + load) / -loading)
+    state.whole[AT_STRENGTH, j] = 0
     state.blocks[DUE, j] = time_of(state) + wait
 
 
@@ -107,12 +120,12 @@ def piece_of(chain: ChainNumbers, law: int, counted: float, piece: int) -> int:
 
 
 @exact
-def put_to_rest(chain: ChainNumbers, state: Now, j: int) -> None:
-    """Write that a block rests, with its strength."""
+def put_to_rest(chain: ChainNumbers, state: Now, j: int, heals: bool) -> None:
+    """Write that a block rests, with its strength, after its law has forgotten its slip if it heals."""
     law = chain.blocks.law[j]
     state.whole[MODE, j] = REST
-    if chain.laws.rules[law, HEALS] == 1:
+    if heals:
         state.blocks[COUNTED, j] = 0.0
     state.whole[PIECE, j] = piece_of(chain, law, state.blocks[COUNTED, j], state.whole[PIECE, j])
-    state.blocks[RATE, j] = 0.0
+    state.blocks[RATE_NOW, j] = 0.0
     state.blocks[STRENGTH, j] = sliding_strength(chain, state, j) + static_step(chain, j)

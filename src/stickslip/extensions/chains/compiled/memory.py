@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from stickslip.foundation.arrays import Floats1, Floats2, Integers1, Integers2
 
-REST, FORWARD, FREE, BACKWARD = 0, 1, 2, -1
+REST, FORWARD, WITHOUT_FRICTION, BACKWARD = 0, 1, 2, -1
 """Modes of a block: at rest, in slip forward or backward, or without friction, so that it never rests."""
 ONSET, ARREST, TURN, KNOT = range(4)
 """Kinds of changes: slip begins; it ends; it goes on in the other direction at once; the law passes a knot."""
@@ -14,22 +14,23 @@ DONE, GOES_ON, HANGS, NOT_FINITE = range(4)
 """Why the solver returns: the time is reached; its budget or its room is used up; time does not advance; a number is not finite."""
 
 ORIGIN, SINCE = range(2)
-"""Places in `now`: time is the sum of these two (s), of which the second counts from the last onset after rest."""
+"""Places in `now`: time is the sum of these two (s), and the second counts from the last onset after rest."""
 PULL, HEAT, DASHPOT, WORK = range(2, 6)
 """The force of the driver (N), and energies since t = 0 (J): heat of friction, heat of dashpots, work of the driver."""
 LARGEST_RATE, FIRST_BLOCK, HEAT_BEFORE, DASHPOT_BEFORE, WORK_BEFORE, SPRINGS_BEFORE, EVENT_START, IN_EVENT = range(6, 14)
 """Of the event in progress: the largest slip rate (m/s), its first block, the energies (J) and the time (s) at its start, and 1."""
-CHANGES, STEPS, BLOCK_STEPS, EVENTS, LAST_STEP, DEFECT, RESIDUAL = range(14, 21)
+COUNT_OF_CHANGES, COUNT_OF_STEPS, BLOCK_STEPS, EVENTS, LAST_STEP, DEFECT, RESIDUAL = range(14, 21)
 """Counts of changes, steps, blocks that moved in them, and events; the length of the last step (s); the largest remainder of a
-series as a share of the motion in its step (1), and the largest force that the equation of a block lacks at the end of a step, as a
+series as a share of the motion in its step (1), under laws that are not straight the largest bound of the force that an equation
+lacks in a step, as a share of the strength (1); and the largest force that the equation of a block lacks at the end of a step, as a
 share of its strength (1)."""
 NUMBERS_NOW = 21
 
-SLIP, RATE, COUNTED, DUE, STRENGTH, SLIP_BEFORE = range(6)
-"""Rows of numbers of blocks: slip (m), slip rate (m/s), slip that the law counts (m), the time (s) at which a block that nothing
+SLIP, RATE_NOW, COUNTED, DUE, STRENGTH, SLIP_BEFORE = range(6)
+"""Rows of numbers of blocks: slip (m), slip rate (m/s), slip that the law counts (m), the time (s) when a block that nothing
 but the driver loads begins to slip (inf for any other), its strength (N) at rest, and its slip (m) before the event."""
 ROWS_OF_BLOCKS = 6
-MODE, PIECE, EDGE, SLIPPED = range(4)
+MODE, PIECE, AT_STRENGTH, SLIPPED = range(4)
 """Rows of whole numbers of blocks: the mode; the piece of the law; where it is exactly at its strength by definition (1, -1 or 0);
 and 1 if it has slipped in the event in progress."""
 WHOLE_ROWS_OF_BLOCKS = 4
@@ -80,6 +81,7 @@ class Laws(NamedTuple):
     rules: Integers2
     values_at: Integers2
     jets_at: Integers2
+    radii_at: Integers2
     constants_at: Integers2
 
 
@@ -121,7 +123,8 @@ class StepRoom(NamedTuple):
     changed: Integers1
     counts: Integers1
     span: Floats1
-    """One number: the unit of time (s) of the series, first a guess, and then the length of the step."""
+    """The unit of time (s) of the series, first a guess, and then the length of the step; and under laws that are not straight a
+    bound of the force that a block's equation lacks in the step, as a share of its strength (1)."""
 
 
 MOVING, WATCHED, HAVE_SLIPPED, FIRST_DUE, CHANGE_ROWS, EVENT_ROWS, SAMPLES = range(7)

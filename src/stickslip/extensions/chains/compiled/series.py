@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.state.layout import TERMS
+from stickslip.engine import TERMS
 from stickslip.extensions.chains.compiled.loads import load_on, sliding_strength, static_step
 from stickslip.extensions.chains.compiled.memory import (
+    AT_STRENGTH,
     BACKWARD,
     COUNTED,
     COUNTS_NET,
-    EDGE,
-    FREE,
     MODE,
     MOVING,
     PIECE,
-    RATE,
+    RATE_NOW,
     REST,
     STRAIGHT,
+    WITHOUT_FRICTION,
     ChainNumbers,
     Now,
     StepRoom,
@@ -33,7 +33,7 @@ from stickslip.foundation.kernels.memory.addresses import call_jet, floats, room
 
 UNIT = 2.0
 """The unit of series, times the bound of frequencies (1): next to the length of a step if the shortest wave is there."""
-TOLERANCE = 2.0**-55
+TOLERANCE_OF_SERIES = 2.0**-55
 """The last terms of a step as a share of its motion (1)."""
 LONGEST = 1.5
 """A step has at most so many units (1): the bound of its remainder grows with cosh."""
@@ -65,11 +65,11 @@ def load_term(chain: ChainNumbers, state: Now, room: StepRoom, j: int, k: int) -
 @exact
 def first_force(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return the net force (N) on a moving block now; where it leaves rest at its strength, the step of its friction."""
-    mode, edge = state.whole[MODE, j], state.whole[EDGE, j]
+    mode, edge = state.whole[MODE, j], state.whole[AT_STRENGTH, j]
     if edge != 0:
         return float(edge * static_step(chain, j))
-    force = load_on(chain, state, j) - chain.blocks.damping[j] * state.blocks[RATE, j]
-    if mode == FREE:
+    force = load_on(chain, state, j) - chain.blocks.damping[j] * state.blocks[RATE_NOW, j]
+    if mode == WITHOUT_FRICTION:
         return float(force)
     friction = sliding_strength(chain, state, j)
     return float(force + friction if mode == BACKWARD else force - friction)
@@ -79,7 +79,7 @@ def first_force(chain: ChainNumbers, state: Now, j: int) -> float:
 def weakening_of(chain: ChainNumbers, state: Now, j: int) -> float:
     """Return how friction (N) on a moving block, with its sign, changes with its slip (N/m)."""
     mode, law = state.whole[MODE, j], chain.blocks.law[j]
-    if mode == FREE:
+    if mode == WITHOUT_FRICTION:
         return 0.0
     slope = chain.blocks.normal[j] * chain.laws.slopes[law, state.whole[PIECE, j]]
     return float(-slope if mode == BACKWARD and chain.laws.rules[law, COUNTS_NET] == 1 else slope)
@@ -90,7 +90,7 @@ def begin_series(chain: ChainNumbers, state: Now, room: StepRoom, j: int, unit: 
     """Write the orders of the series of a moving block that its state gives: slip, slip rate, and acceleration."""
     row = room.series[j]
     row[0] = 0.0
-    row[1] = state.blocks[RATE, j] * unit
+    row[1] = state.blocks[RATE_NOW, j] * unit
     row[2] = 0.5 * first_force(chain, state, j) / chain.blocks.mass[j] * (unit * unit)
 
 
@@ -123,30 +123,37 @@ def write_series(chain: ChainNumbers, state: Now, room: StepRoom, unit: float) -
     for _ in range(PASSES):
         for n in range(count):
             j = room.moving[n]
-            if state.whole[MODE, j] == FREE or chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 1:
+            if state.whole[MODE, j] == WITHOUT_FRICTION or chain.laws.rules[chain.blocks.law[j], STRAIGHT] == 1:
                 for k in range(1, TERMS - 2):
                     next_order(chain, state, room, j, k)
             else:
-                series_of_formula(chain, state, room, j, unit)
+                series_of_formula(chain, state, room, j)
 
 
 @exact
-def series_of_formula(chain: ChainNumbers, state: Now, room: StepRoom, j: int, unit: float) -> None:
+def series_of_formula(chain: ChainNumbers, state: Now, room: StepRoom, j: int) -> None:
     """Write the series of a moving block from the loads that the series of the last pass give, by its law's own formula."""
-    given, load, rate = room_for(ROOM_OF_INPUT), room_for(TERMS), room_for(ROOM_OF_JET)
-    blocks, laws, row = chain.blocks, chain.laws, room.series[j]
-    law, piece, mode, edge = blocks.law[j], state.whole[PIECE, j], state.whole[MODE, j], state.whole[EDGE, j]
+    rate, row, mode = room_for(ROOM_OF_JET), room.series[j], state.whole[MODE, j]
+    write_jet(chain, state, room, j, rate)
+    for k in range(1, TERMS):
+        row[k] = mode * (rate[k - 1] * room.span[0] / k)
+
+
+@exact
+def write_jet(chain: ChainNumbers, state: Now, room: StepRoom, j: int, rate: Floats) -> None:
+    """Write the series of a moving block's slip rate (m/s), under the loads of the series, and what the law's radii need of it."""
+    given, load, unit = room_for(ROOM_OF_INPUT), room_for(TERMS), room.span[0]
+    blocks, laws = chain.blocks, chain.laws
+    law, piece, mode, edge = blocks.law[j], state.whole[PIECE, j], state.whole[MODE, j], state.whole[AT_STRENGTH, j]
     load[0] = mode * load_on(chain, state, j)
     for k in range(1, TERMS):
         load[k] = mode * load_term(chain, state, room, j, k)
     load[1] += mode * (blocks.stiffness[j] * chain.pull_rate * unit)
     given[0], given[1], given[2] = blocks.damping[j], blocks.normal[j], mode if laws.rules[law, COUNTS_NET] == 1 else 1.0
     given[3], given[4], given[5] = unit, 0.0, state.blocks[COUNTED, j] - laws.references[law, piece]
-    given[6], given[7], given[8], given[9] = laws.levels[law, piece], blocks.mass[j], 0.0, abs(state.blocks[RATE, j])
+    given[6], given[7], given[8], given[9] = laws.levels[law, piece], blocks.mass[j], 0.0, abs(state.blocks[RATE_NOW, j])
     given[10], given[11] = 0.0 if edge != 0 else 1.0, static_step(chain, j) if edge != 0 else 0.0
     call_jet(laws.jets_at[law, piece], floats(laws.constants_at[law, piece]), given, load, rate)
-    for k in range(1, TERMS):
-        row[k] = mode * (rate[k - 1] * unit / k)
 
 
 @kernel
@@ -164,7 +171,7 @@ def length_of_step(room: StepRoom) -> float:
     length = 1.0
     for _ in range(4):
         size = length * max(first, length * max(second, length * third))
-        allowed = math.log(TOLERANCE * (size if size > 0.0 else max(last, before, 1e-300)))
+        allowed = math.log(TOLERANCE_OF_SERIES * (size if size > 0.0 else max(last, before, 1e-300)))
         longest = LONGEST
         if last > 0.0:
             longest = min(longest, math.exp((allowed - math.log(last)) / (TERMS - 1)))

@@ -4,30 +4,31 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.state.layout import TERMS
+from stickslip.engine import TERMS
 from stickslip.extensions.chains.compiled.accounts import dissipated, heat_of_step, integral_of_slip, note_rate
+from stickslip.extensions.chains.compiled.discs import proven_length
 from stickslip.extensions.chains.compiled.memory import (
+    AT_STRENGTH,
     BLOCK_STEPS,
+    COUNT_OF_STEPS,
     COUNTED,
     COUNTS_NET,
     DASHPOT,
-    EDGE,
     FORWARD,
-    FREE,
     HEAT,
     LAST_STEP,
     MODE,
     MOVING,
     ORIGIN,
     PULL,
-    RATE,
+    RATE_NOW,
     RESIDUAL,
     SAMPLES,
     SINCE,
     SLIP,
-    STEPS,
     STRENGTH,
     WATCHED,
+    WITHOUT_FRICTION,
     WORK,
     ChainNumbers,
     KeptRows,
@@ -45,7 +46,7 @@ from stickslip.extensions.chains.compiled.series import (
 )
 from stickslip.foundation.kernels.kernels import kernel
 
-LONGER, SHORTER, SHORTEST = 2.0, 1e-3, 1e-300
+LONGER_NEXT, SHORTER_NEXT, SHORTEST_OF_STEPS = 2.0, 1e-3, 1e-300
 """Under laws that are not straight in slip: the unit of a series over the length of the last step (1), by what it is made shorter
 if a term overflows (1), and the shortest unit (s)."""
 
@@ -55,17 +56,17 @@ def expand(chain: ChainNumbers, state: Now, room: StepRoom) -> float:
     """Write the series of the moving blocks over a step, and return its length (s); inf if a term is no number."""
     unit, last = UNIT / chain.fastest, state.now[LAST_STEP]
     if chain.all_straight == 0 and last > 0.0:
-        unit = min(unit, LONGER * last)
+        unit = min(unit, LONGER_NEXT * last)
     write_series(chain, state, room, unit)
-    while not is_finite(room) and unit > SHORTEST:
-        unit *= SHORTER
+    while not is_finite(room) and unit > SHORTEST_OF_STEPS:
+        unit *= SHORTER_NEXT
         write_series(chain, state, room, unit)
     share = length_of_step(room)
     if not (is_finite(room) and share > 0.0):
         return math.inf
     stretch_series(room, share)
     room.span[0] = share * unit
-    return share * unit
+    return share * unit if chain.all_straight == 1 else proven_length(chain, state, room)
 
 
 @kernel
@@ -110,24 +111,24 @@ def commit(chain: ChainNumbers, state: Now, room: StepRoom, length: float, place
         given += stiffness * slip
         if damping != 0.0:
             now[DASHPOT] += damping * dissipated(room, j, place) / length
-        if mode != FREE:
+        if mode != WITHOUT_FRICTION:
             note_rate(state, room, j, place, length)
             slip, rate = (max(slip, 0.0), max(rate, 0.0)) if mode == FORWARD else (min(slip, 0.0), min(rate, 0.0))
             way = mode if chain.laws.rules[chain.blocks.law[j], COUNTS_NET] == 1 else 1
             now[HEAT] += heat_of_step(chain, state, room, j, (length, place))
             blocks[COUNTED, j] += way * abs(slip)
         blocks[SLIP, j] += slip
-        blocks[RATE, j] = rate
+        blocks[RATE_NOW, j] = rate
         if duration > 0.0:
-            state.whole[EDGE, j] = 0
+            state.whole[AT_STRENGTH, j] = 0
     if duration > 0.0:
         for n in range(room.counts[WATCHED]):
-            state.whole[EDGE, room.watched[n]] = 0
+            state.whole[AT_STRENGTH, room.watched[n]] = 0
     gained = chain.all_stiffness * chain.pull_rate * duration
     now[WORK] += chain.pull_rate * ((now[PULL] + 0.5 * gained) * duration - lost * length)
     now[PULL] += gained - given
     now[SINCE] += duration
-    now[STEPS] += 1.0
+    now[COUNT_OF_STEPS] += 1.0
     now[BLOCK_STEPS] += room.counts[MOVING]
 
 
@@ -136,7 +137,7 @@ def measure_end(chain: ChainNumbers, state: Now, room: StepRoom, length: float, 
     """Keep how far the acceleration at the end of a step is from that of the force there, as a share of the strength."""
     for n in range(room.counts[MOVING]):
         j = room.moving[n]
-        if state.whole[MODE, j] != FREE and state.whole[EDGE, j] == 0:
+        if state.whole[MODE, j] != WITHOUT_FRICTION and state.whole[AT_STRENGTH, j] == 0:
             row, bend = room.series[j], 0.0
             for k in range(TERMS - 1, 1, -1):
                 bend = bend * place + k * (k - 1.0) * row[k]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 LOOKS = {True: (BLUE, "-", "stable"), False: (VERMILLION, "--", "unstable"), None: (GREY, ":", "neither")}
 """Colours, lines and words of cycles, by whether they are stable."""
 MARKS = ("o", "s", "D", "^", "v", "P")
-"""Marks of edges, by the order in which their names occur."""
+"""Marks of edges, in the order of their names along the branch."""
 
 
 @styled

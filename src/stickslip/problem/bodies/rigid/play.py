@@ -1,4 +1,4 @@
-"""Backlash between a rigid body and its spring: a play in which the spring gives no force."""
+"""Backlash between a rigid body and its spring: a play where the spring gives no force."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from stickslip.foundation.arrays import anywhere
 from stickslip.foundation.errors import InputError
 
-BACKLASH = "width of the play between spring and body, in which the spring gives no force"
+BACKLASH = "width of the play between spring and body, where the spring gives no force"
 """What the field for it means."""
 
 
