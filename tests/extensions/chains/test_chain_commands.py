@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -41,7 +42,7 @@ def test_run_says_what_happened(command: Command) -> None:
 
 
 def test_a_balance_that_lacks_more_than_rounding_is_not_called_rounding() -> None:
-    run = ss.simulate("two-blocks")
+    run: Any = ss.simulate("two-blocks")
     assert "J of rounding" in "".join(lines_of(run))
     now = run.final.now.copy()
     now[at.HEAT] += 1e-4
