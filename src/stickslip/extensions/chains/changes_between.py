@@ -51,7 +51,7 @@ def slips_of(changes: Any, end_slip: Floats) -> Slips:
 
 
 def window_of(
-    run: ChainRun, event: int | None, start: float | None, end: float | None, *, where: str = "plot.rupture"
+    run: ChainRun, event: int | None, start: float | str | None, end: float | str | None, *, where: str = "plot.rupture"
 ) -> tuple[float, float, int | None]:
     """Return the times (s) to draw, and the event that they hold, if it is one. Raises InputError, which begins with `where`.
 
@@ -72,8 +72,8 @@ def window_of(
     return begins, min(begins + lasts * (1.0 + 1e-9), run.duration), n
 
 
-def _time(where: str, name: str, given: float | None, default: float) -> float:
-    """Return a time (s) as it was given, or the default."""
+def _time(where: str, name: str, given: float | str | None, default: float) -> float:
+    """Return a time (s) as it was given, by itself or with a unit, or the default."""
     from stickslip.extensions.chains.run import TIME
 
     return default if given is None else float(TIME.check(where, name, given))

@@ -142,7 +142,7 @@ def chain_predictability(run: ChainRun, size: float, runs: int, seed: int) -> Ch
     if not len(events):
         raise InputError(f"{where}: no event is over early enough before the end of the run at {run.duration:g} s: run it longer")
     slip, start = float(np.abs(events["moment"] / events["size"]).max()), run.chain.values("initial_slip")
-    sizes = float(size) * 10.0 ** np.arange(1 + math.floor(math.log10(LARGEST_SIZE / size) + 1e-9))
+    sizes: Floats = float(size) * np.power(10.0, np.arange(1 + math.floor(math.log10(LARGEST_SIZE / size) + 1e-9)))
     shared = np.empty((many, len(sizes)), np.int64)
     for row in range(many):
         # the same direction for each size, so that only the size differs

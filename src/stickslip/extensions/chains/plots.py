@@ -64,8 +64,8 @@ class ChainPlots(NamesAttributes):
     def animation(
         self,
         path: str | Path,
-        start: float | None = None,
-        end: float | None = None,
+        start: float | str | None = None,
+        end: float | str | None = None,
         *,
         event: int | None = None,
         frames: int | None = None,
@@ -74,10 +74,10 @@ class ChainPlots(NamesAttributes):
         """Write an animation of slip and slip rate of all blocks to a .gif, .mp4 or .webm, and return the path.
 
         The last two need ffmpeg. The animation shows an event (its number; the default is that of the largest moment), or the
-        times from `start` to `end` (s), in 150 `frames`, unless another number is given, 20 per second. Blocks that move are
-        marked, and slip is that since the first frame. `progress` is called with the number of finished frames and the number of
-        all frames. Raises InputError if there is no such event or time, for fewer than two frames, and if the software that writes
-        such a file is missing.
+        times from `start` to `end` (s, or texts with a unit), in 150 `frames`, unless another number is given, 20 per second.
+        Blocks that move are marked, and slip is that since the first frame. `progress` is called with the number of finished
+        frames and the number of all frames. Raises InputError if there is no such event or time, for fewer than two frames, and if
+        the software that writes such a file is missing.
         """
         from stickslip.extensions.chains.figures.film import write_film
 
