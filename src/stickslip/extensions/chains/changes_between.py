@@ -50,21 +50,30 @@ def slips_of(changes: Any, end_slip: Floats) -> Slips:
     return Slips(block[begins], kept["time"][begins], arrest[begins], slip[begins])
 
 
-def window_of(run: ChainRun, event: int | None, start: float | None, end: float | None) -> tuple[float, float, int | None]:
-    """Return the times (s) to draw, and the event that they hold, if it is one. Raises InputError.
+def window_of(
+    run: ChainRun, event: int | None, start: float | str | None, end: float | str | None, *, where: str = "plot.rupture"
+) -> tuple[float, float, int | None]:
+    """Return the times (s) to draw, and the event that they hold, if it is one. Raises InputError, which begins with `where`.
 
     Without times and event that is the event with the largest moment.
     """
     if start is not None or end is not None:
         if event is not None:
-            raise InputError("plot.rupture: give an event, or start and end, not both")
-        first, last = 0.0 if start is None else float(start), run.duration if end is None else float(end)
+            raise InputError(f"{where}: give an event, or start and end, not both")
+        first, last = _time(where, "start", start, 0.0), _time(where, "end", end, run.duration)
         if not 0.0 <= first < last <= run.duration:
-            raise InputError(f"plot.rupture: start and end must ascend from 0 to {run.duration:g} s, got {first:g} and {last:g}")
+            raise InputError(f"{where}: start and end must ascend from 0 to {run.duration:g} s, got {first:g} and {last:g}")
         return first, last, None
     if not len(run.events):
-        raise InputError("plot.rupture: the run has no finished event; give start and end")
+        raise InputError(f"{where}: the run has no finished event; give start and end")
     n = int(np.abs(run.events["moment"]).argmax()) if event is None else event
-    check_whole("plot.rupture: event", n, 0, len(run.events) - 1)
+    check_whole(f"{where}: event", n, 0, len(run.events) - 1)
     begins, lasts = float(run.events["time"][n]), float(run.events["duration"][n])
     return begins, min(begins + lasts * (1.0 + 1e-9), run.duration), n
+
+
+def _time(where: str, name: str, given: float | str | None, default: float) -> float:
+    """Return a time (s) as it was given, by itself or with a unit, or the default."""
+    from stickslip.extensions.chains.run import TIME
+
+    return default if given is None else float(TIME.check(where, name, given))

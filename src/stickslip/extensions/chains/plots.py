@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.extensions.chains.magnitudes import magnitudes
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
 class ChainPlots(NamesAttributes):
     """Figures of the run of a chain: `run.plot()` draws its catalogue, `run.plot.rupture()` which blocks slip when.
 
-    All take the keywords of `Solution.plot`: `ax` (figures of one panel), `figure`, `size` and `dpi`.
+    All but `animation` take the keywords of `Solution.plot`: `ax` (figures of one panel), `figure`, `size` and `dpi`.
     """
 
     def __init__(self, run: ChainRun) -> None:
@@ -58,3 +60,25 @@ class ChainPlots(NamesAttributes):
         from stickslip.extensions.chains.figures.energy import draw_chain_energy
 
         return known_to_pyplot(draw_chain_energy(self._run, **place), place)
+
+    def animation(
+        self,
+        path: str | Path,
+        start: float | str | None = None,
+        end: float | str | None = None,
+        *,
+        event: int | None = None,
+        frames: int | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Path:
+        """Write an animation of slip and slip rate of all blocks to a .gif, .mp4 or .webm, and return the path.
+
+        The last two need ffmpeg. The animation shows an event (its number; the default is that of the largest moment), or the
+        times from `start` to `end` (s, or texts with a unit), in 150 `frames`, unless another number is given, 20 per second.
+        Blocks that move are marked, and slip is that since the first frame. `progress` is called with the number of finished
+        frames and the number of all frames. Raises InputError if there is no such event or time, for fewer than two frames, and if
+        the software that writes such a file is missing.
+        """
+        from stickslip.extensions.chains.figures.film import write_film
+
+        return write_film(self._run, path, (event, start, end), frames, progress)
