@@ -57,6 +57,10 @@ class SolverKind:
     """What can be said of a scenario before it is run; None if nothing but what is given."""
     what: str = ""
     """What it solves, for messages: "a PlanarSlab"."""
+    summaries: Callable[[], Mapping[str, tuple[str, str, Callable[[Any], float]]]] | None = None
+    """Numbers of a run that sweeps keep, by name: unit, meaning and function of the run; None if sweeps cannot run it."""
+    code: tuple[str, ...] = ()
+    """Folders of its extension whose code decides its runs (`engine.engine_key`)."""
 
     def check(self, who: str, given: Mapping[str, object]) -> None:
         """Refuse options that are given, not None, and not taken. Raises InputError, which begins with `who`."""

@@ -25,7 +25,6 @@ IN_1D = {
     "infer": ("two-blocks", "record.csv", "--free", "friction.static=0.6..0.8"),
     "schemes": ("two-blocks",),
     "explore": ("two-blocks",),
-    "sweep": ("two-blocks", "--vary", "friction.static=0.9,1.0"),
 }
 """Arguments of each command that is for a single contact."""
 

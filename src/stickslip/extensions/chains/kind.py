@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import override
 
+from stickslip.extensions.chains.deciding import DECIDING_CODE
 from stickslip.foundation.errors import InputError
 from stickslip.run import ALL_TAKE, Reader, SolverKind
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from stickslip.cli.kinds import KindOfRun
     from stickslip.cli.results import Stored
     from stickslip.extensions.chains.run import ChainRun
@@ -42,6 +45,12 @@ def _examine(scenario: Scenario) -> Any:
     return ChainExamination(scenario)
 
 
+def _summaries() -> Mapping[str, tuple[str, str, Callable[[Any], float]]]:
+    from stickslip.extensions.chains.swept import SUMMARIES
+
+    return SUMMARIES
+
+
 CHAIN_SOLVER = SolverKind(
     _solves,
     _run,
@@ -50,6 +59,8 @@ CHAIN_SOLVER = SolverKind(
     _on_command_line,
     _examine,
     what="a Chain",
+    summaries=_summaries,
+    code=(*DECIDING_CODE, "extensions/chains/swept.py"),
 )
 """The solver of chains, and of scenarios with a [chain]."""
 

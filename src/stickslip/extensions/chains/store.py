@@ -19,6 +19,7 @@ from typing_extensions import override
 
 from stickslip.engine import engine_key
 from stickslip.extensions.chains.chain import Chain
+from stickslip.extensions.chains.deciding import DECIDING_CODE
 from stickslip.extensions.chains.rows import ChainRows, Snapshots
 from stickslip.extensions.chains.store_layout import (
     CHAIN_FORMAT,
@@ -52,11 +53,7 @@ if TYPE_CHECKING:
     from stickslip.extensions.chains.state import ChainState
     from stickslip.problem import Status
 
-DECIDING = ("numbers", "couplings", "drawn", "solver", "state")
-"""Modules whose code decides the result of a run, beside compiled code."""
 BUSY = "another run is writing into it"
-DECIDING_CODE = tuple(f"extensions/chains/{one}" for one in ("compiled", *(f"{name}.py" for name in DECIDING)))
-"""The code that decides the result of a run, beside the engine's."""
 IF_FULL = "stickslip.resume continues from the last checkpoint when there is room"
 
 

@@ -93,13 +93,13 @@ def sweep(
     After a stop, the same command continues where the store ends.
 
     By default a sweep keeps events, pulses, slip, peak_rate, first_duration,
-    recurrence and arrested. A wrong name lists all quantities.
+    recurrence and arrested, and of a chain all its quantities. A wrong
+    name lists them.
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.overrides import load_with
     from stickslip.extensions.sweeps.design.axis import typed_axes
-    from stickslip.extensions.sweeps.design.quantities import DEFAULT
     from stickslip.extensions.sweeps.execution.chunk import NOT_RUN
     from stickslip.extensions.sweeps.execution.plan import make_plan
     from stickslip.extensions.sweeps.summary import show_plan, show_slowest, show_sweep
@@ -107,14 +107,14 @@ def sweep(
     _check_members(vary, table, design)
     _check_files(out, figure)
     look.check(figure)
-    chosen = load_with("sweep", scenario, changes, duration=duration)
+    chosen = load_with("sweep", scenario, changes, any_kind=True, duration=duration)
     plan = make_plan(
         chosen,
         table or (typed_axes(chosen, vary, "--vary") if vary else None),
         design=design,
         members=members,
         seed=seed,
-        quantities=quantity or DEFAULT,
+        quantities=quantity or None,
         series=[name.strip() for name in series.split(",") if name.strip()],
         samples=samples,
         chunk=chunk,

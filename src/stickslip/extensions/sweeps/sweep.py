@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from stickslip.extensions.sweeps.design.quantities import DEFAULT, Wanted
+from stickslip.extensions.sweeps.design.quantities import Wanted
 from stickslip.extensions.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Runner, run_chunk
 from stickslip.extensions.sweeps.execution.plan import SAMPLES_OF_CURVES, Plan, make_plan
 from stickslip.extensions.sweeps.results.store import ResultStore
@@ -72,7 +72,7 @@ def sweep(
     design: Any = "grid",
     members: int | None = None,
     seed: int = 0,
-    quantities: Iterable[Wanted] = DEFAULT,
+    quantities: Iterable[Wanted] | None = None,
     series: Sequence[str] = (),
     samples: int = SAMPLES_OF_CURVES,
     out: str | Path | None = None,
@@ -107,8 +107,9 @@ def sweep(
     seed : int
         Seed of the random designs.
     quantities : iterable
-        Names of built-in quantities (`stickslip.extensions.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a
-        `Solution`).
+        Names of built-in quantities (`stickslip.extensions.sweeps.design.quantities.QUANTITIES`, for chains those of
+        `stickslip.extensions.chains.swept`), or (name, unit, function of a `Solution` or a run). By default `DEFAULT` of the
+        built-in ones, and all those of chains.
     series : sequence of str
         Curves of a solution to keep over time, as variables `series_...`.
     samples : int

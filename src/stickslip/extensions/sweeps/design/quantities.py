@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from stickslip.engine import share_sticking
 from stickslip.foundation.errors import InputError, nearest, some_of
+from stickslip.problem.scenarios import Scenario, check_solved_by_core
+from stickslip.run import special_solver_of
 from stickslip.solution.observables.severity import severity
 
 if TYPE_CHECKING:
@@ -168,30 +170,45 @@ Wanted = str | tuple[str, str, Of] | Summary
 """A quantity that a user asks for: the name of a built-in one, (name, unit, function of a solution), or a `Summary`."""
 
 
-def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
-    """Return the quantities that were asked for. Raises InputError for an unknown or repeated name, and for an empty list."""
-    found = tuple(_one(item) for item in ([wanted] if isinstance(wanted, str) else wanted))
+def quantities_for(scenario: Scenario) -> Mapping[str, Summary]:
+    """Return the quantities that a sweep of a scenario may keep by name, for a scenario of an extension those of its solver.
+
+    Raises InputError if the solver has none.
+    """
+    solver = special_solver_of(scenario)
+    if solver is None or solver.summaries is None:
+        check_solved_by_core("sweep", scenario)
+        return QUANTITIES
+    return {name: Summary(name, *one) for name, one in solver.summaries().items()}
+
+
+def quantities_named(wanted: Iterable[Wanted] | None, known: Mapping[str, Summary] = QUANTITIES) -> tuple[Summary, ...]:
+    """Return the quantities that were asked for, among those that are known; for None those that are kept by default.
+
+    Raises InputError for an unknown or repeated name, and for an empty list.
+    """
+    if wanted is None:
+        wanted = DEFAULT if known is QUANTITIES else known
+    found = tuple(_one(item, known) for item in ([wanted] if isinstance(wanted, str) else wanted))
     names = [one.name for one in found]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"sweep: the quantity '{name}' is given twice")
     if not found:
-        raise InputError(f"sweep: no quantity is given; allowed: {some_of(QUANTITIES, listed=QUANTITIES_LISTED)}")
+        raise InputError(f"sweep: no quantity is given; allowed: {some_of(known, listed=QUANTITIES_LISTED)}")
     return found
 
 
-def _one(item: Wanted) -> Summary:
+def _one(item: Wanted, known: Mapping[str, Summary]) -> Summary:
     if isinstance(item, Summary):
         return item
     if isinstance(item, str):
-        if item not in QUANTITIES:
-            raise InputError(
-                f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES, listed=QUANTITIES_LISTED)}"
-            )
-        return QUANTITIES[item]
+        if item not in known:
+            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, known, listed=QUANTITIES_LISTED)}")
+        return known[item]
     if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")
     name, unit, of = item
-    if name in QUANTITIES or name in TAKEN or not _NAME_OF_QUANTITY.fullmatch(name):
+    if name in known or name in TAKEN or not _NAME_OF_QUANTITY.fullmatch(name):
         raise InputError(f"sweep: quantity {ascii(name)[:60]}: choose another name, made of letters, digits, spaces and _")
     return Summary(name, unit, name, of)

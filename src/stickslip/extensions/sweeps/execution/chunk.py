@@ -20,6 +20,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem import BAD_PARAMETERS as REFUSED
 from stickslip.problem import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status, Stop
 from stickslip.problem.scenarios import ParameterPath, Scenario, Source, document_with, read_scenario, scenario_of
+from stickslip.run import SolverKind, special_solver_of
 from stickslip.run.simulate import simulate
 from stickslip.solution import Solution
 
@@ -105,9 +106,21 @@ class Work:
         """The scenario that members vary."""
         return read_scenario(self.text, "member")
 
+    @property
+    def solver(self) -> SolverKind | None:
+        """The solver of an extension that runs members; None for those of the core."""
+        return special_solver_of(self.scenario)
+
+    @property
+    def code(self) -> tuple[str, ...]:
+        """Folders and files whose code decides the results, together with the code of the core."""
+        return (*MEMBER_CODE, *self.solver.code) if self.solver else MEMBER_CODE
+
     @cached_property
     def why_one_by_one(self) -> str:
         """Why the compiled batch cannot do this work, in one line; "" if it can."""
+        if self.solver:
+            return f"{self.solver.what} has a solver of its own"
         if self.series:
             return "curves over time need whole solutions"
         own = next((one.name for one in self.quantities if QUANTITIES.get(one.name) is not one), None)
@@ -226,7 +239,7 @@ def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
 def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i: int) -> None:
     """Run one member and enter its results. Raises KeyboardInterrupt on Ctrl-C, and whatever a quantity raises."""
     try:
-        solution = simulate(work.member(values), max_pieces=MAX_PIECES)
+        solution: Any = simulate(work.member(values), max_pieces=None if work.solver else MAX_PIECES)
     except InputError as error:
         result.fail(i, BAD_PARAMETERS, str(error))
         return
@@ -234,7 +247,7 @@ def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i:
         raise KeyboardInterrupt
     code = CODE_OF[solution.status.name]
     if code >= FIRST_FAILURE:
-        result.fail(i, code, _stopped(solution.status, solution.history.duration))
+        result.fail(i, code, _stopped(solution.status, solution.duration))
         return
     found: dict[str, Any] = {one.name: one.value(solution) for one in work.quantities}
     for name, value in (found | work.series.of(solution) if work.series else found).items():

@@ -154,25 +154,28 @@ def _connected(scheduler: str) -> Client:
 
 def on_cluster(client: Client) -> Runner:
     """Return a function that runs chunks on a cluster, each on one thread. A worker with n threads runs n chunks at a time."""
-    return lambda work, chunks: stream(client, partial(run_chunk, work, threads=1), chunks)
+    return lambda work, chunks: stream(client, partial(run_chunk, work, threads=1), chunks, work.code)
 
 
-def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
+def stream(
+    client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]], code: tuple[str, ...] = MEMBER_CODE
+) -> Iterator[tuple[int, Result]]:
     """Yield the number and the result of each chunk as soon as it is ready, with few in flight at a time.
 
-    `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError comes when they are
-    done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.
+    `run` and the chunks must be picklable, and `code` is what decides the results, beside the engine. A chunk that fails does not
+    hold up the others: ChunksLostError comes when they are done. Raises InputError at once if a worker has another version of the
+    code, and ChunksLostError if the scheduler is lost.
     """
     from distributed import as_completed
 
-    waiting = iter(chunks)
+    waiting, version = iter(chunks), (code, engine_key(*code))
     numbers: dict[Future, int] = {}
     lost: list[str] = []
 
     def send() -> list[Future]:
         room = max(CHUNKS_IN_FLIGHT, AHEAD * sum(client.nthreads().values())) - len(numbers)
         more = list(islice(waiting, max(room, 0)))
-        sent = [client.submit(_run_checked, run, chunk, engine_key(*MEMBER_CODE), pure=False, retries=RETRIES) for _, chunk in more]
+        sent = [client.submit(_run_checked, run, chunk, version, pure=False, retries=RETRIES) for _, chunk in more]
         numbers.update(zip(sent, (number for number, _ in more), strict=True))
         return sent
 
@@ -199,9 +202,10 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
         )
 
 
-def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, expected: str) -> Result:
+def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, version: tuple[tuple[str, ...], str]) -> Result:
     """Run a chunk on the worker, after checking that it has the expected version of the engine. Raises InputError."""
-    if engine_key(*MEMBER_CODE) != expected:
+    code, expected = version
+    if engine_key(*code) != expected:
         raise InputError("sweep: a worker of the cluster has another version of stickslip: install the same everywhere")
     return run(chunk)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stickslip.extensions.sweeps.design.axis import Values
 from stickslip.extensions.sweeps.design.design import GRID, Design, read_design
-from stickslip.extensions.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
+from stickslip.extensions.sweeps.design.quantities import Wanted, quantities_for, quantities_named
 from stickslip.extensions.sweeps.execution.chunk import KeptCurves, Work
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
@@ -25,6 +25,8 @@ from stickslip.solution import CURVES
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
 """A sweep without a given chunk size is divided into so many chunks; and the limits of their size (members).
+
+A chunk may be a single run of the solver of an extension, which takes far longer.
 
 A chunk has at most LARGEST_CHUNK members if they run one by one, and LARGEST_BATCH in the compiled batch. A sweep that is killed
 loses the chunks in progress.
@@ -78,7 +80,7 @@ def make_plan(
     design: Any = GRID,
     members: int | None = None,
     seed: int = 0,
-    quantities: Iterable[Wanted] = DEFAULT,
+    quantities: Iterable[Wanted] | None = None,
     series: Sequence[str] = (),
     samples: int = SAMPLES_OF_CURVES,
     chunk: int | None = None,
@@ -86,11 +88,13 @@ def make_plan(
 ) -> Plan:
     """Make a plan from the arguments of `stickslip.sweep`, after checking them. Raises InputError."""
     chosen = scenario_to_vary(scenario, duration)
+    known = quantities_for(chosen)
     members_of = read_design(chosen, vary, design, members=members, seed=seed, where=where)
     curves = read_series(chosen, members_of, series, samples)
-    work = Work(chosen.to_toml(), members_of.parameters, quantities_named(quantities), curves)
+    work = Work(chosen.to_toml(), members_of.parameters, quantities_named(quantities, known), curves)
     largest = LARGEST_CHUNK if work.why_one_by_one else LARGEST_BATCH
-    size = min(max(members_of.size // CHUNKS, SMALLEST_CHUNK), largest) if chunk is None else check_whole("sweep: chunk", chunk)
+    smallest = SMALLEST_CHUNK if chosen.is_of_core else 1
+    size = min(max(members_of.size // CHUNKS, smallest), largest) if chunk is None else check_whole("sweep: chunk", chunk)
     return Plan(chosen, members_of, work, tile_of(members_of.shape, size))
 
 
@@ -102,7 +106,7 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | s
     if not isinstance(given, Problem):
         if duration is not None:
             raise InputError("sweep: duration belongs to a Problem: a scenario has its own, which run.duration varies")
-        return read_source("sweep", given)
+        return read_source("sweep", given, any_kind=True)
     if duration is None:
         raise InputError("sweep: a Problem needs a duration (s)")
     return read_scenario(read_source("sweep", given, duration).to_toml(), "problem")
@@ -116,6 +120,8 @@ def read_series(scenario: Scenario, design: Design, curves: Sequence[str], sampl
     """
     if not curves:
         return None
+    if not scenario.is_of_core:
+        raise InputError(f"sweep: series are curves of a single contact, which {scenario.name} is not: leave them out")
     allowed = [*CURVES, *STATE_NAMES[: len(scenario.problem.friction.states)]]
     for curve in curves:
         if curve not in allowed:

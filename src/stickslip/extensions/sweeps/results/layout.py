@@ -20,7 +20,7 @@ from zarr.storage import MemoryStore
 import stickslip
 from stickslip.engine import engine_key
 from stickslip.extensions.sweeps.design.design import GRID, IN_WORDS
-from stickslip.extensions.sweeps.execution.chunk import MEANINGS, MEMBER_CODE, NOT_RUN, PREFIX, SAMPLE_TIME
+from stickslip.extensions.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, SAMPLE_TIME
 from stickslip.extensions.sweeps.execution.plan import Plan
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
@@ -112,15 +112,15 @@ def attributes(plan: Plan) -> dict[str, Any]:
     """Return the attributes of the store: everything that determines the results, and nothing else."""
     design, scenario = plan.design, plan.scenario
     about = {"design": design.kind, "keys": list(design.names), "chunk": list(plan.tile), "results": list(results(plan))}
+    solved = scenario.problem.body if scenario.is_of_core else scenario.to_solve
     found = {
         "Conventions": "CF-1.11",
-        "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
+        "title": f"stickslip sweep: {type(solved).__name__}, {type(scenario.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
-        "engine": engine_key(*MEMBER_CODE),
+        "engine": engine_key(*plan.work.code),
         "references": PAPER,
         "scenario": plan.work.text,
-        "selection_rule": scenario.problem.rule,
-        "rtol": scenario.rtol,
+        **({"selection_rule": scenario.problem.rule, "rtol": scenario.rtol} if scenario.is_of_core else {}),
         "design": json.dumps(about if design.seed is None else about | {"seed": design.seed}),
     }
     return SWEEP_FORMAT.attributes(found)
