@@ -10,7 +10,10 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
+from stickslip.engine import engine_key
+from stickslip.extensions.chains.deciding import DECIDING_CODE
 from stickslip.extensions.chains.swept import SUMMARIES
+from stickslip.extensions.sweeps.execution.chunk import MEMBER_CODE
 from stickslip.extensions.sweeps.sweep import SweepProgress
 from tests.command_line import Command
 from tests.messages import refused
@@ -56,6 +59,11 @@ def test_a_chain_without_events_has_no_largest() -> None:
     found = ss.sweep("two-blocks", {"run.duration": [1e-3, 1200.0]}, quantities=["events", "largest_moment", "largest_time"])
     assert found.events.values[0] == 0.0 < found.events.values[1]
     assert np.isnan(found.largest_moment.values).tolist() == np.isnan(found.largest_time.values).tolist() == [True, False]
+
+
+def test_a_store_is_of_the_code_of_chains() -> None:
+    found = ten_blocks({"initial_slip.seed": [1]}, quantities="events")
+    assert found.attrs["engine"] == engine_key(*MEMBER_CODE, *DECIDING_CODE, "extensions/chains/swept.py")
 
 
 def test_a_number_of_ones_own_is_a_function_of_the_run() -> None:
