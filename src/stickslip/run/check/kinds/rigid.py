@@ -91,7 +91,7 @@ def first_slip(problem: Problem) -> float:
         return 0.0
     strength = problem.strength if rate > 0.0 else problem.backward_strength
     stretch = (strength - body.driver_damping * abs(rate)) / problem.body.stiffness + 0.5 * body.backlash
-    return max(stretch / abs(rate) - driver_of(problem).numbers(problem)["first_lag"] / rate, 0.0)
+    return max(stretch / abs(rate) - float(driver_of(problem).numbers(problem)["first_lag"]) / rate, 0.0)
 
 
 def _play(problem: Problem) -> list[Fact]:
