@@ -49,7 +49,7 @@ def test_every_law_with_parameters_and_without_a_state_is_tried() -> None:
             fitted.add(kind)
         except ss.InputError:
             continue
-    assert fitted == {*TRUE, "coulomb"}
+    assert fitted == {*TRUE, "coulomb", "carlson-langer"}
 
 
 @pytest.mark.sampled(every=3)

@@ -19,6 +19,7 @@ SMALL = ("planar-patch", "--set", "contact.nodes=64", "--duration", "1 s")
 IN_1D = {
     "analogy": ("--map", "friction.static=0.6..0.8:3", "--map", "friction.dynamic=0.4..0.5:3", "planar-patch"),
     "compare": ("planar-patch", "fig6-slab"),
+    "cycle": ("planar-patch",),
     "ensemble": ("planar-patch",),
     "export": ("planar-patch", "out.txt"),
     "find": ("planar-patch", "--along", "friction.static=0.6..0.8"),

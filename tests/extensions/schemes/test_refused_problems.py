@@ -23,7 +23,7 @@ VARIES = "schemes: a pull rate, far stress or normal load that varies in time is
     ("problem", "message"),
     [
         (replace(STILL, body=MACHINE), r".*mass or an integral gain is not in the schemes"),
-        (ss.load_scenario("drill-string").problem, r"schemes: a TorsionalString has no grid: they are of an ElasticSlab$"),
+        (ss.load_scenario("drill-string").problem, r"schemes: TorsionalString has no grid: they are of an ElasticSlab$"),
         (SHAKEN, f"{VARIES}, and ground at rest$"),
         (PRESSED, f"{VARIES}$"),
         *(

@@ -12,8 +12,8 @@ from tests.core.cli.turning import SCENARIOS, check_turning
 DOORS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "schemes": (
         ("schemes",),
-        "schemes: a TorsionalString has no grid: they are of an ElasticSlab",
-        "schemes: a RotatingBlock has no grid: they are of an ElasticSlab",
+        "schemes: TorsionalString has no grid: they are of an ElasticSlab",
+        "schemes: RotatingBlock has no grid: they are of an ElasticSlab",
     ),
 }
 

@@ -187,7 +187,7 @@ def test_interrupted_studies_keep_the_rows_that_were_finished() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: schemes("fig6-block-printed"), "schemes: a SpringBlock has no grid"),
+        (lambda: schemes("fig6-block-printed"), "schemes: SpringBlock has no grid"),
         (lambda: schemes("cycles-slab"), "schemes: a contact_mass of"),
         (lambda: schemes("rate-and-state-slab", 1.0), "schemes: rate-and-state"),
         (lambda: schemes("fig6-slab", scheme="newmrk"), "schemes: there is no scheme 'newmrk'; did you mean 'newmark'?"),

@@ -17,7 +17,7 @@ CASES = [
         "sum",
         '[friction.rate]\nkind = "exponential-stribeck"',
         "[friction.rate]",
-        "[friction.rate] kind is missing; allowed: both-ways, coulomb",
+        "[friction.rate] kind is missing; allowed: both-ways, carlson-langer, coulomb",
     ),
     (
         "sum",
