@@ -87,6 +87,7 @@ def test_a_smooth_law_of_slip_is_approached_at_the_same_orders() -> None:
     assert found.last_order("whole") == pytest.approx(1.0, rel=0.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_numbers_of_airys_front() -> None:
     from mpmath import airyai, findroot, mp, quad
 

@@ -91,6 +91,7 @@ def test_a_sweep_that_was_stopped_goes_on(tmp_path: Path) -> None:
     assert found.load().identical(ten_blocks())
 
 
+@pytest.mark.slow
 def test_workers_of_dask_find_the_same() -> None:
     assert ten_blocks(workers=1).identical(ten_blocks())
 

@@ -118,6 +118,7 @@ def test_blocks_without_coupling_are_blocks_of_their_own():
 # ---- against an independent solver -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(10))
 def test_random_chains_agree_with_dop853(seed):
     one = random_chain(seed)

@@ -81,6 +81,7 @@ def test_the_period_doubles_under_two_states_and_the_doubled_cycle_is_there_beyo
     assert doubled.period == pytest.approx(2.0 * edge.orbit.period, rel=0.03)
 
 
+@pytest.mark.slow
 def test_edges_from_both_sides_of_a_grazed_rest_agree() -> None:
     """Stick is lost where unstable cycles without rest begin to rest: by bisection of runs, and by the least rate, to 1e-9."""
     lost = ss.studies.follow(ss.studies.cycle(stribeck(0.28, initial_load=0.0)), "pull_rate", to=0.35, steps=5).edges[0]
@@ -101,6 +102,7 @@ def swinging(s1: float, amplitude: float) -> ss.Problem:
     return ss.Problem(ss.SpringBlock(1.0, 1e3, NORMAL), law, pull_rate=1.0, initial_rate=1.0, initial_load=load)
 
 
+@pytest.mark.slow
 def test_a_branch_goes_around_a_fold_of_cycles_and_comes_back_unstable() -> None:
     """By averages over a period the fold lies at s1 = 9 s3^2 / (40 s5), where the amplitude is sqrt(3 s3 / (5 s5)): both to 1e-4.
 
