@@ -212,7 +212,7 @@ def test_energies_balance_and_the_run_is_proven(problem: ss.Problem) -> None:
     assert run.proven.compared > 0
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=15)
 @CASE
 def test_a_run_in_two_parts_is_that_in_one_bit_for_bit(problem: ss.Problem, tmp_path: Path) -> None:
     whole, half = ss.simulate(problem, 6.0), ss.simulate(problem, 1.93)

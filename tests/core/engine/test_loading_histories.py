@@ -60,7 +60,7 @@ def stuck_load(problem: ss.Problem, t: float) -> float:
     return total - drag * begin * (ROUND - left) / half + 2.0 * drag * float(problem.pull_rate_at(left - half))
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=14)
 @EACH
 def test_a_stuck_slab_sums_its_bounces(name: str) -> None:
     """To 1e-12 of the largest change of the load and 4 ulp of it, over 300 round trips that are leaped over where they can be."""

@@ -55,6 +55,7 @@ def runs() -> tuple[ss.Solution, ss.Solution, float, float]:
     return merged, through_pulse(run), start, bound
 
 
+@pytest.mark.slow
 def test_a_pulse_after_merged_strips_is_that_after_all_of_them(runs: tuple[ss.Solution, ss.Solution, float, float]) -> None:
     """Slip at 4000 moments before, in and after a pulse of 0.12 m: within the stated bound, and rounding of 1e-14 m."""
     merged, exact, start, bound = runs

@@ -185,6 +185,7 @@ def way_of(pull: Any, times: Floats) -> Floats:
     return total
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("pull", PULLS)
 def test_bristles_under_a_moving_reference_meet_another_integrator(pull: str) -> None:
     start = {"initial_load": 0.0, "initial_rate": 0.0, "initial_state": 0.0}

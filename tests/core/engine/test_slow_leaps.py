@@ -48,7 +48,7 @@ def runs(case: str) -> tuple[ss.Solution, ss.Solution]:
     return ss.simulate(problem, end), ss.simulate(problem, end, creep_rtol=0.0)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("case", CASES)
 def test_where_a_leap_lands_the_run_without_leaps_is_within_its_error(case: str) -> None:
     """The first leap, in slip, slip rate and state; errors of later ones grow with the errors of the first.

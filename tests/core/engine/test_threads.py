@@ -50,6 +50,7 @@ assert found[:3] == found[3:6] == found[6:], found
 }
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("case", CASES)
 def test_eight_threads_with_new_laws_at_once(case: str) -> None:

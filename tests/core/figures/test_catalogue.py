@@ -131,7 +131,7 @@ CATALOGUES = {
 SIZES = [None, "single column", "3.4 x 3 in", "16 x 10 cm"]
 
 
-@pytest.mark.sampled(every=29)
+@pytest.mark.sampled(every=58)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("kind", CATALOGUES)
 def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str | None) -> None:

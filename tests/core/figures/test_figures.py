@@ -245,6 +245,7 @@ def test_the_same_figure_gives_the_same_bytes() -> None:
         assert image(systems.draw_systems(dataset), kind) == image(systems.draw_systems(dataset), kind)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("gives_way", [False, True])
 def test_the_figure_of_steady_sliding_has_the_edge_from_rest(gives_way: bool) -> None:
     """Between the critical rate and the edge, a contact from rest sticks; one behind a driver that gives way slides more slowly."""

@@ -56,6 +56,7 @@ def test_images_are_means_over_their_cells(run: ss.Solution) -> None:
     assert dataset.velocity.values.sum(axis=0) * step == pytest.approx(passed, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_no_pulse_falls_between_the_columns() -> None:
     """Pulses of 20 ms in columns of 13 ms: each column of the image has the slip of its time; samples do not (1e-2)."""
     run = ss.simulate(PULSES)

@@ -27,6 +27,7 @@ HISTORIES = {
 }
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("history", HISTORIES.values(), ids=HISTORIES)
 @pytest.mark.parametrize("edges", [(None, None), (3.5, 4.5)])
 def test_the_panel_shows_the_history(history: LoadingHistory, edges: tuple[float | None, float | None]) -> None:
@@ -212,6 +213,7 @@ def drawn(axes: Axes) -> np.ndarray:
     return np.asarray(points[np.isfinite(points).all(axis=1)], float)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", NEVER_STICK)
 def test_the_response_fills_its_axes(name: str) -> None:
     """Slip rate, friction against time and against slip: what happens after a thousandth of the run takes over half the height."""

@@ -46,6 +46,7 @@ def test_a_new_figure_is_one_that_pyplot_shows(name: str) -> None:
     assert [pyplot.figure(number) for number in pyplot.get_fignums()] == [figure]
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", ONE_PANEL)
 def test_axes_of_the_user_are_drawn_in_and_returned(name: str) -> None:
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3))

@@ -45,6 +45,7 @@ def said_by(process: subprocess.Popen[str]) -> str:
     return process.stdout.readline().strip()
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ["run.nc", "folder"])
 def test_a_name_is_reserved_without_flock_until_its_process_ends(tmp_path: Path, name: str) -> None:
     (tmp_path / "folder").mkdir()

@@ -117,6 +117,7 @@ def inside(law: FrictionLaw, i: int, data: st.DataObject) -> tuple[float, float]
     return (bound, free) if law.knot_variable == "slip" else (free, bound)
 
 
+@pytest.mark.sampled(every=3)
 @KINDS
 @given(data=st.data())
 @quick
@@ -142,6 +143,7 @@ def test_friction_stays_in_its_range_is_continuous_at_knots_and_depends_on_what_
         assert law.piece_coefficient(i, *at) == pytest.approx(law.piece_coefficient(i + 1, *at), rel=0, abs=1e-12)
 
 
+@pytest.mark.sampled(every=2)
 @KINDS
 @given(data=st.data())
 @quick

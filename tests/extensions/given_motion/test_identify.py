@@ -39,6 +39,7 @@ def bristles(time: Any, rate: Any) -> Any:
     return 100.0 * (2e3 * z + 1.5 * (rate - 2e3 * abs(rate) * z / steady(rate)) + 2.0 * rate)
 
 
+@pytest.mark.slow
 def test_lugre_is_found_again_with_the_offset_of_the_sensor() -> None:
     time, rate = swung(1501, 1.5)
     force = bristles(time, rate) + 0.4 + 0.02 * np.random.default_rng(5).standard_normal(len(time))
@@ -55,6 +56,7 @@ def test_lugre_is_found_again_with_the_offset_of_the_sensor() -> None:
     assert np.sqrt(np.mean((run.traction(time) + found.values["record.offset"] - force) ** 2)) < 0.025
 
 
+@pytest.mark.slow
 def test_rate_and_state_is_found_from_velocity_steps_and_a_typed_law_alike() -> None:
     time = np.arange(0.0, 100.0, 0.1)
     rate = np.where((time // 25.0) % 2 == 0.0, 1e-6, 1e-5)

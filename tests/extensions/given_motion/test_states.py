@@ -57,6 +57,7 @@ def test_lugre_at_a_constant_slip_rate_relaxes_exponentially() -> None:
     np.testing.assert_allclose(run.traction(t), 100.0 * friction, rtol=0.0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_bristles_follow_many_reversals_as_scipy_does() -> None:
     law = ss.friction.LuGre(**LUGRE)
     run = ss.simulate(ss.MovedContact(law, ss.loading.Sinusoidal(2e-4, 1e-3, 0.5, 0.3), 100.0, initial_state=0.0), 2.0)
@@ -93,6 +94,7 @@ LAWS = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", LAWS)
 def test_states_along_random_motion_agree_with_scipy_at_a_tolerance_of_1e_12(name: str) -> None:
     """Slip rate and normal load of straight lines with jumps and turns between random points; the formulas are the law's own."""

@@ -134,6 +134,7 @@ def test_the_weight_on_the_bit_presses_the_bit_as_it_was_measured() -> None:
     assert found.model.parts[0].pressing.at([1.0, 13.0]) == pytest.approx([97e3 * 0.155, 1.1 * 97e3 * 0.155], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_weight_other_than_that_of_the_problem_is_told() -> None:
     given = LOG | {"SWOB (klbf)": np.full(TIME.size, 60e3 / KLBF)}
     found = ss.studies.infer(TRUE, given, ["static"], observe="surface_torque,drive_rate", starts=1)

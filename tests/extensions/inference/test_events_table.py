@@ -69,6 +69,7 @@ def distances(found: Any) -> list[float]:
     return [abs(found.table.loc[name].value - truth) / found.table.loc[name].uncertainty for name, truth in TRUTH.items()]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(3))
 def test_numbers_behind_a_table_of_events_are_found_within_their_errors(seed: int) -> None:
     found = fit(forces(seed))
@@ -108,6 +109,7 @@ def test_friction_needs_no_normal_force_and_cells_may_be_missing() -> None:
     assert "friction_peak has no number in 14 of 40 events" in found.notes
 
 
+@pytest.mark.slow
 def test_a_printed_table_is_read_with_its_title_and_units(command: Command, tmp_path: Path) -> None:
     path, table = tmp_path / "table2.csv", events(6)
     rows = [f"{i};{a:.2f};{b:.2f};{c:.6f};{d:.5f};" for i, (a, b, c, d) in enumerate(zip(*table.values(), strict=True))]

@@ -89,6 +89,7 @@ def _formulas() -> dict[str, Any]:
     }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", _formulas())
 @pytest.mark.parametrize("seed", range(3))
 def test_parameters_and_uncertainties_are_those_of_scipys_curve_fit(kind: str, seed: int) -> None:

@@ -32,6 +32,7 @@ def axis_file(path: Path, forward: ExponentialStribeck, backward: ExponentialStr
     return path
 
 
+@pytest.mark.slow
 def test_the_two_laws_of_an_axis_come_back(tmp_path: Path) -> None:
     """Parameters within three standard uncertainties, which are below 5 %; the mean difference of friction within three, too."""
     found = fit(
@@ -54,6 +55,7 @@ def test_the_two_laws_of_an_axis_come_back(tmp_path: Path) -> None:
     assert (np.diff(drawn["along"].values) >= 0.0).all()
 
 
+@pytest.mark.slow
 def test_one_law_is_found_where_both_directions_have_the_same(tmp_path: Path) -> None:
     points = Points.read(axis_file(tmp_path / "axis.csv", FORWARD, FORWARD, 30.0, 0.003), normal_force="30 N")
     found = fit(points, "exponential-stribeck")

@@ -123,6 +123,7 @@ def load_scenario_text(text):
     return read_scenario(text, "mine.toml")
 
 
+@pytest.mark.slow
 def test_noisy_points_are_announced_in_one_line_by_run_and_once_by_check(command, points):
     text = with_law("slab", RATE_LAW, ["x"])
     start, end = text.index("[friction]"), text.index("# The motion")

@@ -145,12 +145,14 @@ def test_starts_far_off_lead_to_the_same_numbers(start: dict[str, Any], starts: 
     check_holds(study, {name: TRUTH[name] for name in names})
 
 
+@pytest.mark.slow
 def test_outliers_are_borne_by_a_robust_loss() -> None:
     data = record()
     data.loc[::97, "mu"] += 0.02
     check_holds(inferred(data, TWO, loss="soft_l1"), {name: TRUTH[name] for name in TWO}, 2.0)
 
 
+@pytest.mark.slow
 def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
     data = record()
     moved = load_point(CLOCK, TIMES, RATES)
@@ -164,6 +166,7 @@ def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
     )
 
 
+@pytest.mark.slow
 def test_two_records_share_the_numbers() -> None:
     alone, both = inferred(free=TWO), inferred([record(seed=1), record(seed=2)], TWO)
     check_holds(both, {name: TRUTH[name] for name in TWO})
@@ -171,6 +174,7 @@ def test_two_records_share_the_numbers() -> None:
     assert ratio.to_numpy() == pytest.approx(math.sqrt(0.5), rel=0.1)
 
 
+@pytest.mark.slow
 def test_slip_can_be_fitted_beside_friction() -> None:
     data = record()
     spring = clean() * TRUE.normal / TRUE.stiffness  # slip is what the spring has not taken

@@ -182,6 +182,7 @@ def test_notes_before_the_headings_synonyms_and_units_are_understood(tmp_path: A
     assert read.clock == pytest.approx(CLOCK)
 
 
+@pytest.mark.slow
 def test_given_standard_deviations_weigh_and_are_doubted_if_too_small() -> None:
     options: dict[str, Any] = {"starts": 1}
     data = {**GOOD, "standard deviation": np.full(len(CLOCK), 1e-5)}

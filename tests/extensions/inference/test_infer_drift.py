@@ -45,6 +45,7 @@ def told() -> tuple[Inference, list[str]]:
     return ss.studies.infer(GUESS, FALLING.record(), FREE, starts=2, progress=said.append), said
 
 
+@pytest.mark.slow
 def test_a_drift_of_plateaus_is_free_by_itself_and_the_law_is_found() -> None:
     """Least squares without the drift is off by 5 to 16 %, the reference by three standard errors."""
     study, said = told()
@@ -111,6 +112,7 @@ def test_a_drift_that_the_fit_does_not_need_is_held_again(monkeypatch: pytest.Mo
     assert 0.61 < study.table.start["friction.reference"] < 0.63
 
 
+@pytest.mark.slow
 def test_after_its_time_a_search_gives_the_best_numbers_so_far_and_says_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_module("stickslip.extensions.inference.fit.progress"), "LOOKED", -1.0)
     said: list[str] = []

@@ -111,6 +111,7 @@ def test_mass_stiffness_and_friction_of_a_block_come_out_of_the_features_of_its_
     assert not study.features.missed.any()
 
 
+@pytest.mark.slow
 def test_chosen_features_must_be_as_many_as_the_numbers() -> None:
     data = block_record()
     assert set(block_fit(data, ["dynamic"], observe="drop,recurrence").model.sizes) == {"shear_force_drop", "recurrence"}
@@ -170,6 +171,7 @@ def levels_fit(free: Any, stiffness: float, events: int = 200, seed: int = 0, **
     return ss.studies.infer(guess, data, free, sensor="spring", by="features", starts=1)
 
 
+@pytest.mark.slow
 def test_a_run_that_misses_the_recurrence_is_not_said_to_follow_the_record() -> None:
     """The stiffness is fixed to 30 MN/m in place of 20 MN/m: no dynamic friction gives drop and time between events together."""
     study = levels_fit(["dynamic"], 3e7)

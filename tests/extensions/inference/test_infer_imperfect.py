@@ -35,6 +35,7 @@ def read(shear: Floats) -> dict[str, Floats]:
     return {"time (s)": CLOCK, "mu": shear}
 
 
+@pytest.mark.slow
 def test_the_answer_is_that_of_least_squares_also_where_the_loading_is_a_little_wrong() -> None:
     """A ramp of 55 ms is fitted as a step: noise estimated from the misfit made the answer worse than its own start."""
     ramp = PiecewiseLinear([0.0, 0.735, 0.79], [SLOW, SLOW, FAST])
@@ -73,6 +74,7 @@ def test_a_servo_is_the_exponential_approach_of_the_load_point() -> None:
     assert abs(np.trapezoid(apart, time)) < 1e-5 * 0.05 * FAST  # the load point comes to the same place
 
 
+@pytest.mark.slow
 def test_the_time_of_a_servo_is_found_and_the_law_with_it() -> None:
     after = 0.05 * np.linspace(0.0, 9.0, 300)
     pull = PiecewiseLinear([0.0, *(0.738 + after)], [SLOW, *servo(0.738 + after, 0.05)])

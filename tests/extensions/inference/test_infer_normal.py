@@ -52,6 +52,7 @@ def test_the_normal_force_of_a_record_is_followed_to_within_its_noise(record: di
     assert later(found, 85.0).at([0.0, 5.0]) == pytest.approx(found.at([85.0, 90.0]), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_numbers_come_back_within_their_intervals_if_the_run_is_pressed_as_the_record_was(record: dict[str, Any]) -> None:
     found = ss.studies.infer(BEGIN, record, FREE, normal="record", starts=1, begin_at=NEAR)
     for name, true in zip(FREE, TRUE, strict=True):
@@ -70,6 +71,7 @@ def test_under_a_constant_normal_force_the_run_misses_the_record_and_says_so(rec
     assert any(note.startswith("normal_force changes by ") and note.endswith("as it was measured") for note in found.notes)
 
 
+@pytest.mark.slow
 def test_a_normal_load_of_the_problem_is_followed_too(record: dict[str, Any]) -> None:
     found = ss.studies.infer(
         replace(TRUTH, friction=replace(LAW, a=0.0115)), record, FREE[:1], starts=1, begin_at={FREE[0]: 0.0115}

@@ -170,6 +170,7 @@ def test_friction_is_that_of_an_older_program(name: str) -> None:
     np.testing.assert_allclose(run.traction(record.clock) / 1e6, record.measured["friction"], rtol=0.0, atol=4 * PRINTED)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", PULLED)
 def test_the_law_of_an_older_program_comes_back(name: str) -> None:

@@ -47,6 +47,7 @@ def test_each_event_from_its_rest_is_found_from_numbers_with_which_nothing_slips
     assert any(one.startswith(said) and one.endswith("; also with the values given") for one in study.notes), study.notes
 
 
+@pytest.mark.slow
 def test_levels_slope_and_duration_of_events_are_where_a_search_begins() -> None:
     study = begun(guess(0.9, 0.3, 9e6, 7.0), stick_slip(12.0), ["static", "dynamic", "stiffness", "mass"], by="features")
     start = study.table.start

@@ -64,6 +64,7 @@ def test_only_jumps_soon_after_a_change_of_loading_belong_to_it() -> None:
     assert kept.height.tolist() == [0.0, 3.0, 4.0]
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("every", "within"), [(2, 0.004), (5, 0.008), (10, 0.008), (20, 0.012), (30, 0.02)])
 def test_the_load_point_shows_the_servo_that_rounds_its_corners_also_between_two_samples(every: int, within: float) -> None:
     made = Record.read(double_shear.record(every, 1, every))
@@ -150,6 +151,7 @@ def test_a_normal_load_jumps_where_it_is_said_to_between_two_samples() -> None:
 FREE = ["a", "b", "distance", "stiffness", "reference", "record.trend"]
 
 
+@pytest.mark.slow
 def test_steps_between_two_samples_are_said_and_the_numbers_are_those_of_the_truth() -> None:
     study = ss.studies.infer(double_shear.GUESS, double_shear.record(10, 3, 1), FREE, starts=1)
     for name, row in study.table.iterrows():

@@ -42,6 +42,7 @@ def channel(rng: np.random.Generator) -> Floats:
     return size * kinds[rng.integers(len(kinds))]
 
 
+@pytest.mark.slow
 def test_marks_in_runs_of_any_length_are_found_and_nothing_else() -> None:
     rng = np.random.default_rng(1)
     for _ in range(400):

@@ -223,6 +223,7 @@ def test_a_text_stops_at_the_most_rows_and_takes_no_more_memory_than_its_numbers
 HOLDS_UP = {"blanks": "a" + " " * 40_000 + "b (", "brackets": "(" * 40_000, "numbers": "col 1 " * 900, "micro": "µ" * 40_000}
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("line", HOLDS_UP.values(), ids=HOLDS_UP)
 def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
     """Each took from seconds to days as a heading, by the patterns that read it."""

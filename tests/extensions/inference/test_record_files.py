@@ -306,6 +306,7 @@ def long_text(kind: str) -> str:
     return head + "".join(rows) + "    -1\n"
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", ["lvm", "las", "uff"])
 def test_reading_takes_no_more_memory_than_a_few_times_the_numbers(kind: str) -> None:
     text, wanted = long_text(kind), ("time", "shear_force", "shear_stress", "load_point")
@@ -328,6 +329,7 @@ HEADS = {
 }
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     "line", [" " * 40_000, "." * 40_000, "a:" * 20_000, "-1 " * 13_000, "(" * 40_000, "9" * 40_000, "1e" * 20_000]
 )

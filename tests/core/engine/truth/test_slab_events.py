@@ -60,6 +60,7 @@ def load(contact: Contact, piece: Piece, row: int, theta: mpf) -> mpf:
     return e + (row - now) * contact.ramp
 
 
+@pytest.mark.slow
 def test_independent_phases_slip_in_the_same_round_trips() -> None:
     """2 000 phases one after the other, in double precision: at each the contact slips iff an event says so.
 

@@ -110,7 +110,7 @@ def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root
 
 
-@pytest.mark.sampled(every=len(DAMAGE) + 3)
+@pytest.mark.sampled(every=len(KINDS) * len(DAMAGE))
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: Path) -> None:
@@ -130,6 +130,7 @@ def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Pat
     assert files_in(root) == before
 
 
+@pytest.mark.slow
 def test_without_a_cache_folder_each_process_compiles_for_itself(script: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     loaded, folder, said = kept(script, tmp_path / "file")
@@ -138,6 +139,7 @@ def test_without_a_cache_folder_each_process_compiles_for_itself(script: Path, t
     assert (tmp_path / "file").read_text() == ""
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("names", "loaded"), [("keys", 4), ("compiled-*", 0)])
 def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault(

@@ -54,6 +54,7 @@ def test_nothing_is_missing_here() -> None:
     assert parts.OPTIONS["pipeline_class"] is parts.PartCompiler
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("what", MISSING)
 def test_what_is_missing_is_named_and_numba_is_used_plainly(what: str) -> None:
     spoil, reason = MISSING[what]

@@ -141,6 +141,7 @@ def damage(path: Path) -> None:
     path.write_bytes(content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :])
 
 
+@pytest.mark.slow
 def test_a_damaged_file_is_told_in_one_line_and_made_anew_with_the_same_bits(shipped: Path, tmp_path: Path, expected: str) -> None:
     damage(shipped / NAME / SMALL_FILE)
     told = f"stickslip: {shipped / NAME / SMALL_FILE} came with the package and is damaged: what it holds is made anew; pip install"
@@ -220,6 +221,7 @@ def test_what_came_serves_without_the_compiler(tmp_path: Path, expected: str) ->
     assert (printed(done), done.stderr) == (f"{expected} True\n", "")  # its name stands there, without a module
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("script", [NEW_LAW, pytest.param(SMALL, marks=pytest.mark.slow)], ids=["formula", "entry"])
 def test_two_processes_that_begin_at_once_on_an_empty_cache_get_the_same(script: str, tmp_path: Path) -> None:
     """A formula, whose code needs no numba, and an entry of the engine, which each of them compiles for some seconds."""

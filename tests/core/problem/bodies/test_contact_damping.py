@@ -55,7 +55,7 @@ def test_each_round_trip_changes_coulomb_slip_by_the_factor_1_less_2_z_over_z_pl
     assert float(energy.heat[0]) == pytest.approx(0.5e8 * R * float(rates.sum()), rel=1e-12)
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=10)
 @pytest.mark.parametrize("law", [WEAKENING, ROUGH, LAW], ids=["slip", "rate", "Coulomb"])
 @pytest.mark.parametrize("driver", [math.inf, 0.4 * Z], ids=["rigid", "leaky"])
 def test_the_method_of_steps_finds_the_same_motion(law: ss.friction.FrictionLaw, driver: float) -> None:
@@ -67,6 +67,7 @@ def test_the_method_of_steps_finds_the_same_motion(law: ss.friction.FrictionLaw,
     assert abs(run.slip(times) - slip).max() < 1e-9 * slip.max()
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("law", [WEAKENING, ROUGH], ids=["slip", "rate"])
 @pytest.mark.parametrize("driver", [math.inf, 0.4 * Z], ids=["rigid", "leaky"])
@@ -128,6 +129,7 @@ def test_rate_weakening_is_irregular_only_beyond_impedance_and_dashpot(body: Any
     assert "dashpot" not in plain.summary
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("make", [lambda one: one, layered], ids=["slab", "layer"])
 @pytest.mark.parametrize(
     ("driver", "taken"), [(math.inf, 0.0), (0.4 * Z, 0.4 * Z), (2.5 * Z, 0.4 * Z)], ids=["rigid", "soft", "hard"]

@@ -132,6 +132,7 @@ def test_steady_sliding_goes_on_with_drag() -> None:
     np.testing.assert_allclose(run.slip_rate(np.linspace(0.0, 20.0, 50)), 0.1, rtol=1e-9)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", SIDES)
 def test_rest_is_leapt_over_once_waves_have_died_against_drag(kind: str) -> None:
     body = with_drag(kind)
@@ -165,6 +166,7 @@ def test_layers_with_drag_resist_disturbances_as_waves_that_drag_slows() -> None
     np.testing.assert_allclose(above / below, Z * q / np.tanh(s * q * THICKNESS / SPEED), rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_drag_keeps_steady_sliding_stable_under_friction_that_falls_gently() -> None:
     body = with_drag("one")
     damping = body.equivalent_block().damping

@@ -28,7 +28,7 @@ def assert_same_inside(run: Any, slab: Any, x: Any, of_slab: Any) -> None:
         np.testing.assert_allclose(ours[name], known[name], rtol=1e-8, atol=share * size, err_msg=name)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("name", SHORT)
 def test_the_inside_of_layers_of_equal_impedance_is_that_of_one_slab(name: str) -> None:
     body, problem, duration = CASES[name]
@@ -70,7 +70,7 @@ def test_the_inside_of_two_equal_slabs_is_that_of_one(name: str, sides: str) -> 
         np.testing.assert_allclose(energy[name], of_slab[name], rtol=1e-8, atol=1e-9 * size, err_msg=name)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("law", [RATE_LAW, COULOMB])
 @pytest.mark.parametrize("driver", [np.inf, 4e6, 0.0])
 def test_velocity_and_stress_are_continuous_and_energies_balance(driver: float, law: Any) -> None:

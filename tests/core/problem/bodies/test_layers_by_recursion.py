@@ -65,7 +65,7 @@ def drawn(seed: int) -> tuple[Any, list[Chain], float, ss.Problem]:
     return body, chains, time, ss.Problem(body, law, pull_rate=pull, initial_excess=float(-draw.uniform(0.0, 1e4)))
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=33)
 @pytest.mark.parametrize("seed", range(30))
 def test_layers_drawn_at_random_move_as_their_waves_do(seed: int) -> None:
     body, chains, time, problem = drawn(seed)

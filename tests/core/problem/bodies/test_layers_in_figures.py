@@ -26,6 +26,7 @@ def pair(case: str) -> tuple[ss.Solution, ss.Solution]:
     return one, other
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("case", ["rate law", "contact mass", "fold and dead load"])
 def test_the_budget_of_events_is_that_of_a_uniform_slab_and_balances(case: str) -> None:
     """Every column, to 1e-9 of the heat, of the normal stress, or of the column; the balance of the events to 1e-12 of the heat."""

@@ -54,7 +54,7 @@ PULLS: dict[str, Any] = {
 }
 
 
-@pytest.mark.sampled(every=13)
+@pytest.mark.sampled(every=65)
 @pytest.mark.parametrize("shares", [(1.0,), (0.2, 0.8), (0.3, 0.4, 0.3)])
 @pytest.mark.parametrize("pull", PULLS)
 @pytest.mark.parametrize("name", CASES)
@@ -62,6 +62,7 @@ def test_layers_of_equal_impedance_are_one_slab(name: str, pull: str, shares: tu
     check_one_slab(*CASES[name], shares, pull_rate=PULLS[pull])
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ["gain", "all"])
 def test_layers_of_equal_impedance_are_one_slab_under_a_far_stress_of_its_own(name: str) -> None:
     check_one_slab(*CASES[name], (0.2, 0.8), pull_rate=0.03, far_stress=6.3e5)

@@ -101,6 +101,7 @@ def shown(opened: Shown) -> Iterator[Shown]:
     assert opened.watched.faults == []
 
 
+@pytest.mark.slow
 def test_nothing_plays_by_itself_where_less_motion_is_preferred(opened: Shown) -> None:
     """Before the page is touched by any other test."""
     opened.page.wait_for_timeout(100)
