@@ -14,16 +14,16 @@ Source: di Bernardo et al. 2008, Piecewise-smooth Dynamical Systems, section 2.5
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.engine import CompiledFormula, History, Positions, compile_formula
-from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, RATE_ROW, RunNumbers, pace_in_piece
+from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, LOAD_ROW, RATE_ROW, RunNumbers, pace_in_piece
 from stickslip.extensions.cycles.compiled.disturbances import grow
+from stickslip.extensions.cycles.compiled.places import write_values
 from stickslip.foundation.arrays import Floats, Floats1, Integers1
-from stickslip.foundation.kernels.lock import made_once
 from stickslip.foundation.kernels.uncompiled import lend_memory
 from stickslip.friction import FrictionLaw
 from stickslip.problem import Problem
@@ -44,7 +44,7 @@ class LawNumbers(NamedTuple):
     """What must live as long as the addresses."""
 
 
-@made_once(32)
+@lru_cache(32)
 def numbers_of_law(law: FrictionLaw) -> LawNumbers:
     """Return a law for compiled code; its formulas are those that a run has compiled."""
     owners = []
@@ -85,8 +85,11 @@ class RigidMotion:
 
 
 def values_at(history: History, at: Positions) -> Floats:
-    """Return load, slip rate and states at positions, each in a row."""
-    return np.array([history.excess(at) + history.problem.strength, history.rate(at), *history.states(at)])
+    """Return load, slip rate and states at positions inside recorded pieces, each in a row."""
+    found = np.empty((RigidMotion(history.problem).size, len(at.piece)))
+    write_values(*history.store, np.ascontiguousarray(at.piece), np.ascontiguousarray(at.xi), found)
+    found[LOAD_ROW] += history.problem.strength
+    return found
 
 
 def pace_at(history: History, piece: int, place: float) -> Floats:
