@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.section import Return, Section, coordinates, crossings, onsets
+from stickslip.extensions.cycles.section import Crossings, Return, Section, coordinates, crossings, onsets
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -26,6 +26,8 @@ MOST_MEETINGS = 16
 """Largest number of meetings with the section in one period (1) that is looked for."""
 CLOSES = 1e-2
 """A run that comes back this close (1, share of its extent) is taken to close there."""
+SETTLED = 0.25
+"""A cycle is that to which a run settles if it is no farther (1, share of its extent) from the end of the run."""
 INSTANT = 1e-6
 """A rest shorter than this share (1) of the period is an instant."""
 STEADY_SHARE = 1e-9
@@ -144,6 +146,26 @@ def _checked(orbit: Orbit) -> Orbit:
     return orbit
 
 
+def places_of(history: History, met: Crossings) -> Floats:
+    """Return load and states where a run passes the pull rate, each in a row."""
+    return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset=False)
+
+
+def closed_if_settled(section: Section, history: History, met: Crossings) -> Orbit | None:
+    """Return the cycle next to the last passages of a run, if these are close to each other; None if none is near."""
+    places, last = places_of(history, met), int(met.piece[-1])
+    pieces = np.repeat(np.arange(int(met.piece[-3]), last + 1), 2)
+    extent = np.ptp(coordinates(values_at(history, Positions.inside(pieces, np.tile([0.0, 1.0], len(pieces) // 2))), False), axis=1)
+    every = _meetings(places, extent)
+    if not every:
+        return None
+    try:
+        found = closed(section, places[:, -1], float(met.time[-1] - met.time[-1 - every]))
+    except InputError:
+        return None
+    return found if np.all(np.abs(found.place - places[:, -1]) <= SETTLED * found.extent) else None
+
+
 def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
     """Return the cycle near the end of a run. Raises InputError if there is none."""
     at_onset = len(onsets(history).time) > 1 and not problem.friction.states
@@ -155,18 +177,17 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
         )
     if at_onset:
         return closed(Section(problem, at_onset, rtol), np.zeros(0), float(met.time[-1] - met.time[-2]))
-    places = coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
-    every = _meetings(history, places)
+    places = places_of(history, met)
+    every = _meetings(places, extent_of(history, False, len(history) - 1)) or 1
     found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
     if problem.friction.states or not found.sticks:
         return found
     return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
 
 
-def _meetings(history: History, places: Floats) -> int:
-    """Return after how many meetings with the section the run closes, 1 if it does so nowhere."""
-    extent = extent_of(history, False, len(history) - 1)
+def _meetings(places: Floats, extent: Floats) -> int:
+    """Return after how many meetings with the section the run closes, 0 if it does so nowhere."""
     for every in range(1, min(MOST_MEETINGS, places.shape[1] - 1) + 1):
         if np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= CLOSES * extent):
             return every
-    return 1
+    return 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -10,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.engine import History, Positions
+from stickslip.extensions.cycles.compiled.places import MOST_IN_PIECE, find_passages
 from stickslip.extensions.cycles.tangent import RATE_ROW, Tangent, pace_at, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -18,8 +18,6 @@ from stickslip.problem import INITIAL_STATES, Problem
 from stickslip.run import uninterrupted
 from stickslip.run.simulate import simulate
 
-SAMPLES = np.linspace(0.0, 1.0, 17)
-"""Places (1) in each piece between which a passage is looked for."""
 SPARE_TIME, MOST_TRIES = 1.1, 6
 """A run to a return lasts longer than the guessed period by this factor (1), and is doubled so often if it has no return."""
 AT_START = 1e-9
@@ -135,39 +133,10 @@ def onsets(history: History) -> Crossings:
 
 def passages(history: History) -> Crossings:
     """Return the moments when the slip rate passes the pull rate upwards, to rounding."""
-    pull, count = history.problem.first_pull_rate, len(history)
-    piece, xi = np.repeat(np.arange(count), len(SAMPLES)), np.tile(SAMPLES, count)
-    below = history.rate(Positions.inside(piece, xi)) < pull
-    passes = np.flatnonzero(below[:-1] & ~below[1:])
-    pieces, places, times = [], [], []
-    for n in passes.tolist():
-        same = piece[n] == piece[n + 1]
-        row, low, high = (int(piece[n]), xi[n], xi[n + 1]) if same else (int(piece[n + 1]), 0.0, 0.0)
-        place = _root(history.store.rate[row], pull, float(low), float(high)) if same else 0.0
-        time = float(history.start[row] + place * (history.store.speed[row] + place * history.store.bend[row]))
-        if time > AT_START * history.duration:
-            pieces.append(row)
-            places.append(place)
-            times.append(time)
-    return Crossings(np.array(pieces, np.intp), np.array(places), np.array(times))
-
-
-def _root(series: Floats, value: float, low: float, high: float) -> float:
-    """Return the place, between two others, where a polynomial passes a value upwards, to rounding."""
-    terms = series[::-1].tolist()
-    place = 0.5 * (low + high)
-    for _ in range(200):
-        found, slope = 0.0, 0.0
-        for term in terms:
-            slope = slope * place + found
-            found = found * place + term
-        found -= value
-        low, high = (low, place) if found >= 0.0 else (place, high)
-        step = place - found / slope if slope > 0.0 else math.nan
-        new = step if low < step < high else 0.5 * (low + high)
-        if new == place or high - low <= 4e-16:
-            break
-        if abs(new - place) <= 1e-16:
-            return new
-        place = new
-    return place
+    store, most = history.store, MOST_IN_PIECE * len(history)
+    pieces, places = np.empty(most, np.int64), np.empty(most)
+    count = find_passages(store.pieces, history.problem.first_pull_rate, pieces, places)
+    pieces, places = pieces[:count], places[:count]
+    times = history.start[pieces] + places * (store.speed[pieces] + places * store.bend[pieces])
+    later = times > AT_START * history.duration
+    return Crossings(pieces[later], places[later], times[later])
