@@ -80,7 +80,7 @@ def test_a_free_oscillation_turns_disturbances_by_its_phase_and_a_rest_ends_that
 
 
 def test_two_tables_of_radau_integrate_polynomials_exactly() -> None:
-    """Coefficients give the integrals of powers up to the number of points less one, to 1e-14; weights up to twice that less two."""
+    """Coefficients give the integrals of powers up to the number of points, to 1e-14; weights up to twice as many."""
     for method, stages in enumerate(STAGES):
         places, coefficients = PLACES[method, :stages], COEFFICIENTS[method, :stages, :stages]
         for power in range(stages):

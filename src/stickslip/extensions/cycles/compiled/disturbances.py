@@ -192,10 +192,11 @@ def pass_event(run: RunNumbers, piece: int, now: Floats) -> None:
 @kernel
 def is_rough(used: Floats, compared: Floats, largest: Floats, size: int) -> bool:
     """Return True if two methods differ by more than is allowed; `largest` has the sizes so far."""
+    rough = 0
     for n in range(size):
         if not abs(used[n] - compared[n]) <= TOLERANCE * max(largest[n], abs(used[n])):
-            return True
-    return False
+            rough += 1
+    return rough > 0
 
 
 @kernel
