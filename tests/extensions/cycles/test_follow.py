@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 import math
+from typing import Any
 
+import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stickslip as ss
 from tests.extensions.cycles.problems import DAMPING, DISTANCE, FALL, HEAVY, NORMAL, OVER, SLOW, A, B, rate_and_state, stribeck
@@ -122,3 +126,56 @@ def test_a_branch_goes_around_a_fold_of_cycles_and_comes_back_unstable() -> None
     assert branch.edges[1].value == pytest.approx(0.0, abs=1e-11)
     stable = [one.stable for one in branch.points if not one.edge]
     assert (stable[0], stable[-1]) == (True, False)
+
+
+FREQUENCY, COUPLED = 20.0, 0.01
+
+
+def two_frequencies(zeta: float, coupled: float) -> ss.Problem:
+    """Return the block of `swinging` with two states that swing by themselves, damped by `zeta`, and change friction a little."""
+    law = ss.friction.FromExpression(
+        "0.5 + s1*(v/v0-1) - s3*(v/v0-1)**3 + s5*(v/v0-1)**5 + coupled*y",
+        {"s1": 0.02, "s3": 0.2, "s5": 0.4, "v0": "1 m/s", "coupled": coupled, "zeta": zeta, "omega": f"{FREQUENCY} 1/s"},
+        evolution="dy/dt = omega*z; dz/dt = -omega*(y + zeta*z) + omega*(v/v0 - 1)",
+    )
+    states = {"initial_state": 0.5, "initial_second_state": 0.1}
+    start = {"initial_rate": 1.0, "initial_load": 0.5 * NORMAL + 0.85 * 1e3**0.5}
+    return ss.Problem(ss.SpringBlock(1.0, 1e3, NORMAL), law, pull_rate=1.0, **start, **states)
+
+
+def own_monodromy(zeta: float, start: Any, period: float) -> Any:
+    """Return end and matrix of disturbances of load, slip rate and two states after a time, by DOP853."""
+
+    def paces(_: float, y: Any) -> Any:
+        (load, rate, first, second), a = y[:4], y[1] - 1.0
+        mu, slope = 0.5 + 0.02 * a - 0.2 * a**3 + 0.4 * a**5 + COUPLED * first, 0.02 - 0.6 * a**2 + 2.0 * a**4
+        own = [-1e3 * a, load - NORMAL * mu, FREQUENCY * second, -FREQUENCY * (first + zeta * second) + FREQUENCY * a]
+        slopes = np.zeros((4, 4))
+        slopes[0, 1], slopes[1, :3], slopes[2, 3] = -1e3, [1.0, -NORMAL * slope, -NORMAL * COUPLED], FREQUENCY
+        slopes[3, 1:] = FREQUENCY, -FREQUENCY, -FREQUENCY * zeta
+        return np.concatenate([own, (slopes @ y[4:].reshape(4, 4)).ravel()])
+
+    end = solve_ivp(paces, (0.0, period), [*start, *np.eye(4).ravel()], method="DOP853", rtol=1e-13, atol=1e-12).y[:, -1]
+    return end[:4], end[4:].reshape(4, 4)
+
+
+@pytest.mark.parametrize("coupled", [0.0, COUPLED])
+def test_a_pair_of_multipliers_leaves_the_unit_circle_at_an_edge(coupled: float) -> None:
+    """Without coupling exp(-(zeta omega -+ i omega root(4 - zeta^2)) T / 2), and the edge at 0 to 1e-12; with it |.| = 1 to 1e-8."""
+    begin = ss.studies.cycle(two_frequencies(0.002, coupled), near=1.0)
+    branch = ss.studies.follow(begin, "friction.parameters.zeta", to=-0.006, steps=1)
+    assert [edge.name for edge in branch.edges] == ["Neimark-Sacker"]
+    edge = branch.edges[0]
+    stable = {one.value > edge.value: one.stable for one in branch.points if not one.edge}
+    assert stable == {True: True, False: False}
+    if not coupled:
+        turns = cmath.exp(-(0.002 - 1j * math.sqrt(4.0 - 0.002**2)) * FREQUENCY * begin.period / 2.0)
+        assert min(abs(begin.multipliers - turns)) == pytest.approx(0.0, abs=1e-9)
+        assert edge.value == pytest.approx(0.0, abs=1e-12)
+        return
+    start = [edge.orbit.place[0], 1.0, *edge.orbit.place[1:]]
+    end, matrix = own_monodromy(edge.value, start, edge.orbit.period)
+    assert end == pytest.approx(start, rel=1e-9, abs=1e-9)
+    pair = [one for one in np.linalg.eigvals(matrix) if one.imag != 0.0]
+    assert np.abs(pair) == pytest.approx(np.ones(2), abs=1e-8)
+    assert abs(edge.orbit.multipliers[0]) == pytest.approx(1.0, abs=1e-10)

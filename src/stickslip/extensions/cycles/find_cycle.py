@@ -136,12 +136,11 @@ def settled(problem: Problem, wait: float, rtol: float, tell: TextProgress) -> O
             return None
         tell(f"run of {brief(wait + lasts, 's')}")
         met, lasts = passages(run.history), 2.0 * lasts
-        if len(met.time) < 3:
-            continue
-        found = closed_if_settled(section, run.history, met)
+        found = closed_if_settled(section, run.history, met) if len(met.time) > 2 else None
         if found is not None and is_stable(found.multipliers):
             return found
-        start, wait = section.start_at(places_of(run.history, met)[:, -1]), 0.0
+        if len(met.time):
+            start, wait = section.start_at(places_of(run.history, met)[:, -1]), 0.0
     return None
 
 

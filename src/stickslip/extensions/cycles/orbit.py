@@ -26,6 +26,8 @@ MOST_MEETINGS = 16
 """Largest number of meetings with the section in one period (1) that is looked for."""
 CLOSES = 1e-2
 """A run that comes back this close (1, share of its extent) is taken to close there."""
+NEARLY_CLOSES = 0.03
+"""From this close (1, share of its extent) Newton's iteration is tried while a run settles."""
 SETTLED = 0.25
 """A cycle is that to which a run settles if it is no farther (1, share of its extent) from the end of the run."""
 INSTANT = 1e-6
@@ -156,7 +158,7 @@ def closed_if_settled(section: Section, history: History, met: Crossings) -> Orb
     places, last = places_of(history, met), int(met.piece[-1])
     pieces = np.repeat(np.arange(int(met.piece[-3]), last + 1), 2)
     extent = np.ptp(coordinates(values_at(history, Positions.inside(pieces, np.tile([0.0, 1.0], len(pieces) // 2))), False), axis=1)
-    every = _meetings(places, extent)
+    every = _meetings(places, extent, NEARLY_CLOSES)
     if not every:
         return None
     try:
@@ -178,16 +180,16 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
     if at_onset:
         return closed(Section(problem, at_onset, rtol), np.zeros(0), float(met.time[-1] - met.time[-2]))
     places = places_of(history, met)
-    every = _meetings(places, extent_of(history, False, len(history) - 1)) or 1
+    every = _meetings(places, extent_of(history, False, len(history) - 1), CLOSES) or 1
     found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
     if problem.friction.states or not found.sticks:
         return found
     return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
 
 
-def _meetings(places: Floats, extent: Floats) -> int:
-    """Return after how many meetings with the section the run closes, 0 if it does so nowhere."""
+def _meetings(places: Floats, extent: Floats, share: float) -> int:
+    """Return after how many meetings with the section the run closes to a share (1) of its extent, 0 if it does so nowhere."""
     for every in range(1, min(MOST_MEETINGS, places.shape[1] - 1) + 1):
-        if np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= CLOSES * extent):
+        if np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= share * extent):
             return every
     return 0

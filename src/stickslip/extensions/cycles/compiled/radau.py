@@ -34,7 +34,7 @@ def _coefficients(places: Floats) -> Floats:
     integrals[:, 0] = places
     for k in range(1, count):
         integrals[:, k] = (known[:, k + 1] - known[:, k - 1]) / (2.0 * (2 * k + 1))
-    return np.linalg.solve(known[:, :count].T, integrals.T).T
+    return np.asarray(np.linalg.solve(known[:, :count].T, integrals.T).T)
 
 
 PLACES = np.zeros((len(STAGES), MOST_STAGES))
