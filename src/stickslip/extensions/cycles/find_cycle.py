@@ -7,19 +7,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from stickslip.extensions.cycles.asked import CYCLE_KINDS
+from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
-from stickslip.extensions.cycles.orbit import Orbit, near_end
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem import INITIAL_STATES, LoadingHistory, Problem
-from stickslip.problem.bodies import as_on_spring
+from stickslip.problem import INITIAL_STATES, TOO_MANY, Problem
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import MAX_PIECES
 
 NEAR = Quantity("s", "duration of the run at whose end a cycle is looked for", above=0)
 TOLERANCE_OF_RUNS = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-6)
@@ -27,8 +26,6 @@ RTOL = 1e-12
 """Default tolerance of the runs (1)."""
 FIRST_NEAR, LONGER, ATTEMPTS = 4.0, 8.0, 4
 """Without a duration: the first run lasts so many times what a cycle may take, the next longer by a factor, up to so many runs."""
-WHOSE = {"rigid": "", "belt": "", "loop": "body in a position loop", "uniform": "slab or string", "layered": "body of layers"}
-"""Kinds of bodies, with what is said of those whose cycles are not found; on a belt a body moves as one whose spring is pulled."""
 INSTEAD = "a run and its events say how it moves, and find where that changes"
 """What can be done where no cycle is looked for."""
 
@@ -111,17 +108,19 @@ def time_of_cycle(problem: Problem) -> float:
     return problem.body.round_trip_time + 2.0 * falls / (problem.body.stiffness * problem.first_pull_rate)
 
 
-def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> Orbit:
+def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> FoundCycle:
     """Return the cycle near the end of a run, which is made longer where none is found. Raises InputError."""
+    kind = CYCLE_KINDS[problem.body.structure]
     for attempt in range(attempts):
-        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
+        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=kind.most_pieces))
         tell(f"run of {brief(lasts, 's')}")
-        if not run.status.ok:
+        full = not run.status.ok
+        if full and not (kind.may_be_cut and run.status.name == TOO_MANY):
             raise InputError(f"cycle: the run at whose end a cycle is looked for did not reach it: {run.status}")
         try:
-            return near_end(run.history, problem, rtol)
+            return kind.near_end(run.history, problem, rtol)
         except InputError:
-            if attempt == attempts - 1:
+            if attempt == attempts - 1 or full:
                 raise
         lasts = max(LONGER * lasts, FIRST_NEAR * time_of_cycle(problem))
     raise AssertionError("there is at least one attempt")
@@ -129,22 +128,7 @@ def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: 
 
 def check_can_be_followed(problem: Problem, who: str) -> None:
     """Refuse a problem whose cycles are not looked for. Raises InputError, which begins with `who`."""
-    body, law = problem.body, problem.friction
-    name = type(law).__name__
-    why = ""
-    if whose := WHOSE[body.structure]:
-        why = f"cycles are found of rigid bodies on a spring, and this is a {whose}"
-    elif body.is_free:
-        why = "without a spring nothing brings the body back"
-    elif as_on_spring(body).has_stops:
-        why = "cycles against hard stops are not found"
-    elif any(one is not None for one in (problem.ground_velocity, problem.ground_acceleration, problem.force, problem.normal_load)):
-        why = "what pulls and presses must be steady: there is moving ground, a force, or a normal load that varies"
-    elif isinstance(problem.pull_rate, LoadingHistory):
-        why = "the pull rate must be a number, and it varies in time"
-    elif law.depends_on_slip and (law.memory == "all" or law.states):
-        why = f"under {name} friction changes with slip, so that no motion with a net slip repeats itself"
-    if why:
+    if why := CYCLE_KINDS[problem.body.structure].refusal(problem):
         raise InputError(f"{who}: {why}; {INSTEAD}")
     if not problem.first_pull_rate > 0.0 or not math.isfinite(problem.first_pull_rate):
         raise InputError(f"{who}: pull_rate must be above 0, got {problem.first_pull_rate:g} {problem.unit_of('pull_rate')}")

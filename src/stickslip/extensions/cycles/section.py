@@ -48,6 +48,10 @@ class Return:
     piece: int
     place: float
     section: Section
+    first: int = 0
+    """The first piece of the history that belongs to it."""
+    begin: float = 0.0
+    """When it starts in its history (s)."""
 
     @property
     def missed(self) -> Floats:
@@ -133,9 +137,9 @@ def onsets(history: History) -> Crossings:
     return Crossings(found - 1, np.ones(len(found)), history.start[found])
 
 
-def passages(history: History) -> Crossings:
-    """Return the moments when the slip rate passes the pull rate upwards, to rounding."""
-    pull, count = history.problem.first_pull_rate, len(history)
+def passages(history: History, rate: float | None = None) -> Crossings:
+    """Return the moments when the slip rate passes a rate (m/s), by default the pull rate, upwards, to rounding."""
+    pull, count = history.problem.first_pull_rate if rate is None else rate, len(history)
     piece, xi = np.repeat(np.arange(count), len(SAMPLES)), np.tile(SAMPLES, count)
     below = history.rate(Positions.inside(piece, xi)) < pull
     passes = np.flatnonzero(below[:-1] & ~below[1:])
