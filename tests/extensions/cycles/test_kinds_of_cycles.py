@@ -95,7 +95,7 @@ def test_static_friction_that_is_no_larger_than_dynamic_gives_no_multiplier() ->
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)}, "slab or string"),
+        ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)}, "each moment of the round trip"),
         ({"body": ss.SpringBlock(MASS, STIFFNESS, NORMAL, stop_ahead=1.0)}, "hard stops"),
         ({"body": ss.SpringBlock(MASS, 0.0, NORMAL, driver_damping=1.0)}, "spring"),
         ({"friction": F.SinusoidalSlip(1.0, 0.5, 5.0)}, "changes with slip"),

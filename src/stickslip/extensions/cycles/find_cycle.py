@@ -7,31 +7,26 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stickslip.extensions.cycles.limit_cycle import LimitCycle, is_stable
-from stickslip.extensions.cycles.orbit import Orbit, closed_if_settled, near_end, places_of
-from stickslip.extensions.cycles.section import Section, passages
+from stickslip.extensions.cycles.asked import CYCLE_KINDS
+from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
+from stickslip.extensions.cycles.settled import FIRST_NEAR, time_of_cycle
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem import INITIAL_STATES, LoadingHistory, Problem
-from stickslip.problem.bodies import as_on_spring
+from stickslip.problem import INITIAL_STATES, TOO_MANY, Problem
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import MAX_PIECES
 
 NEAR = Quantity("s", "duration of the run at whose end a cycle is looked for", above=0)
 TOLERANCE_OF_RUNS = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-6)
 RTOL = 1e-12
 """Default tolerance of the runs (1)."""
-FIRST_NEAR, LONGER, ATTEMPTS = 4.0, 8.0, 4
-"""Without a duration: the first run lasts so many times what a cycle may take, the next longer by a factor, up to so many runs."""
-PARTS = 4
-"""Largest number of parts (1) of a run that is to settle; each lasts twice as long as the one before it."""
-WHOSE = {"rigid": "", "belt": "", "loop": "body in a position loop", "uniform": "slab or string", "layered": "body of layers"}
-"""Kinds of bodies, with what is said of those whose cycles are not found; on a belt a body moves as one whose spring is pulled."""
+LONGER, ATTEMPTS = 8.0, 4
+"""Without a duration: by what factor the next run is longer (1), and largest number of runs."""
 INSTEAD = "a run and its events say how it moves, and find where that changes"
 """What can be done where no cycle is looked for."""
 
@@ -91,7 +86,8 @@ def cycle(
     first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
         begin = without_load(scenario.problem)
-        early = settled(begin, _time_to_load(scenario.problem, begin), rtol, tell) if near is None else None
+        kind, wait = CYCLE_KINDS[begin.body.structure], _time_to_load(scenario.problem, begin)
+        early = kind.settled(begin, wait, rtol, tell) if near is None else None
         return LimitCycle(early or _searched(begin, first, attempts, rtol, tell), scenario)
 
 
@@ -110,51 +106,24 @@ def without_load(problem: Problem) -> Problem:
     return replace(problem, initial_rate=None, initial_load=0.0, **states)
 
 
-def time_of_cycle(problem: Problem) -> float:
-    """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
-    falls = problem.normal * problem.friction.variation
-    return problem.body.round_trip_time + 2.0 * falls / (problem.body.stiffness * problem.first_pull_rate)
-
-
 def _time_to_load(problem: Problem, begin: Problem) -> float:
     """Return how long (s) the spring is pulled until a problem that begins without load has that of steady sliding."""
     return (problem.load - begin.load) / (problem.body.stiffness * problem.first_pull_rate) if begin is not problem else 0.0
 
 
-def settled(problem: Problem, wait: float, rtol: float, tell: TextProgress) -> Orbit | None:
-    """Return the stable cycle to which a run under a law with states settles, as soon as it has; None if it takes long.
-
-    The run is made in parts, each from the last passage of the one before it, until two passages in it are close to each other, and
-    Newton's iteration leads from there to a stable cycle next to the run. `wait` is the time (s) before the motion begins.
-    """
-    if not problem.friction.states:
-        return None
-    section, start, lasts = Section(problem, at_onset=False, rtol=rtol), problem, FIRST_NEAR * time_of_cycle(problem)
-    for _ in range(PARTS):
-        run = uninterrupted(simulate(start, wait + lasts, rtol, max_pieces=MAX_PIECES))
-        if not run.status.ok:
-            return None
-        tell(f"run of {brief(wait + lasts, 's')}")
-        met, lasts = passages(run.history), 2.0 * lasts
-        found = closed_if_settled(section, run.history, met) if len(met.time) > 2 else None
-        if found is not None and is_stable(found.multipliers):
-            return found
-        if len(met.time):
-            start, wait = section.start_at(places_of(run.history, met)[:, -1]), 0.0
-    return None
-
-
-def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> Orbit:
+def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> FoundCycle:
     """Return the cycle near the end of a run, which is made longer where none is found. Raises InputError."""
+    kind = CYCLE_KINDS[problem.body.structure]
     for attempt in range(attempts):
-        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
+        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=kind.most_pieces))
         tell(f"run of {brief(lasts, 's')}")
-        if not run.status.ok:
+        full = not run.status.ok
+        if full and not (kind.may_be_cut and run.status.name == TOO_MANY):
             raise InputError(f"cycle: the run at whose end a cycle is looked for did not reach it: {run.status}")
         try:
-            return near_end(run.history, problem, rtol)
+            return kind.near_end(run.history, problem, rtol)
         except InputError:
-            if attempt == attempts - 1:
+            if attempt == attempts - 1 or full:
                 raise
         lasts = max(LONGER * lasts, FIRST_NEAR * time_of_cycle(problem))
     raise AssertionError("there is at least one attempt")
@@ -162,22 +131,7 @@ def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: 
 
 def check_can_be_followed(problem: Problem, who: str) -> None:
     """Refuse a problem whose cycles are not looked for. Raises InputError, which begins with `who`."""
-    body, law = problem.body, problem.friction
-    name = type(law).__name__
-    why = ""
-    if whose := WHOSE[body.structure]:
-        why = f"cycles are found of rigid bodies on a spring, and this is a {whose}"
-    elif body.is_free:
-        why = "without a spring nothing brings the body back"
-    elif as_on_spring(body).has_stops:
-        why = "cycles against hard stops are not found"
-    elif any(one is not None for one in (problem.ground_velocity, problem.ground_acceleration, problem.force, problem.normal_load)):
-        why = "what pulls and presses must be steady: there is moving ground, a force, or a normal load that varies"
-    elif isinstance(problem.pull_rate, LoadingHistory):
-        why = "the pull rate must be a number, and it varies in time"
-    elif law.depends_on_slip and (law.memory == "all" or law.states):
-        why = f"under {name} friction changes with slip, so that no motion with a net slip repeats itself"
-    if why:
+    if why := CYCLE_KINDS[problem.body.structure].refusal(problem):
         raise InputError(f"{who}: {why}; {INSTEAD}")
     if not problem.first_pull_rate > 0.0 or not math.isfinite(problem.first_pull_rate):
         raise InputError(f"{who}: pull_rate must be above 0, got {problem.first_pull_rate:g} {problem.unit_of('pull_rate')}")

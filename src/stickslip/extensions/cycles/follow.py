@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from stickslip.engine import Positions
+from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
 from stickslip.extensions.cycles.edges import (
     NOT_FOUND,
@@ -20,7 +21,7 @@ from stickslip.extensions.cycles.edges import (
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.orbit import extent_of
-from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch, path_of
+from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.section import coordinates, passages
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arguments import for_users
@@ -144,7 +145,7 @@ class _Following:
     def run(self) -> None:
         """Follow all parts of the branch."""
         orbit = self.cycle.orbit
-        path = path_of(orbit, self.cycle.scenario, self.parameter, self.span)
+        path = CYCLE_KINDS[self.cycle.problem.body.structure].path(orbit, self.cycle.scenario, self.parameter, self.span)
         start = path.at_value(self.ends[0], orbit.place, orbit.period)
         if start.way[-1] * (self.ends[1] - self.ends[0]) < 0.0:
             start = replace(start, way=-start.way)
@@ -224,7 +225,7 @@ class _Following:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span
             edge, last = loss_of_stick(path, now, float(beyond))
             self._edge(edge)
-            return self._without_rest(path, edge, last)
+            return self._without_rest(path, edge, last) if path.joins else None
         small = amplitudes[-1] < 0.05 * now.orbit.section.problem.first_pull_rate
         if len(values) > 1 and small and amplitudes[-1] < amplitudes[-2]:
             found = end_in_steady_sliding(path, np.array(values), np.array(amplitudes))
@@ -235,7 +236,7 @@ class _Following:
             touched = first_stick(path, now)
             if touched is not None:
                 self._edge(touched[0])
-                return self._with_rest(path, *touched)
+                return self._with_rest(path, *touched) if path.joins else None
         self._edge(CycleEdge(NOT_FOUND, now.value, now.orbit))
         return None
 

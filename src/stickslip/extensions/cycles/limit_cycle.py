@@ -1,4 +1,4 @@
-"""A periodic motion of a rigid body: the result of `ss.studies.cycle`."""
+"""A periodic motion: the result of `ss.studies.cycle`."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import Measures, measures_of
-from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import Scenario
-from stickslip.run import Study, uninterrupted
-from stickslip.run.simulate import simulate
+from stickslip.run import Study
 from stickslip.solution import Solution
 
 if TYPE_CHECKING:
@@ -57,19 +56,27 @@ class LimitCycle(Study):
     amplitude (half of the difference between the two rates), stable, and the multipliers with their imaginary parts, in SI.
     """
 
-    orbit: Orbit = field(compare=False)
+    orbit: FoundCycle = field(compare=False)
     scenario: Scenario = field(compare=False)
     """The scenario whose problem it solves, without its start."""
 
     @property
     def problem(self) -> Problem:
-        """The problem that starts on the cycle, where it meets the section."""
-        return self.orbit.section.start_at(self.orbit.place)
+        """The problem that starts on the cycle, where it meets the section; of a body with waves the problem itself.
+
+        No number of a problem says which waves are in a body at the start.
+        """
+        return self.orbit.problem_on_it(self.scenario.problem)
 
     @cached_property
     def run(self) -> Solution:
-        """The run of one period."""
-        return uninterrupted(simulate(self.problem, self.period, self.orbit.section.rtol))
+        """The run of one period, from `begin` on."""
+        return self.orbit.run_of_it()
+
+    @property
+    def begin(self) -> float:
+        """When the period begins in `run` (s): 0, or after a round trip at rest that holds the waves in the body."""
+        return self.orbit.closed.begin
 
     @cached_property
     def measures(self) -> Measures:
@@ -157,7 +164,7 @@ class LimitCycle(Study):
         largest = self.multipliers[0]
         if self.orbit.grazes:
             return "neither stable nor unstable: the contact rests for an instant only, and no multiplier holds there"
-        if self.orbit.section.at_onset:
+        if self.orbit.forgets_all:
             return "stable: each rest ends all disturbances, because only the load is left then (multiplier 0, exactly)"
         size = abs(complex(largest))
         how = f"multiplies a small disturbance by up to {brief(size, '')}"
@@ -171,15 +178,7 @@ class LimitCycle(Study):
     @property
     def certainty_text(self) -> str:
         """Say in one sentence what is known of the error of the period."""
-        orbit, rtol = self.orbit, self.orbit.section.rtol
-        if not len(orbit.place):
-            return f"measured, from onset to onset in a run with rtol {rtol:g}, which closes exactly"
-        missed = float(np.max(np.abs(orbit.closed.missed) / orbit.extent))
-        return (
-            f"measured, not proven: after {orbit.iterations} runs of one period (rtol {rtol:g}) the run misses its start by"
-            f" {missed:.1g} of the extent of the cycle, and the last step of Newton's iteration changed the period by"
-            f" {brief(orbit.change, 's', 2)}"
-        )
+        return self.orbit.certainty
 
     def _about(self) -> Iterable[str]:
         return tuple(self._sentences())

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.orbit import Orbit
+from stickslip.extensions.cycles.found import ClosedRun, FoundCycle
 from stickslip.foundation.arrays import Floats
 
 FINE_PLACES = np.linspace(0.0, 1.0, 33)
@@ -42,57 +42,59 @@ class Measures(NamedTuple):
         return 0.5 * (self.greatest_rate - self.least_rate)
 
 
-def measures_of(orbit: Orbit) -> Measures:
+def measures_of(orbit: FoundCycle) -> Measures:
     """Return the numbers of a cycle, from its run."""
     end, history = orbit.closed, orbit.closed.history
-    count = end.piece + 1
-    ends = np.append(np.ones(count - 1), end.place)
-    rates = _extremes(history, ends, History.rate)
-    tractions = _extremes(history, ends, History.friction)
-    rested = np.flatnonzero(history.rests[:count]) + 1
+    rates, tractions = _extremes(end, History.rate), _extremes(end, History.friction)
+    rested = end.first + np.flatnonzero(history.rests[end.first : end.piece + 1]) + 1
     if len(rested):  # the load when a rest ends that was not recorded
         loads = history.excess(history.just_before(rested[rested < len(history)]))
         tractions = min(tractions[0], *loads), max(tractions[1], *loads)
     strength, slowest = history.problem.strength, rates[0]
     if orbit.sticks and abs(slowest) <= ROUNDING * rates[1]:
         slowest = 0.0
-    slips = _slip_time(history, ends)
+    begin = Positions.inside(end.first, 0.0)
     return Measures(
         period=orbit.period,
-        slip=float(history.slipped(Positions.inside(end.piece, end.place))[0]),
+        slip=float(history.slipped_since(begin, Positions.inside(end.piece, end.place))[0]),
         greatest_rate=rates[1],
         least_rate=slowest,
         greatest_traction=strength + tractions[1],
         least_traction=strength + tractions[0],
-        stick_share=max(0.0, 1.0 - slips / orbit.period) if orbit.sticks else 0.0,
+        stick_share=max(0.0, 1.0 - _slip_time(end) / orbit.period) if orbit.sticks else 0.0,
     )
 
 
-def least_rate(orbit: Orbit) -> float:
+def least_rate(orbit: FoundCycle) -> float:
     """Return the least slip rate (m/s) of a cycle."""
-    end = orbit.closed
-    return _extremes(end.history, np.append(np.ones(end.piece), end.place), History.rate)[0]
+    return _extremes(orbit.closed, History.rate)[0]
 
 
-def _slip_time(history: History, ends: Floats) -> float:
-    """Return how long (s) the contact slips in the first pieces of a history."""
-    store, here = history.store, slice(0, len(ends))
-    lasts = ends * (store.speed[here] + ends * store.bend[here])
-    return float(lasts[store.mode[here] != 0].sum())
+def _pieces(run: ClosedRun) -> tuple[Any, Floats]:
+    """Return the pieces of a run that belong to the cycle, and the places (1) where they end."""
+    pieces = np.arange(run.first, run.piece + 1)
+    return pieces, np.append(np.ones(len(pieces) - 1), run.place)
 
 
-def _extremes(history: History, ends: Floats, of: Any) -> tuple[float, float]:
-    """Return the least and the greatest value that a function of history and positions has in the first pieces."""
-    pieces = np.arange(len(ends))
+def _slip_time(run: ClosedRun) -> float:
+    """Return how long (s) the contact slips."""
+    store, (pieces, ends) = run.history.store, _pieces(run)
+    lasts = ends * (store.speed[pieces] + ends * store.bend[pieces])
+    return float(lasts[store.mode[pieces] != 0].sum())
+
+
+def _extremes(run: ClosedRun, of: Any) -> tuple[float, float]:
+    """Return the least and the greatest value that a function of history and positions has in a cycle."""
+    history, (pieces, ends) = run.history, _pieces(run)
     places = ends[:, None] * FINE_PLACES
     values = of(history, Positions.inside(np.repeat(pieces, len(FINE_PLACES)), places.ravel())).reshape(places.shape)
     found = []
     for sign in (-1.0, 1.0):
-        piece, best = np.unravel_index(int(np.argmax(sign * values)), values.shape)
-        width, middle, value = ends[piece] / (len(FINE_PLACES) - 1), places[piece, best], sign * values[piece, best]
+        row, best = np.unravel_index(int(np.argmax(sign * values)), values.shape)
+        width, middle, value = ends[row] / (len(FINE_PLACES) - 1), places[row, best], sign * values[row, best]
         for _ in range(CLOSER):
-            near = np.clip(middle + width * np.linspace(-1.0, 1.0, len(FINE_PLACES)), 0.0, ends[piece])
-            tried = sign * of(history, Positions.inside(np.full(len(FINE_PLACES), piece), near))
+            near = np.clip(middle + width * np.linspace(-1.0, 1.0, len(FINE_PLACES)), 0.0, ends[row])
+            tried = sign * of(history, Positions.inside(np.full(len(FINE_PLACES), pieces[row]), near))
             value, middle, width = max(value, tried.max()), near[int(tried.argmax())], 2.0 * width / (len(FINE_PLACES) - 1)
         found.append(float(sign * value))
     return found[0], found[1]

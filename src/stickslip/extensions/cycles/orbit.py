@@ -14,7 +14,11 @@ from stickslip.extensions.cycles.section import Crossings, Return, Section, coor
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
 from stickslip.problem import Problem
+from stickslip.run import uninterrupted
+from stickslip.run.simulate import simulate
+from stickslip.solution import Solution
 
 MOST_ITERATIONS, MOST_HALVINGS = 20, 6
 """Newton's iterations (1), and how often a step is halved that leads away."""
@@ -73,6 +77,31 @@ class Orbit:
         end, history = self.closed, self.closed.history
         rests = history.start[: end.piece + 1][history.store.mode[: end.piece + 1] == 0]
         return self.section.at_onset and len(rests) > 0 and self.period - float(rests[0]) <= INSTANT * self.period
+
+    @property
+    def forgets_all(self) -> bool:
+        """True if each rest ends all disturbances, because only the load is left then."""
+        return self.section.at_onset
+
+    @property
+    def certainty(self) -> str:
+        """Say in one sentence what is known of the error of the period."""
+        rtol = self.section.rtol
+        if not len(self.place):
+            return f"measured, from onset to onset in a run with rtol {rtol:g}, which closes exactly"
+        return (
+            f"measured, not proven: after {self.iterations} runs of one period (rtol {rtol:g}) the run misses its start by"
+            f" {_share(self.closed, self.extent):.1g} of the extent of the cycle, and the last step of Newton's iteration changed"
+            f" the period by {brief(self.change, 's', 2)}"
+        )
+
+    def problem_on_it(self, problem: Problem) -> Problem:
+        """Return the problem that starts on the cycle, where it meets the section."""
+        return self.section.start_at(self.place)
+
+    def run_of_it(self) -> Solution:
+        """Return the run of one period."""
+        return uninterrupted(simulate(self.section.start_at(self.place), self.period, self.section.rtol))
 
     @cached_property
     def multipliers(self) -> NDArray[Any]:

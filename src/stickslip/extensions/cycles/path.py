@@ -50,6 +50,8 @@ class Path:
     rtol: float
     scales: Floats
     """Sizes of the coordinates of the start; the last is the range of the parameter."""
+    joins: bool = True
+    """True: cycles with and without rest are parts of one branch."""
 
     def section(self, value: float) -> Section:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""

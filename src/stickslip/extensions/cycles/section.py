@@ -46,6 +46,10 @@ class Return:
     piece: int
     place: float
     section: Section
+    first: int = 0
+    """The first piece of the history that belongs to it."""
+    begin: float = 0.0
+    """When it starts in its history (s)."""
 
     @property
     def missed(self) -> Floats:
@@ -131,11 +135,11 @@ def onsets(history: History) -> Crossings:
     return Crossings(found - 1, np.ones(len(found)), history.start[found])
 
 
-def passages(history: History) -> Crossings:
-    """Return the moments when the slip rate passes the pull rate upwards, to rounding."""
+def passages(history: History, rate: float | None = None) -> Crossings:
+    """Return the moments when the slip rate passes a rate (m/s), by default the pull rate, upwards, to rounding."""
     store, most = history.store, MOST_IN_PIECE * len(history)
     pieces, places = np.empty(most, np.int64), np.empty(most)
-    count = find_passages(store.pieces, history.problem.first_pull_rate, pieces, places)
+    count = find_passages(store.pieces, history.problem.first_pull_rate if rate is None else rate, pieces, places)
     pieces, places = pieces[:count], places[:count]
     times = history.start[pieces] + places * (store.speed[pieces] + places * store.bend[pieces])
     later = times > AT_START * history.duration

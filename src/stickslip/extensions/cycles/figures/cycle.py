@@ -24,7 +24,8 @@ def draw_cycle(found: LimitCycle, **place: Unpack[Place]) -> Figure:
     """Draw slip rate and traction over one period on the left, and load against slip rate on the right."""
     figure, grid = panels(2, 2, (7.6, 4.6), place)
     unit_of_loads = found.problem.load_unit
-    time, (rate, traction, load) = found.run.curves_together(CURVES, 0.0, found.run.duration)
+    time, (rate, traction, load) = found.run.curves_together(CURVES, found.begin, found.begin + found.period)
+    time = time - found.begin
     values: Any = {"slip_rate": rate, "traction": traction, "load": load, "time": time}
     drawn = xr.Dataset({name: curve_quantity("along", one, name, unit_of_loads) for name, one in values.items()})
     units = {name: unit_shown(drawn[name]) for name in values}

@@ -1,0 +1,60 @@
+"""What the search for cycles asks of each kind of body: what it refuses, the cycle near a run, and the path of a branch."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from stickslip.foundation.by_kind import ByKind
+from stickslip.problem import LoadingHistory, Problem
+from stickslip.problem.kinds import BODY_KINDS
+from stickslip.run.study import MAX_PIECES
+
+if TYPE_CHECKING:
+    from stickslip.engine import History
+    from stickslip.extensions.cycles.found import FoundCycle
+    from stickslip.problem.scenarios import ParameterPath, Scenario
+    from stickslip.run import TextProgress
+
+
+class CycleKind:
+    """The questions to a kind of body; by default its cycles are not found."""
+
+    what: str = ""
+    """What sentences call a body whose cycles are not found."""
+
+    most_pieces: int = MAX_PIECES
+    """Largest number of pieces of history (1) of the run at whose end a cycle is looked for."""
+    may_be_cut: bool = False
+    """True if that run may end when it has them."""
+
+    def refusal(self, problem: Problem) -> str:
+        """Return why no cycle of a problem is looked for, in words; empty if there is no reason."""
+        return f"cycles are found of rigid bodies on a spring, slabs and strings, and this is a {self.what}"
+
+    def settled(self, problem: Problem, wait: float, rtol: float, tell: TextProgress) -> FoundCycle | None:
+        """Return the cycle to which a run settles early; None if it takes long. `wait` is the time (s) before the motion begins."""
+        return None
+
+    def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:
+        """Return the cycle near the end of a run. Raises InputError if there is none."""
+        raise AssertionError("a problem that is refused is not run")
+
+    def path(self, orbit: Any, scenario: Scenario, parameter: ParameterPath, span: float) -> Any:
+        """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
+        raise AssertionError("a problem that is refused has no cycle")
+
+
+def not_steady(problem: Problem) -> str:
+    """Return in words what varies so that nothing repeats itself, or what is remembered for ever; empty if nothing does."""
+    law = problem.friction
+    if any(one is not None for one in (problem.ground_velocity, problem.ground_acceleration, problem.force, problem.normal_load)):
+        return "what pulls and presses must be steady: there is moving ground, a force, or a normal load that varies"
+    if isinstance(problem.pull_rate, LoadingHistory):
+        return "the pull rate must be a number, and it varies in time"
+    if law.depends_on_slip and (law.memory == "all" or law.states):
+        return f"under {type(law).__name__} friction changes with slip, so that no motion with a net slip repeats itself"
+    return ""
+
+
+CYCLE_KINDS: ByKind[CycleKind] = ByKind("stickslip.extensions.cycles.kinds", BODY_KINDS)
+"""What each kind of body answers."""

@@ -1,0 +1,85 @@
+"""What every kind of body answers of a cycle that has been found, and of the run that closes it."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from stickslip.engine import History
+from stickslip.problem import Problem
+from stickslip.solution import Solution
+
+
+class CutOfCycle(Protocol):
+    """A problem that is cut at one kind of place."""
+
+    @property
+    def problem(self) -> Problem:
+        """The problem."""
+
+
+class ClosedRun(Protocol):
+    """A run from a section to its return there."""
+
+    @property
+    def history(self) -> History:
+        """The history."""
+
+    @property
+    def first(self) -> int:
+        """The first piece of it that belongs to the cycle."""
+
+    @property
+    def begin(self) -> float:
+        """When the cycle begins in it (s)."""
+
+    @property
+    def piece(self) -> int:
+        """The piece in which the cycle ends."""
+
+    @property
+    def place(self) -> float:
+        """The place (1) in that piece."""
+
+
+class FoundCycle(Protocol):
+    """A cycle: a run from a section that comes back to where it started."""
+
+    @property
+    def closed(self) -> ClosedRun:
+        """The run."""
+
+    @property
+    def section(self) -> CutOfCycle:
+        """The section."""
+
+    @property
+    def period(self) -> float:
+        """The period (s)."""
+
+    @property
+    def sticks(self) -> bool:
+        """True if the contact rests once in a period."""
+
+    @property
+    def grazes(self) -> bool:
+        """True if the contact rests for an instant only, and what follows depends on the sign of a disturbance."""
+
+    @property
+    def forgets_all(self) -> bool:
+        """True if each rest ends all disturbances."""
+
+    @property
+    def multipliers(self) -> NDArray[Any]:
+        """What a period multiplies disturbances by (1), the largest first."""
+
+    @property
+    def certainty(self) -> str:
+        """What is known of the error of the period, in one sentence."""
+
+    def problem_on_it(self, problem: Problem) -> Problem:
+        """Return the problem that starts on the cycle, if the numbers of a problem can say so."""
+
+    def run_of_it(self) -> Solution:
+        """Return the run of one period."""

@@ -1,0 +1,40 @@
+"""Rigid bodies on a spring: their cycles start with load and states."""
+
+from __future__ import annotations
+
+from stickslip.engine import History
+from stickslip.extensions.cycles.asked import CycleKind, not_steady
+from stickslip.extensions.cycles.orbit import Orbit, near_end
+from stickslip.extensions.cycles.path import Path, path_of
+from stickslip.extensions.cycles.settled import settled
+from stickslip.problem import Problem
+from stickslip.problem.bodies import as_on_spring
+from stickslip.problem.scenarios import ParameterPath, Scenario
+from stickslip.run import TextProgress
+
+
+class CyclesOfRigid(CycleKind):
+    """Answers of a rigid body."""
+
+    def refusal(self, problem: Problem) -> str:
+        """Return why no cycle is looked for."""
+        if problem.body.is_free:
+            return "without a spring nothing brings the body back"
+        if as_on_spring(problem.body).has_stops:
+            return "cycles against hard stops are not found"
+        return not_steady(problem)
+
+    def settled(self, problem: Problem, wait: float, rtol: float, tell: TextProgress) -> Orbit | None:
+        """Return the cycle to which a run settles early; None if it takes long."""
+        return settled(problem, wait, rtol, tell)
+
+    def near_end(self, history: History, problem: Problem, rtol: float) -> Orbit:
+        """Return the cycle near the end of a run. Raises InputError if there is none."""
+        return near_end(history, problem, rtol)
+
+    def path(self, orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: float) -> Path:
+        """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
+        return path_of(orbit, scenario, parameter, span)
+
+
+ANSWERS = CyclesOfRigid()

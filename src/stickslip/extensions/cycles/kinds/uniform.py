@@ -1,0 +1,60 @@
+"""Slabs and strings: their cycles start with the wave of a round trip, and waves must fade between one period and the next."""
+
+from __future__ import annotations
+
+from stickslip.engine import History
+from stickslip.extensions.cycles.asked import CycleKind, not_steady
+from stickslip.extensions.cycles.waves.orbit import WaveOrbit, near_end
+from stickslip.extensions.cycles.waves.path import WavePath, path_of
+from stickslip.problem import Problem
+from stickslip.problem.bodies import BodyOnCharacteristics
+from stickslip.problem.scenarios import ParameterPath, Scenario
+
+OF_DRIVERS = {
+    "machine": "cycles behind a machine with a motion of its own are not found",
+    "damper": "cycles of a column that is damped are not found",
+    "changing": "the driver changes in time",
+}
+"""Why no cycle is looked for, by kind of driver."""
+
+
+class CyclesOfUniform(CycleKind):
+    """Answers of a uniform body with waves, whose runs may come to more pieces in each round trip."""
+
+    most_pieces = 60_000
+    may_be_cut = True
+
+    def refusal(self, problem: Problem) -> str:
+        """Return why no cycle is looked for."""
+        body, law = problem.body, problem.friction
+        if why := not_steady(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
+            return why
+        if problem.far_stress_rate != 0.0:
+            return "the far stress grows, so that nothing repeats itself"
+        if not body.has_inertia and not law.states:
+            return (
+                f"without a mass at the contact and under {type(law).__name__}, which has no states, each moment of the round trip"
+                " repeats a motion of its own, and no cycle is apart from others"
+            )
+        if body.front_reflection == 1.0:
+            return "a dead load holds the body nowhere"
+        if body.has_inertia and abs(body.front_reflection) >= 1.0:
+            return self._never_fades(body)
+        return ""
+
+    def _never_fades(self, body: BodyOnCharacteristics) -> str:
+        return (
+            f"the driver sends sharp waves back whole, and so does the {body.what_is_heavy}: they never fade, and no run comes to a"
+            " cycle; give the driver a finite impedance"
+        )
+
+    def near_end(self, history: History, problem: Problem, rtol: float) -> WaveOrbit:
+        """Return the cycle near the end of a run. Raises InputError if there is none."""
+        return near_end(history, problem, rtol)
+
+    def path(self, orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
+        """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
+        return path_of(orbit, scenario, parameter, span)
+
+
+ANSWERS = CyclesOfUniform()

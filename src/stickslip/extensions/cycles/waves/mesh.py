@@ -1,0 +1,107 @@
+"""The wave of a round trip on a mesh: polynomials between its kinks, which events of the cycle leave in it.
+
+What left the contact up to a moment, over one round trip before it, decides with the contact's own state all that follows. Phases
+count from the beginning of that round trip.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stickslip.engine import TERMS, History
+from stickslip.foundation.arrays import Floats
+
+NODES = 10
+"""Points of Gauss and Legendre on each piece of the mesh (1): none is at a kink, which a disturbance moves."""
+PLACES = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
+POWERS = np.linalg.inv(PLACES[:, None] ** np.arange(NODES))
+"""From values at the points to coefficients of powers of the place (1)."""
+LAST_TERMS = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * PLACES - 1.0, NODES - 1))[-2:]
+"""From these values to the last two coefficients of a series of Legendre's polynomials."""
+FADED, MOST_ECHOES = 1e-9, 160
+"""A kink is kept until its echo is this share of itself (1), and for no more round trips than this."""
+SHORTEST, COARSE = 2e-3, 1.0 / 6.0
+"""Shortest and longest piece of a mesh before it is divided (1, shares of a round trip)."""
+RESOLVED, MOST_PIECES, FINEST = 1e-9, 240, 1e-3
+"""Pieces are halved until the last terms are below this share (1) of the wave's extent, up to a number, down to a length (1)."""
+
+
+@dataclass(frozen=True)
+class WaveMesh:
+    """Pieces of a round trip, each with the same points."""
+
+    edges: Floats
+    """Phases (s) of their ends, from 0 on."""
+
+    @cached_property
+    def phases(self) -> Floats:
+        """The phases (s) of all points."""
+        return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * PLACES).ravel())
+
+    def series(self, values: Floats) -> Floats:
+        """Return the polynomials of a wave with these values at the points, one for each piece."""
+        found = np.zeros((len(self.edges) - 1, TERMS))
+        found[:, :NODES] = values.reshape(-1, NODES) @ POWERS.T
+        return found
+
+    def at(self, values: Floats, phases: Floats) -> Floats:
+        """Return a wave with these values at the points, at phases (s)."""
+        piece = np.clip(np.searchsorted(self.edges, phases, side="right") - 1, 0, len(self.edges) - 2)
+        xi = (phases - self.edges[piece]) / (self.edges[piece + 1] - self.edges[piece])
+        return np.asarray(np.sum(self.series(values)[piece, :NODES] * xi[:, None] ** np.arange(NODES), axis=1))
+
+
+@dataclass(frozen=True)
+class WaveSource:
+    """A wave that left the contact of a run, over the round trip that ends at a time (s)."""
+
+    history: History
+    end: float
+
+    def at(self, phases: Floats) -> Floats:
+        """Return the wave 2 Z v - load, plus the reference strength (Pa), at phases (s)."""
+        begin, history = self.end - self.history.round_trip_time, self.history
+        where = history.find(begin + phases, "right")
+        return np.asarray(2.0 * history.problem.body.echo_impedance * history.rate(where) - history.excess(where))
+
+
+def kinks(history: History, end: float, period: float, share: float) -> Floats:
+    """Return the phases (s) at which the wave up to a time (s) has kinks, the sharpest first.
+
+    Each event of the last period leaves one, whose echo is smaller by a `share` (1) after each round trip, in a motion that repeats
+    itself after a period (s).
+    """
+    mode, trip = history.store.mode, history.round_trip_time
+    here = 1 + np.flatnonzero(np.diff(mode) != 0)
+    changes = np.concatenate([history.start[here], history.end[:-1][history.rests[:-1]]])
+    changes = np.unique(changes[(changes > end - period - 1e-9 * trip) & (changes <= end)])
+    echoes = min(math.ceil(math.log(FADED) / math.log(share)) if 0.0 < share < 1.0 else 1, MOST_ECHOES)
+    times = changes[None, :] + trip * np.arange(echoes + 1)[:, None] - (end - trip)
+    shifts = np.arange(math.ceil((trip * echoes + period) / period) + 1)
+    found = (times[:, :, None] - period * shifts).reshape(len(times), -1)
+    return np.concatenate([row[(row > 0.0) & (row < trip)] for row in found])
+
+
+def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
+    """Return a mesh that resolves a wave with `sharp` kinks at phases (s), the sharpest first."""
+    trip = source.history.round_trip_time
+    kept = [0.0, trip]
+    for one in sharp.tolist():
+        if min(abs(one - other) for other in kept) > SHORTEST * trip:
+            kept.append(one)
+    edges = np.sort(np.array(kept))
+    parts = np.ceil(np.diff(edges) / (COARSE * trip)).astype(int)
+    divided = [np.linspace(*ends, n, endpoint=False) for *ends, n in zip(edges[:-1], edges[1:], parts, strict=True)]
+    edges = np.append(np.concatenate(divided), trip)
+    while True:
+        mesh = WaveMesh(edges)
+        values = source.at(mesh.phases).reshape(-1, NODES)
+        rough = np.abs(values @ LAST_TERMS.T).max(axis=1) > RESOLVED * np.ptp(values)
+        rough &= np.diff(edges) > FINEST * trip
+        if not rough.any() or len(edges) + rough.sum() > MOST_PIECES:
+            return mesh
+        edges = np.sort(np.append(edges, 0.5 * (edges[:-1] + edges[1:])[rough]))

@@ -1,0 +1,293 @@
+"""From a run of a body with waves to the cycle near its end: Newton's iteration on the wave of a round trip, by exact runs.
+
+The derivative of a return is known by differences of runs: each says what it does to one disturbance. GMRES solves Newton's
+equation, and Arnoldi's iteration finds the leading multipliers.
+
+Source: Knoll & Keyes 2004, J. Comput. Phys. 193, 357, for Newton's iteration without a matrix.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.engine import History, Positions
+from stickslip.extensions.cycles.orbit import STEADY_SHARE
+from stickslip.extensions.cycles.section import onsets
+from stickslip.extensions.cycles.waves.krylov import Operator, leading, solved
+from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource, kinks, mesh_of
+from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection, place_in
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+from stickslip.problem import Problem
+from stickslip.solution import Solution
+
+NUDGE, FINE_NUDGE = 1e-6, 5e-6
+"""Sizes of disturbances (1, shares of the extent): to one side for Newton's iteration, to both for multipliers."""
+GRID = 24
+"""Number of pieces of the mesh on which waves of a branch are compared (1)."""
+MOST_ITERATIONS, MOST_HALVINGS = 14, 5
+"""Newton's iterations (1), and how often a step is shortened that leads away."""
+CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
+"""A cycle closes to this share (1) of its extent; where rounding or kinks forbid that, to the second."""
+LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
+"""Newton's equation is solved to this share (1), with no more disturbances than this."""
+MOST_MEETINGS, CLOSES = 16, 3e-2
+"""A run is compared with itself so many meetings with the section ago (1); it closes where it comes as close (1) as this."""
+MANY_MULTIPLIERS, LEAST_LARGE = 6, 0.5
+"""Most multipliers (1), and the size (1) from which on a multiplier is always exact."""
+
+
+@dataclass(frozen=True)
+class WaveOrbit:
+    """A cycle of a body with waves: a run from a section that comes back to the wave with which it began."""
+
+    closed: WaveReturn
+    section: WaveSection
+    share: float
+    """By what share (1) of its extent it misses its start."""
+    iterations: int
+    """Number of runs of one period that have found it."""
+    change: float
+    """The last change of the period (s) in Newton's iteration."""
+
+    @property
+    def period(self) -> float:
+        """The period (s)."""
+        return self.closed.time
+
+    @property
+    def sticks(self) -> bool:
+        """True if the contact rests once in a period."""
+        return self.closed.sticks
+
+    @property
+    def grazes(self) -> bool:
+        """False: a rest for an instant leaves waves that go on."""
+        return False
+
+    @property
+    def forgets_all(self) -> bool:
+        """False: waves outlast a rest."""
+        return False
+
+    def problem_on_it(self, problem: Problem) -> Problem:
+        """Return the problem itself: no number of a problem says which wave it begins with."""
+        return problem
+
+    def run_of_it(self) -> Solution:
+        """Return the run of one period behind the round trip that holds the wave."""
+        run, code = self.section.run_from(self.closed.start, self.period)
+        return run.solution(code)
+
+    @property
+    def certainty(self) -> str:
+        """Say in one sentence what is known of the error of the period."""
+        return (
+            f"measured, not proven: after {self.iterations} runs of one period (rtol {self.section.rtol:g}) wave and contact miss"
+            f" their start by {self.share:.1g} of the extent of the cycle, and the last step of Newton's iteration changed the"
+            f" period by {brief(self.change, 's', 2)}"
+        )
+
+    @property
+    def place(self) -> Floats:
+        """Where the cycle meets the section: the states, and the wave at points that are evenly spread over a round trip."""
+        return coordinates(self.closed.start)
+
+    @cached_property
+    def sharp_waves(self) -> float:
+        """What a period multiplies the sharpest waves by (1): all that is not among the multipliers fades at least so fast."""
+        return sharp_factor(self.closed.history, self.closed.begin, self.closed.end)
+
+    @cached_property
+    def multipliers(self) -> NDArray[Any]:
+        """The leading multipliers, the largest first: exact where they are large, else roughly the largest."""
+        place = self.closed.start
+        image = Image(place, self.period)
+        phases = place.mesh.phases / self.closed.begin
+        start = np.concatenate([np.ones(len(place.states)), sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))])
+        large = max(LEAST_LARGE, math.sqrt(self.sharp_waves))
+        return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
+
+
+def sharp_factor(history: History, begin: float, end: float) -> float:
+    """Return what a disturbance that lasts an instant is multiplied by (1) on its ways between two times (s), in the mean.
+
+    Each way multiplies it by r (1 - 2 Z / g'), where g' = D + S dmu/dv is how the contact resists at once: mass or rest resist
+    whole.
+    """
+    problem, trip = history.problem, history.round_trip_time
+    body, law = problem.body, problem.friction
+    back = (end - begin) / trip * math.log(max(abs(body.front_reflection), 1e-300))
+    if body.has_inertia:
+        return math.exp(back)
+    first, last = np.searchsorted(history.start, [begin, end])
+    here = np.arange(first, last)
+    here = here[history.store.mode[here] != 0]
+    piece, xi = np.repeat(here, 5), np.tile(np.linspace(0.1, 0.9, 5), len(here))
+    at = Positions.inside(piece, xi)
+    by_rate = law.slopes(0.0, np.abs(history.rate(at)), history.state(at))[1]
+    lasts = np.repeat((history.end - history.start)[here] / 5.0, 5)
+    answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
+    return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
+
+
+@dataclass(frozen=True)
+class Image:
+    """The return as a map of vectors: states and wave at the points of the mesh of a place, over their extents."""
+
+    place: WavePlace
+    guess: float
+
+    @cached_property
+    def scale(self) -> Floats:
+        """The extents: sizes of the states, and how far the wave goes."""
+        place = self.place
+        return np.concatenate([np.abs(place.states) + 1e-300, np.full(len(place.wave), np.ptp(place.wave) + 1e-300)])
+
+    @cached_property
+    def start(self) -> Floats:
+        """The place itself."""
+        return self.place.vector / self.scale
+
+    def of(self, vector: Floats, section: WaveSection) -> tuple[Floats, WaveReturn]:
+        """Return where a start on a section goes, and its run."""
+        place = self.place.moved_to(vector * self.scale).over(section.problem.round_trip_time)
+        met = section.returned(place, self.guess)
+        return met.on(place.mesh).vector / self.scale, met
+
+
+def grown(image: Image, section: WaveSection) -> Operator:
+    """Return what disturbances of a place become, by differences of two runs."""
+
+    def along(way: Floats) -> Floats:
+        step = FINE_NUDGE / np.abs(way).max()
+        ends = [image.of(image.start + sign * step * way, section)[0] for sign in (1.0, -1.0)]
+        return np.asarray((ends[0] - ends[1]) / (2.0 * step))
+
+    return along
+
+
+def difference(residual: Callable[[Floats], Floats], at: Floats, missed: Floats) -> Operator:
+    """Return the derivative of a residual as an operator, by differences from its value."""
+
+    def along(way: Floats) -> Floats:
+        step = NUDGE / np.abs(way).max()
+        return np.asarray((residual(at + step * way) - missed) / step)
+
+    return along
+
+
+def fitted_mesh(met: WaveReturn) -> WaveMesh:
+    """Return the mesh for the wave at a return."""
+    history, body = met.history, met.history.problem.body
+    return mesh_of(met.source, kinks(history, met.end, met.time, abs(body.front_reflection)))
+
+
+def even_mesh(trip: float) -> WaveMesh:
+    """Return the mesh of a round trip (s) on which waves are compared, whatever their kinks."""
+    return WaveMesh(np.linspace(0.0, trip, GRID + 1))
+
+
+def coordinates(place: WavePlace) -> Floats:
+    """Return states and wave at points that are evenly spread over a round trip."""
+    return place.on(even_mesh(float(place.mesh.edges[-1]))).vector
+
+
+def missed_share(met: WaveReturn) -> float:
+    """Return by what share (1) of the extent a return misses its start."""
+    start = Image(met.start, met.time)
+    return float(np.abs(met.on(met.start.mesh).vector / start.scale - start.start).max())
+
+
+def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
+    """Return the cycle near a place on a section, by Newton's iteration; `guess` is about its period (s).
+
+    Raises InputError if the iteration finds none.
+    """
+    now = section.returned(place, guess)
+    now, runs, change = section.returned(now.start.on(fitted_mesh(now)), now.time), 2, math.inf
+    best: WaveOrbit | None = None
+    for _ in range(MOST_ITERATIONS):
+        share = missed_share(now)
+        before, best = best, WaveOrbit(now, section, share, runs, change) if best is None or share < best.share else best
+        if share <= CLOSED_SHARE or (before is not None and before.share <= GOOD_ENOUGH and share > 0.5 * before.share):
+            return checked(best)
+        mesh = fitted_mesh(now)
+        image = Image(now.start.on(mesh), now.time)
+        asked: list[Floats] = []
+
+        def residual(at: Floats, image: Image = image, asked: list[Floats] = asked) -> Floats:
+            asked.append(at)
+            return image.of(at, section)[0] - at
+
+        missed = now.on(mesh).vector / image.scale - image.start
+        step, _ = solved(difference(residual, image.start, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+        period, now = now.time, _shortened(image, section, step, share)
+        runs, change = runs + len(asked) + 1, abs(now.time - period)
+    if best is not None and best.share <= GOOD_ENOUGH:
+        return checked(best)
+    raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
+
+
+def _shortened(image: Image, section: WaveSection, step: Floats, share: float) -> WaveReturn:
+    """Return the return after a step of Newton's, shortened where it leads away. Raises InputError where it still does."""
+    for _ in range(MOST_HALVINGS):
+        try:
+            there, met = image.of(image.start + step, section)
+        except InputError:
+            step = 0.25 * step
+            continue
+        if float(np.abs(there - image.start - step).max()) < 2.0 * share or share <= GOOD_ENOUGH:
+            return met
+        step = 0.5 * step
+    raise InputError("cycle: Newton's iteration leads away from this run: no cycle is near; give another start, or a longer run")
+
+
+def checked(orbit: WaveOrbit) -> WaveOrbit:
+    """Refuse steady sliding. Raises InputError."""
+    now = orbit.closed
+    piece = np.repeat(np.arange(now.first, now.piece + 1), 3)
+    rates = now.history.rate(Positions.inside(piece, np.resize([0.0, 0.5, 1.0], len(piece))))
+    if np.ptp(rates) <= STEADY_SHARE * now.history.problem.first_pull_rate:
+        raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
+    return orbit
+
+
+def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
+    """Return the cycle near the end of a run. Raises InputError if there is none."""
+    section = WaveSection(problem, len(onsets(history).time) > 2, rtol, _mean_rate(history) / problem.first_pull_rate)
+    met = section.met(history)
+    if len(met.time) < 2 or met.time[-1] < 2.0 * problem.round_trip_time:
+        raise InputError(
+            "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes its mean slip rate twice:"
+            " give a longer run (near), or another start"
+        )
+    every = _meetings(history, met.time)
+    end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
+    mesh = mesh_of(WaveSource(history, end), kinks(history, end, period, abs(problem.body.front_reflection)))
+    return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
+
+
+def _mean_rate(history: History) -> float:
+    """Return the mean slip rate (m/s) in the last half of a run."""
+    begin, end = history.find(np.array([0.5, 1.0]) * history.duration, "left"), history.duration
+    slips = history.slipped(begin)
+    return float((slips[1] - slips[0]) / (0.5 * end))
+
+
+def _meetings(history: History, times: Floats) -> int:
+    """Return after how many meetings with the section the run comes back best, judged by its wave."""
+    phases = np.linspace(0.0, history.round_trip_time, 129, endpoint=False)
+    last = WaveSource(history, float(times[-1])).at(phases)
+    most = min(MOST_MEETINGS, int(np.sum(times > 1.001 * history.round_trip_time)) - 1)
+    missed = [np.abs(WaveSource(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
+    close = np.flatnonzero(np.array(missed) <= CLOSES * np.ptp(last))
+    return 1 + int(close[0] if len(close) else np.argmin(missed))

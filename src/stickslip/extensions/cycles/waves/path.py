@@ -1,0 +1,162 @@
+"""Pseudo-arclength continuation of cycles of bodies with waves: the path of `cycles.path`, with a wave in the place of a start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from stickslip.extensions.cycles.path import NoCycleError, PlaceOnBranch
+from stickslip.extensions.cycles.waves.krylov import solved
+from stickslip.extensions.cycles.waves.orbit import (
+    LINEAR_SHARE,
+    MOST_DIRECTIONS,
+    NUDGE,
+    Image,
+    WaveOrbit,
+    checked,
+    coordinates,
+    even_mesh,
+    fitted_mesh,
+    missed_share,
+)
+from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.problem.scenarios import ParameterPath, Scenario
+
+NEWTON_ROUNDS = 8
+"""Largest number of Newton's iterations in a step (1)."""
+CLOSED, STILL_CLOSED = 1e-8, 1e-6
+"""A cycle of a branch closes to this share of its extent (1); where kinks forbid that, to the second."""
+DIRECTION_SHARE = 1e-3
+"""The direction of a branch is known to this share (1)."""
+
+
+@dataclass(frozen=True)
+class WavePath:
+    """Cycles of one scenario, cut at one kind of section, with one number of the problem as a parameter."""
+
+    scenario: Scenario
+    parameter: ParameterPath
+    at_onset: bool
+    rtol: float
+    scales: Floats
+    """Sizes of the coordinates of the start; the last is the range of the parameter."""
+    level: float
+    """The slip rate on a section without rest, as a share of the pull rate (1)."""
+    joins: bool = False
+    """False: cycles with and without rest are not joined to one branch."""
+
+    def section(self, value: float) -> WaveSection:
+        """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
+        problem = self.scenario.problem.parameters[self.parameter.name].put(value)
+        return WaveSection(problem, self.at_onset, self.rtol, self.level)
+
+    @property
+    def range(self) -> float:
+        """The range of the parameter, SI."""
+        return float(self.scales[-1])
+
+    def together(self, place: Floats, value: float) -> Floats:
+        """Return start and parameter over their scales."""
+        return np.append(place, value) / self.scales
+
+    def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
+        """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.
+
+        The search begins at a place, or at the target itself.
+        """
+        if begin is None:
+            begin = self._spread(target, self.section(float(target[-1] * self.range)).problem.round_trip_time)
+        value = float(target[-1] * self.range)
+        try:
+            now = self.section(value).returned(begin, guess)
+            return self._newton(now, value, target, way)
+        except InputError as error:
+            raise NoCycleError(str(error)) from None
+
+    def _spread(self, target: Floats, trip: float) -> WavePlace:
+        """Return the place with the coordinates of a target, over a round trip that lasts so long (s)."""
+        mesh = even_mesh(trip)
+        vector = target[:-1] * self.scales[:-1]
+        count = len(vector) - len(mesh.phases)
+        return WavePlace(mesh, vector[:count], vector[count:])
+
+    def _newton(self, now: WaveReturn, value: float, target: Floats, way: Floats) -> PlaceOnBranch:
+        """Return the cycle to which Newton's iteration leads from a return."""
+        share, last, runs = np.inf, np.inf, 0
+        for _ in range(NEWTON_ROUNDS):
+            image = Image(now.start.on(fitted_mesh(now)), now.time)
+            off = float(self._off(coordinates(now.start), value, target, way))
+            last, share = share, max(missed_share(now), abs(off))
+            good = share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last)
+            along = self._derivative(image, value, now, target, way)
+            if good:
+                break
+            missed = np.append(now.on(image.place.mesh).vector / image.scale - image.start, off)
+            step, _ = solved(along, -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+            value += float(step[-1]) * self.range
+            now, runs = image.of(image.start + step[:-1], self.section(value))[1], runs + 1
+        if share > STILL_CLOSED:
+            raise NoCycleError("follow: Newton's iteration finds no cycle here")
+        orbit = checked(WaveOrbit(now, self.section(value), share, runs, 0.0))
+        ahead = np.zeros(len(image.start) + 1)
+        ahead[-1] = 1.0
+        grown, _ = solved(along, ahead, DIRECTION_SHARE, MOST_DIRECTIONS)
+        moved = image.place.moved_to(grown[:-1] * image.scale)
+        new = np.append(coordinates(moved) / self.scales[:-1], grown[-1])
+        return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))
+
+    def _off(self, place: Floats, value: float, target: Floats, way: Floats) -> float:
+        """Return how far a start is from the plane through `target` across `way`."""
+        return float((self.together(place, value) - target) @ way)
+
+    def _derivative(self, image: Image, value: float, now: WaveReturn, target: Floats, way: Floats) -> Callable[[Floats], Floats]:
+        """Return the derivative of what a return misses, and of the distance from the plane, by start and parameter."""
+        missed = image.of(image.start, self.section(value))[0] - image.start
+
+        def along(change: Floats) -> Floats:
+            step = NUDGE / np.abs(change).max()
+            at, new = image.start + step * change[:-1], value + step * float(change[-1]) * self.range
+            there = image.of(at, self.section(new))[0]
+            moved = coordinates(image.place.moved_to(change[:-1] * image.scale)) / self.scales[:-1]
+            return np.append((there - at - missed) / step, np.append(moved, change[-1]) @ way)
+
+        return along
+
+    def at_value(self, value: float, place: Floats, guess: float, way: Floats | None = None) -> PlaceOnBranch:
+        """Return the cycle near a start at a value (SI) of the parameter. Raises NoCycleError."""
+        along = np.zeros(len(self.scales))
+        along[-1] = 1.0
+        found = self.at(self.together(place, value), along, guess)
+        return found if way is None or found.way @ way >= 0.0 else replace(found, way=-found.way)
+
+    def step(self, begin: PlaceOnBranch, length: float) -> PlaceOnBranch:
+        """Return the cycle a step further along the branch. Raises NoCycleError."""
+        orbit: Any = begin.orbit
+        target = self.together(orbit.place, begin.value) + length * begin.way
+        start: WavePlace = orbit.closed.start
+        ahead = self._spread(length * begin.way, float(start.mesh.edges[-1]))
+        moved = start.moved_to(start.vector + ahead.on(start.mesh).vector)
+        try:
+            trip = self.section(float(target[-1] * self.range)).problem.round_trip_time
+        except InputError as error:
+            raise NoCycleError(str(error)) from None
+        return self.at(target, begin.way, orbit.period, moved.over(trip))
+
+    def longest_step(self, begin: PlaceOnBranch, share: float) -> float:
+        """Return the longest step that moves the start by no more than a share (1) of the extent of the cycle."""
+        moves = np.abs(begin.way[:-1]) * np.sqrt(len(begin.way) - 1.0)
+        return float(np.min(share / np.maximum(moves, 1e-300), initial=np.inf))
+
+
+def path_of(orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
+    """Return the path of a cycle, with its extent as the scale of its start: the root of the mean square is what counts."""
+    place, count = orbit.place, len(orbit.closed.start.states)
+    extent = np.append(np.abs(place[:count]) + 1e-300, np.full(len(place) - count, np.ptp(place[count:])))
+    scales: Any = np.append(extent * np.sqrt(len(place)), span)
+    section = orbit.section
+    return WavePath(scenario, parameter, section.at_onset, section.rtol, scales, section.level)

@@ -1,0 +1,165 @@
+"""Where a cycle of a body with waves is cut, and exact runs that begin there with a wave and return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from stickslip.engine import History, Positions
+from stickslip.engine.from_wave import WaveBefore, begin_with
+from stickslip.extensions.cycles.section import Crossings, onsets, passages
+from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem, Stop
+from stickslip.problem.scenarios import Scenario
+from stickslip.run import CallOptions, ExactRun
+from stickslip.solution import Solution
+
+LONGER = 1.25
+"""A run to a return lasts longer than the guessed period by this factor (1)."""
+PASSES = 20_000
+"""Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
+
+
+@dataclass(frozen=True)
+class WavePlace:
+    """A place on a section: the states of the law, and the wave at the points of a mesh."""
+
+    mesh: WaveMesh
+    states: Floats
+    wave: Floats
+
+    @property
+    def vector(self) -> Floats:
+        """States and wave together."""
+        return np.concatenate([self.states, self.wave])
+
+    def moved_to(self, vector: Floats) -> WavePlace:
+        """Return the place with other states and another wave on the same mesh."""
+        count = len(self.states)
+        return WavePlace(self.mesh, vector[:count], vector[count:])
+
+    def over(self, trip: float) -> WavePlace:
+        """Return the same wave over a round trip that lasts so long (s)."""
+        edges = self.mesh.edges
+        return self if edges[-1] == trip else WavePlace(WaveMesh(edges * (trip / edges[-1])), self.states, self.wave)
+
+    def on(self, mesh: WaveMesh) -> WavePlace:
+        """Return the same place on another mesh."""
+        return WavePlace(mesh, self.states, self.mesh.at(self.wave, mesh.phases))
+
+
+@dataclass(frozen=True)
+class WaveReturn:
+    """A run from a place on a section to its return there; the first round trip of its history is the wave at the start."""
+
+    start: WavePlace
+    solution: Solution
+    piece: int
+    place: float
+    end: float
+    """The time (s) of the return in the history."""
+    first: int
+    """The first piece of the history behind the wave."""
+
+    @property
+    def history(self) -> History:
+        """The history."""
+        return self.solution.history
+
+    @property
+    def begin(self) -> float:
+        """The time (s) in the history when the section is left."""
+        return self.history.round_trip_time
+
+    @property
+    def time(self) -> float:
+        """How long (s) the return takes."""
+        return self.end - self.begin
+
+    @property
+    def source(self) -> WaveSource:
+        """The wave of the last round trip before the return."""
+        return WaveSource(self.history, self.end)
+
+    @cached_property
+    def states(self) -> Floats:
+        """The states of the law at the return."""
+        at = Positions.inside(self.piece, self.place)
+        return np.array([one[0] for one in self.history.states(at)])
+
+    def on(self, mesh: WaveMesh) -> WavePlace:
+        """Return the place of the return, on a mesh."""
+        return WavePlace(mesh, self.states, self.source.at(mesh.phases))
+
+    @cached_property
+    def sticks(self) -> bool:
+        """True if the contact rests on the way."""
+        here = slice(self.first, self.piece + 1)
+        return bool((self.history.store.mode[here] == 0).any() or self.history.rests[self.first : self.piece].any())
+
+
+@dataclass(frozen=True)
+class WaveSection:
+    """A section of the motion of a body with waves, and the returns to it."""
+
+    problem: Problem
+    at_onset: bool
+    """True at an onset of forward slip after a rest; False where the slip rate passes a share of the pull rate upwards."""
+    rtol: float = 1e-12
+    level: float = 1.0
+    """That share (1)."""
+
+    @property
+    def rate(self) -> float:
+        """The slip rate (m/s) on the section."""
+        return 0.0 if self.at_onset else self.level * self.problem.first_pull_rate
+
+    def run_from(self, place: WavePlace, lasts: float) -> tuple[ExactRun, int]:
+        """Return the run from a place that lasts so long (s), and the code of its end."""
+        duration = self.problem.round_trip_time + lasts
+        options = CallOptions.of(Scenario(self.problem, duration), duration=duration, rtol=self.rtol, creep_rtol=0.0)
+        run = ExactRun.begin(self.problem, options.check("cycle", self.problem))
+        begin_with(run, WaveBefore(place.mesh.edges, place.mesh.series(place.wave), self.rate, place.states))
+        while True:
+            code = run.advance(PASSES)
+            if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
+                return run, code
+
+    def returned(self, place: WavePlace, guess: float, *, longer: float = LONGER) -> WaveReturn:
+        """Return the run from a place to its return next to a `guess` of the time (s) that it takes.
+
+        Raises InputError if the run meets no return within `longer` (1) times the guess.
+        """
+        run, code = self.run_from(place, longer * guess)
+        if code not in (Stop.FINISHED, Stop.LOCKED):
+            raise InputError(f"cycle: a run of one period did not reach its end: {run.solution(code).status}")
+        solution = run.solution(code)
+        trip, met = self.problem.round_trip_time, self.met(solution.history)
+        if not len(met.time):
+            what = "begins to slip after a rest" if self.at_onset else "passes its mean slip rate"
+            raise InputError(f"cycle: the contact no longer {what} within {longer * guess:.4g} s: there is no cycle near")
+        nearest = int(np.abs(met.time - trip - guess).argmin())
+        piece, xi, time = int(met.piece[nearest]), float(met.place[nearest]), float(met.time[nearest])
+        return WaveReturn(place, solution, piece, xi, time, len(place.mesh.edges) - 1)
+
+    def met(self, history: History) -> Crossings:
+        """Return where a run that begins with a wave meets the section, not counting its start."""
+        met = onsets(history) if self.at_onset else passages(history, self.rate)
+        later = met.time > (1.0 + 1e-6) * self.problem.round_trip_time
+        return Crossings(met.piece[later], met.place[later], met.time[later])
+
+    def with_problem(self, problem: Problem) -> WaveSection:
+        """Return the same section of another problem."""
+        return replace(self, problem=problem)
+
+
+def place_in(history: History, met: Crossings, n: int, mesh: WaveMesh) -> WavePlace:
+    """Return the place where a run meets a section for the n-th time."""
+    at = Positions.inside(met.piece[n], met.place[n])
+    states: Any = [one[0] for one in history.states(at)]
+    return WavePlace(mesh, np.array(states), WaveSource(history, float(met.time[n])).at(mesh.phases))
