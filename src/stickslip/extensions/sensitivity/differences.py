@@ -99,7 +99,8 @@ class Differences:
                 slope[at], error[at], step[at] = found.slope[better], found.error[better], trial
                 if tried.same.all() and (not improved or np.all(error <= WELL_KNOWN * np.abs(slope).max())):
                     break
-                grows &= bool(tried.same.all() and np.median(found.noise / found.error) > 0.5)
+                worst = int(found.error.argmax())
+                grows &= bool(tried.same.all() and found.noise[worst] > 0.5 * found.error[worst])
             grows &= found is not None
             trial *= NEXT_STEP if grows else 1.0 / NEXT_STEP
         told = self._told(slope, error, FIRST_STEP * abs(parameter.value) or trial)

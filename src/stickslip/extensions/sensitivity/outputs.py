@@ -52,7 +52,8 @@ class CurveAtTimes:
     @property
     def words(self) -> str:
         """What it is called."""
-        return f"energy '{self.name}'" if self.name in TIMED_ENERGIES else self.name.replace("_", " ")
+        energy = " energy" if self.name in TIMED_ENERGIES and self.name not in ("work", "heat") else ""
+        return self.name.replace("_", " ") + energy
 
     def unit(self, problem: Problem) -> str:
         """Return its SI unit."""

@@ -144,7 +144,8 @@ class Sensitivity(Study):
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterable[str]:
-        yield f"derivatives of the {self.output.words} with respect to {len(self.found)} numbers, by {self.runs} runs"
+        count = "a number" if len(self.found) == 1 else f"{len(self.found)} numbers"
+        yield f"derivatives of the {self.output.words} with respect to {count}, by {self.runs} runs"
         yield from self.texts
         yield from self.notes
 

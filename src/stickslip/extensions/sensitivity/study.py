@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from stickslip.engine import SlipEvents
 from stickslip.extensions.sensitivity.differences import Differences, member_run
 from stickslip.extensions.sensitivity.outputs import (
-    AT_BEGIN,
     COUNTED,
     EVENT_NUMBERS,
     CurveAtTimes,
@@ -26,6 +25,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import Parameter, Problem, default_event_rate
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling
@@ -136,9 +136,9 @@ def _numbers(problem: Problem, to: str | Sequence[str] | None) -> list[Parameter
     known = problem.parameters
     if to is None:
         return [one for one in known.values() if one.value != 0.0 and np.isfinite(one.value) and not one.declared.whole]
-    names = [to] if isinstance(to, str) else list(to)
+    names = [to] if isinstance(to, str) else list(to) if isinstance(to, Sequence) else []
     if not names:
-        raise InputError("sensitivity: to: give the name of a number, or several")
+        raise InputError('sensitivity: to: give the name of a number, such as "stiffness", or several in a list')
     found: list[Parameter[Problem]] = []
     for name in names:
         try:
@@ -167,6 +167,8 @@ def _output(run: Solution, of: str, at: ArrayLike | None, event: int | None, las
         raise InputError(f"sensitivity: of: '{of}' is no number of a slip event; {nearest(of, EVENT_NUMBERS)}, or leave event out")
     if of in COUNTED:
         raise InputError(f"sensitivity: of: '{of}' has no derivative, because it counts, or is what a division leaves")
+    if of in (*STATE_NAMES, "surface_torque"):
+        getattr(run, of)()  # which says why this run has none
     raise InputError(f"sensitivity: of: {shown(of)} is unknown; {nearest(str(of), dict.fromkeys((*curves, *EVENT_NUMBERS)))}")
 
 
@@ -184,9 +186,13 @@ def _number(run: Solution, of: str, event: int | None, lasts: float) -> NumberOf
         found = NumberOfEvent(of, n, rate, lasts, run.max_events)
         if found.of(run) is not None:
             return found
-    why = "that is not over" if of not in AT_BEGIN else "that is the first"
-    which = "no slip event" if event is None else f"event {event % count}"
-    raise InputError(f"sensitivity: {which} of the run has the number '{of}' (of an event {why} it is not known)")
+    which = "no event" if event is None else f"event {event % count}"
+    why = "the first has none" if of == "recurrence" else "an event that is not over has none"
+    raise InputError(
+        f"sensitivity: {which} of the run has the number '{of}': {why}"
+        if event is None
+        else f"sensitivity: {which} of the run has no '{of}': {why}"
+    )
 
 
 def _times(run: Solution, at: ArrayLike | None) -> Floats:
