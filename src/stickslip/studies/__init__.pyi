@@ -13,6 +13,8 @@ from stickslip.extensions.inference.inference import Inference, ranking
 from stickslip.extensions.inference.record.record import Record
 from stickslip.extensions.schemes.benchmarks import judge_series
 from stickslip.extensions.schemes.schemes import Schemes, schemes
+from stickslip.extensions.sensitivity.result import Sensitivity
+from stickslip.extensions.sensitivity.study import sensitivity
 from stickslip.extensions.strong_motion.displacements import SlidingDisplacements
 from stickslip.extensions.strong_motion.sliding import sliding
 from stickslip.extensions.studies.analogy import Analogy, analogy
@@ -37,6 +39,7 @@ __all__ = [
     "LimitCycle",
     "Record",
     "Schemes",
+    "Sensitivity",
     "SlidingDisplacements",
     "analogy",
     "catalogue_statistics",
@@ -55,6 +58,7 @@ __all__ = [
     "predictability",
     "ranking",
     "schemes",
+    "sensitivity",
     "severity",
     "sliding",
     "steady",
