@@ -3,9 +3,11 @@ from stickslip.extensions.chains.beside_slab import ChainBesideSlab, chain_besid
 from stickslip.extensions.chains.magnitudes import magnitudes
 from stickslip.extensions.chains.statistics import GutenbergRichter, gutenberg_richter
 from stickslip.extensions.cycles.branch import BranchOfCycles
+from stickslip.extensions.cycles.exponent import LyapunovExponent
 from stickslip.extensions.cycles.find_cycle import cycle
 from stickslip.extensions.cycles.follow import follow
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
+from stickslip.extensions.cycles.lyapunov import lyapunov
 from stickslip.extensions.given_motion.identification import Identification
 from stickslip.extensions.given_motion.identify import identify
 from stickslip.extensions.inference.infer import infer
@@ -37,6 +39,7 @@ __all__ = [
     "Identification",
     "Inference",
     "LimitCycle",
+    "LyapunovExponent",
     "Record",
     "Schemes",
     "Sensitivity",
@@ -54,6 +57,7 @@ __all__ = [
     "identify",
     "infer",
     "judge_series",
+    "lyapunov",
     "magnitudes",
     "predictability",
     "ranking",

@@ -25,6 +25,7 @@ IN_1D = {
     "find": ("planar-patch", "--along", "friction.static=0.6..0.8"),
     "identify": ("planar-patch", "record.csv", "--free", "friction.static"),
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
+    "lyapunov": ("planar-patch",),
     "schemes": ("planar-patch",),
     "slide": ("record.AT2", "--yield", "0.1", "--analysis", "coupled", "--body", "planar-patch"),
     "sweep": ("planar-patch", "--vary", "friction.static=0.6,0.7"),

@@ -1,1 +1,1 @@
-"""The command `stickslip cycle`."""
+"""The commands `stickslip cycle` and `stickslip lyapunov`."""

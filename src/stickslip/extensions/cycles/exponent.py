@@ -1,0 +1,181 @@
+"""How fast small disturbances of a motion grow: the result of `ss.studies.lyapunov`, and the error of a mean over a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.show import brief, number
+from stickslip.run import Study
+
+LOST = 0.1
+"""A disturbance of this share (1) of the motion changes an event into another one: it ends the horizon."""
+SURE = 3.0
+"""An exponent that differs from 0 by more standard errors than this (1) is said to have its sign."""
+BATCHES = 16
+"""A standard error is taken from so many parts of a run (1)."""
+
+
+@dataclass(frozen=True)
+class Growth:
+    """What a run tells of its disturbances: their growth up to some times, and what is said of it."""
+
+    time: Floats
+    """Ends (s) of intervals, after the start of the first one."""
+    growth: Floats
+    """The logarithm (1) of the size of a disturbance at these times."""
+    exponent: float
+    """The mean growth rate, 1/s."""
+    error: float
+    """Its standard error, 1/s."""
+    counted: float
+    """The time (s) over which it is the mean."""
+    how: str
+    """How it was found, in words."""
+    events: float = math.nan
+    """The number of events in this time, NaN if there are no events of the kind."""
+    sum_of_all: float = math.nan
+    """The sum of all exponents, 1/s; NaN where it is not known."""
+    known: float = math.nan
+    """The first disturbance, as a share (1) of the motion: what tolerance and rounding make."""
+    per_event: float = math.nan
+    """The growth (1) in an event, where it is not the exponent times the time of one."""
+
+
+def along(time: Floats, growth: Floats, how: str, **more: float) -> Growth:
+    """Return the growth along a run, with the mean of its rate and the error of that; `time` and `growth` begin with a start."""
+    counted = float(time[-1] - time[0])
+    exponent = float(growth[-1] - growth[0]) / counted
+    error = error_of_mean(np.diff(growth), np.diff(time), exponent)
+    return Growth(time, growth - growth[0], exponent, error, counted, how, **more)
+
+
+def error_of_mean(growth: Floats, lasts: Floats, rate: float) -> float:
+    """Return the standard error (1/s) of a mean rate of growth from increments that depend on each other, and their durations (s).
+
+    It is that of the means of BATCHES long parts of the run, which hardly depend on each other, or of the increments if these are
+    few (batch means; Flyvbjerg & Petersen 1989, J. Chem. Phys. 91, 461).
+    """
+    if len(growth) < 2:
+        return math.nan
+    left = growth - rate * lasts
+    sums = np.array([part.sum() for part in np.array_split(left, BATCHES)]) if len(left) >= 2 * BATCHES else left
+    return math.sqrt(len(sums) / (len(sums) - 1.0) * float(sums @ sums)) / float(lasts.sum())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LyapunovExponent(Study):
+    """The result of `lyapunov`: at what rate small disturbances of a motion grow or fade, and for how long events are predictable.
+
+    `table` has a row for each interval of the run that counts: time (s) at its end, and growth (1), the logarithm of the size of a
+    disturbance there.
+    """
+
+    problem: Any
+    """What was run."""
+    found: Growth = field(compare=False)
+
+    @property
+    def exponent(self) -> float:
+        """The largest Lyapunov exponent (1/s) of disturbances other than a shift in time; -inf if they end."""
+        return self.found.exponent
+
+    @property
+    def error(self) -> float:
+        """The standard error of the exponent (1/s), from how its mean changes along the run; NaN if it cannot be told."""
+        return self.found.error
+
+    @property
+    def per_event(self) -> float:
+        """The growth from one event to the next, as a logarithm (1); NaN if there is no event."""
+        if not math.isnan(self.found.per_event):
+            return self.found.per_event
+        return self.exponent * self.found.counted / self.found.events if self.found.events > 0.0 else math.nan
+
+    @property
+    def sum_of_all(self) -> float:
+        """The sum of all exponents (1/s), which is how fast a volume of disturbances grows; NaN where it is not known."""
+        return self.found.sum_of_all
+
+    @property
+    def chaotic(self) -> bool | None:
+        """True if disturbances grow, False if they fade; None: the exponent lies within three standard errors of 0."""
+        if math.isinf(self.exponent):
+            return False
+        return None if not abs(self.exponent) > SURE * self.error else self.exponent > 0.0
+
+    @property
+    def horizon(self) -> float:
+        """About how long (s) single events are predictable, if rounding and tolerance are all that disturbs them; inf: for ever.
+
+        The first disturbance grows to a tenth of the motion at the rate of the exponent. NaN if that disturbance is not known.
+        """
+        if self.chaotic is not True:
+            return math.inf
+        return math.log(LOST / self.found.known) / self.exponent
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """The growth of a disturbance along the run."""
+        return pd.DataFrame({"time": self.found.time, "growth": self.found.growth})
+
+    @property
+    def text(self) -> str:
+        """Say in one sentence at what rate disturbances grow."""
+        if math.isinf(self.exponent):
+            return f"not chaotic: {self.found.how}"
+        size = f"{number(self.exponent, 5)} 1/s"
+        if not math.isnan(self.error):
+            size += f" (standard error {number(self.error, 2)})"
+        what = {
+            True: f"chaotic: a disturbance grows by a factor e in {brief(1.0 / self.exponent, 's', 4)}" if self.exponent else "",
+            False: f"not chaotic: a disturbance fades by a factor e in {brief(-1.0 / self.exponent, 's', 4)}"
+            if self.exponent
+            else "",
+            None: "neither growth nor decay of disturbances can be told",
+        }[self.chaotic]
+        hint = "; a longer run (duration) tells more" if self.chaotic is None else ""
+        return f"{what}: the largest Lyapunov exponent is {size}, {self.found.how}{hint}"
+
+    @property
+    def event_text(self) -> str:
+        """Say in one sentence what an event makes of a disturbance; "" if there is none."""
+        if not math.isfinite(self.per_event):
+            return ""
+        return f"from one event to the next a disturbance is multiplied by {number(math.exp(self.per_event), 4)} on average"
+
+    @property
+    def sum_text(self) -> str:
+        """Say in one sentence what becomes of a volume of disturbances; "" if it is not known."""
+        return f"the sum of all exponents is {number(self.sum_of_all, 5)} 1/s" if math.isfinite(self.sum_of_all) else ""
+
+    @property
+    def horizon_text(self) -> str:
+        """Say in one sentence for how long single events are predictable; "" if disturbances do not grow."""
+        if not math.isfinite(self.horizon):
+            return ""
+        first = f"a first disturbance of {number(self.found.known, 2)} of the motion"
+        return f"single events are predictable for about {brief(self.horizon, 's', 3)}: {first} grows to a tenth of it then"
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """All that is said of it, in sentences."""
+        return tuple(text for text in (self.text, self.event_text, self.sum_text, self.horizon_text) if text)
+
+    def _about(self) -> Iterable[str]:
+        return self.texts
+
+    def _sentences(self) -> Iterable[str]:
+        return self.texts
+
+    def _figure(self) -> Callable[..., Any]:
+        from stickslip.extensions.cycles.figures.lyapunov import draw_growth
+
+        return draw_growth

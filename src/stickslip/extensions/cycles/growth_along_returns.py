@@ -1,0 +1,142 @@
+"""How disturbances of a rigid body grow: the derivatives of its returns to a section, one after the other along a long run.
+
+A return takes a disturbance of load and states on the section to that at the next one, so that a shift in time is left out. After
+each return the disturbance is made as small as it was.
+
+Source: Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15, 9.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stickslip.contact import steady_slidings
+from stickslip.engine import History, Positions
+from stickslip.engine.input import SHARE_OF_TOLERANCE
+from stickslip.extensions.cycles.exponent import Growth, along
+from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
+from stickslip.extensions.cycles.orbit import extent_of
+from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
+from stickslip.extensions.cycles.tangent import RigidMotion, Tangent, values_at
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+from stickslip.problem import Problem
+from stickslip.run import TextProgress, uninterrupted
+from stickslip.run.simulate import simulate
+from stickslip.run.study import MAX_PIECES
+
+STEADY_SHARE = 1e-6
+"""A run whose slip rate varies by less than this share (1) of the pull rate at its end has come to steady sliding."""
+SETTLING = 0.1
+"""The share (1) of the time after what is skipped in which a disturbance turns to where it grows fastest; it does not count."""
+LATEST = 0.5
+"""By this share (1) of the duration the contact must have passed the pull rate twice."""
+FEWEST = 4
+"""The smallest number of returns (1) over which an exponent is the mean."""
+TRIES = 8
+"""How often a run to a return may be doubled (1)."""
+RESTS = "each rest ends all disturbances, because only the load is left then (exponent minus infinity, exactly)"
+GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+def growth_of_rigid(problem: Problem, skip: float, duration: float, rtol: float, tell: TextProgress) -> Growth:
+    """Return how disturbances grow along a run of a rigid body from `skip` to `duration` (s). Raises InputError."""
+    check_can_be_followed(problem, "lyapunov")
+    history = _begun(without_load(problem), skip, duration, rtol)
+    tell(f"run of {brief(history.duration, 's')}")
+    rests = len(onsets(history).time)
+    if rests > 1 and not problem.friction.states:
+        return Growth(np.zeros(1), np.zeros(1), -math.inf, 0.0, history.duration, RESTS, events=rests)
+    if is_steady(history):
+        return _steady(problem)
+    return _along_returns(Section(problem, at_onset=False, rtol=rtol), history, duration, tell)
+
+
+def _begun(problem: Problem, skip: float, duration: float, rtol: float) -> History:
+    """Return a run up to `skip` (s), or longer if the contact passes the pull rate fewer than two times by then."""
+    lasts = max(skip, 1e-3 * duration)
+    while True:
+        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
+        if not run.status.ok:
+            raise InputError(f"lyapunov: the run did not reach {brief(lasts, 's')}: {run.status}")
+        if len(passages(run.history).time) > 1 or lasts >= LATEST * duration:
+            return run.history
+        lasts = min(2.0 * lasts, LATEST * duration)
+
+
+def is_steady(history: History) -> bool:
+    """Return True if the slip rate no longer varies in the last quarter of a run."""
+    late = np.flatnonzero(history.start + history.store.speed + history.store.bend >= 0.75 * history.duration)
+    rates = history.rate(Positions.inside(np.repeat(late, 3), np.tile([0.0, 0.5, 1.0], len(late))))
+    pull = history.problem.first_pull_rate
+    return bool(np.abs(rates - pull).max() <= STEADY_SHARE * pull)
+
+
+def _steady(problem: Problem) -> Growth:
+    """Return the growth of disturbances of the steady sliding to which a run has come."""
+    growth = steady_slidings(problem).slidings[-1].growth
+    how = "that of the steady sliding to which the run comes"
+    return Growth(np.array([0.0, 1.0]), np.array([0.0, growth]), growth, 0.0, 1.0, how)
+
+
+def _along_returns(section: Section, history: History, duration: float, tell: TextProgress) -> Growth:
+    """Return how disturbances grow along the returns after a run, up to `duration` (s)."""
+    met = passages(history)
+    if len(met.time) < 2:
+        raise InputError(
+            f"lyapunov: in the first {brief(history.duration, 's')} the contact passes the pull rate fewer than two times:"
+            " give a longer duration"
+        )
+    usual = float(met.time[-1] - met.time[0]) / (len(met.time) - 1)
+    place = coordinates(values_at(history, Positions.inside(met.piece[-1:], met.place[-1:])), at_onset=False)[:, 0]
+    scale = extent_of(history, False, len(history) - 1)
+    time, size, rests, divergence = float(met.time[-1]), 0.0, False, 0.0
+    skip = time + SETTLING * (duration - time)
+    way = scale / math.sqrt(len(scale))
+    times, sizes = [], []
+    while time < duration:
+        if time >= skip:
+            times.append(time)
+            sizes.append(size)
+        now = section.returned(place, usual, TRIES)
+        way = now.slopes(exactly=False) @ way
+        grown = float(np.linalg.norm(way / scale))
+        if not grown > 0.0:
+            return Growth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, RESTS)
+        if time >= skip:
+            divergence, rests = divergence + _divergence(now), rests or now.sticks
+        way, place, time, size = way / grown, now.end, time + now.time, size + math.log(grown)
+        if len(times) % 16 == 1:
+            tell(f"{brief(time, 's')} of {brief(duration, 's')}")
+    times.append(time)
+    sizes.append(size)
+    if len(times) <= FEWEST:
+        raise InputError(
+            f"lyapunov: the contact passes the pull rate {len(times)} times between {brief(skip, 's')} and {brief(duration, 's')}:"
+            f" more than {FEWEST} are needed: give a longer duration"
+        )
+    counted = times[-1] - times[0]
+    how = f"measured over {len(times) - 1} returns to the pull rate in {brief(counted, 's')} (rtol {section.rtol:g})"
+    known = max(section.rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps))
+    every = -math.inf if rests else divergence / counted
+    return along(np.array(times), np.array(sizes), how, events=len(times) - 1, sum_of_all=every, known=known)
+
+
+def _divergence(one: Return) -> float:
+    """Return the logarithm (1) by which a volume of disturbances grows in a return; NaN under a law whose formula changes."""
+    store, count = one.history.store, one.piece + 1
+    if Tangent(one.history, one.piece, one.place).has_knots:
+        return math.nan
+    ends = np.append(np.ones(count - 1), one.place)
+    places = (ends[:, None] * 0.5 * (GAUSS_PLACES + 1.0)).ravel()
+    at = Positions.inside(np.repeat(np.arange(count), len(GAUSS_PLACES)), places)
+    values, mode = values_at(one.history, at), store.mode[at.piece]
+    lasts = np.repeat(ends, len(GAUSS_PLACES)) * (store.speed[at.piece] + 2.0 * store.bend[at.piece] * at.xi)
+    lasts *= np.tile(0.5 * GAUSS_WEIGHTS, count)
+    found, motion = 0.0, RigidMotion(one.history.problem)
+    for direction in np.unique(mode).tolist():
+        here = mode == direction
+        found += float(lasts[here] @ np.trace(motion.slopes(values[:, here], direction), axis1=1, axis2=2))
+    return found

@@ -1,0 +1,168 @@
+"""Lyapunov exponents: of a slab beside its own interval map, of cycles beside their multipliers, and of chaos beside an own run."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.signal import lfilter
+
+import stickslip as ss
+from stickslip.extensions.cycles.exponent import error_of_mean
+from stickslip.extensions.cycles.growth_of_echoes import growth_on_pieces
+from tests.extensions.cycles.problems import coulomb, rate_and_state, stribeck
+
+IMPEDANCE, NORMAL, STATIC, DYNAMIC, ALPHA, BACK, FAR, TRIP = 9.8e6, 1e8, 0.8, 0.3, 0.3, -0.9, 2.46e8, 2e4 / 3500.0
+
+
+def slab(load: float, **changes: Any) -> ss.Problem:
+    """Return a slab whose far end gives way under a steady stress, so that its load is constant in each half of a round trip."""
+    far_end = IMPEDANCE * (1.0 - BACK) / (1.0 + BACK)
+    body = ss.ElasticSlab(21500.0, 3500.0, 1e4, NORMAL, driver_impedance=far_end)
+    law = ss.friction.HyperbolicRate(STATIC, DYNAMIC, ALPHA)
+    return ss.Problem(body, law, **{"pull_rate": 0.0, "initial_load": load, "far_stress": FAR} | changes)
+
+
+def own_map(load: float, trips: int) -> np.ndarray:
+    """Return ln|factor| in both halves of each round trip, by the map of the load that an own iteration goes through."""
+    root = math.sqrt(ALPHA * NORMAL * (STATIC - DYNAMIC) / IMPEDANCE)
+    fold = NORMAL * DYNAMIC + IMPEDANCE / ALPHA * (2.0 * root - 1.0)
+    falls, inflow = NORMAL * (STATIC - DYNAMIC), (1.0 + BACK) * FAR
+    loads, rates, slips, found = [load, 0.0], [0.0, 0.0], False, []
+    for trip in range(trips):
+        for half in (0, 1):
+            if trip:
+                loads[half] = BACK * (2.0 * IMPEDANCE * rates[half] - loads[half]) + inflow
+            elif half:
+                loads[1] = inflow - BACK * load
+            slips = loads[half] >= fold if slips else loads[half] > NORMAL * STATIC
+            rates[half], slope = 0.0, math.inf
+            if slips:
+                linear = IMPEDANCE + ALPHA * (NORMAL * DYNAMIC - loads[half])
+                rest = NORMAL * DYNAMIC - loads[half] + falls
+                rates[half] = (math.sqrt(linear**2 - 4.0 * IMPEDANCE * ALPHA * rest) - linear) / (2.0 * IMPEDANCE * ALPHA)
+                slope = IMPEDANCE - falls * ALPHA / (1.0 + ALPHA * rates[half]) ** 2
+            found.append(math.log(abs(BACK * (1.0 - 2.0 * IMPEDANCE / slope))))
+    return np.array(found)
+
+
+def test_the_exponent_of_a_slab_is_that_of_its_interval_map_on_the_same_orbit() -> None:
+    """Forty round trips, of which the first eight do not count; then many on another orbit. To 1e-6, and to 4 standard errors."""
+    short = ss.studies.lyapunov(slab(7e7), 40.0 * TRIP, skip=8.0 * TRIP)
+    assert short.exponent == pytest.approx(own_map(7e7, 40)[16:].mean() / TRIP, rel=1e-6)
+    long = ss.studies.lyapunov(slab(7e7), 2000.0 * TRIP)
+    assert long.chaotic is True
+    assert long.error < 0.1 * long.exponent
+    assert abs(long.exponent - own_map(7.1e7, 20_000)[400:].mean() / TRIP) < 4.0 * long.error
+    assert long.horizon == pytest.approx(math.log(0.1 / 1e-11) / long.exponent, rel=1e-9)
+    assert long.table["growth"].iloc[-1] == pytest.approx(long.exponent * 1600.0 * TRIP, rel=1e-9)
+
+
+def test_where_the_slip_rate_changes_the_mean_over_phases_is_an_integral() -> None:
+    """Pieces of a pulled slab, the ends of which lie on folds and echoes, beside scipy's quadrature. To 1e-6."""
+    run = ss.simulate(slab(7e7, pull_rate=2.0), 6.0 * TRIP)
+    history, found = run.history, growth_on_pieces(run.history)
+
+    def integrand(time: float) -> float:
+        rate = float(run.slip_rate(time))
+        slope = IMPEDANCE - NORMAL * (STATIC - DYNAMIC) * ALPHA / (1.0 + ALPHA * rate) ** 2
+        return math.log(abs(1.0 - 2.0 * IMPEDANCE / slope)) / TRIP
+
+    slips = np.flatnonzero((history.store.mode != 0) & (np.ptp(history.store.rate, axis=1) > 1e-3))
+    assert len(slips) >= 3
+    for piece in slips[:6].tolist():
+        begin = float(history.start[piece])
+        end = begin + float(history.store.speed[piece] + history.store.bend[piece])
+        assert found[piece] == pytest.approx(quad(integrand, begin, end, epsrel=1e-9)[0], rel=1e-6)
+    assert not found[history.store.mode == 0].any()
+
+
+def test_the_exponent_of_a_cycle_is_its_multiplier_over_its_period() -> None:
+    """To 1e-6; the sum of all exponents is that of all multipliers, to 1e-6."""
+    cycle = ss.studies.cycle(rate_and_state())
+    found = ss.studies.lyapunov(cycle.problem, 16.0 * cycle.period, skip=0.0, rtol=1e-12)
+    assert found.exponent == pytest.approx(math.log(abs(cycle.multipliers[0])) / cycle.period, rel=1e-6)
+    assert found.error < 1e-6 * abs(found.exponent)
+    assert found.chaotic is False
+    assert math.isinf(found.horizon)
+    assert found.per_event == pytest.approx(math.log(abs(cycle.multipliers[0])), rel=1e-6)
+    assert found.sum_of_all == pytest.approx(np.log(np.abs(cycle.multipliers)).sum() / cycle.period, rel=1e-6)
+
+
+def test_a_contact_that_rests_ends_all_disturbances_and_steady_sliding_has_its_own_growth() -> None:
+    rests = ss.studies.lyapunov(coulomb(), 3.0)
+    assert rests.exponent == -math.inf
+    assert rests.chaotic is False
+    assert "each rest ends all disturbances" in rests.text
+    steady = stribeck(0.4, initial_rate=0.4, initial_load=3.85)
+    found = ss.studies.lyapunov(steady, 60.0)
+    assert found.exponent == pytest.approx(ss.studies.steady(steady).slidings[-1].growth, rel=1e-12)
+    assert "steady sliding" in found.text
+
+
+def test_the_error_of_a_mean_is_that_of_increments_that_depend_on_each_other() -> None:
+    """Increments x' = p x + noise: the variance of the mean of n is (noise / (1 - p))^2 / n. The mean of 60 draws, to 15 %."""
+    draws, count = np.random.default_rng(3), 4096
+    for dependence in (-0.6, 0.0, 0.9):
+        values = lfilter([1.0], [1.0, -dependence], draws.standard_normal((60, count)), axis=1)
+        squares = [error_of_mean(one, np.ones(count), float(one.mean())) ** 2 for one in values]
+        assert np.mean(squares) == pytest.approx(1.0 / (1.0 - dependence) ** 2 / count, rel=0.15)
+
+
+def test_the_exponent_of_a_chain_is_that_of_its_disturbed_runs() -> None:
+    chain = ss.Chain(
+        ss.friction.Coulomb(0.6, 0.5), 12, 1.0, 10.0, 1.0, 1.0, "1 mm/s", initial_slip=ss.Drawn("uniform", -0.5, 0.0, seed=1)
+    )
+    found, parted = ss.studies.lyapunov(chain, 1500.0), ss.simulate(chain, 1500.0).predictability()
+    assert (found.exponent, found.error) == (parted.exponent, parted.exponent_error)
+    assert found.per_event == pytest.approx(math.log(parted.growth_per_event))
+    with pytest.raises(ss.InputError, match="lyapunov: skip is for runs"):
+        ss.studies.lyapunov(chain, 1500.0, skip=1.0)
+
+
+A, B, LENGTHS, PULL, MASS, WEIGHT = 0.01, (0.01, 0.0084), (1e-5, 1e-5 / 0.048), 1e-6, 1e3, 10.0
+"""Two states under the slip law, with the ratios of Becker 2000, Phys. Rev. E 61, 1: chaos below 0.86 of the critical 803 N/m."""
+
+
+def own_exponent(stiffness: float, lasts: float, every: float) -> tuple[float, float]:
+    """Return the exponent and its error, by LSODA on load, ln(v / V), two states and one disturbance, across the flow."""
+
+    def paces(_: float, y: Any) -> list[float]:
+        load, log, first, second = y[:4].tolist()
+        rate = PULL * math.exp(min(log, 50.0))
+        argument = 0.5 * math.exp(min(600.0, log + (0.6 + B[0] * first + B[1] * second) / A))
+        root = argument / math.hypot(1.0, argument)
+        inertia, (a, b, c, d) = MASS * rate, y[4:].tolist()
+        grows = (load - WEIGHT * A * math.asinh(argument)) / inertia
+        (one, other), (by_one, by_other) = (rate / length for length in LENGTHS), (first + log, second + log)
+        pull = a / inertia - (grows + WEIGHT * A * root / inertia) * b - WEIGHT * root * (B[0] * c + B[1] * d) / inertia
+        moved = [-stiffness * rate * b, pull, -one * ((by_one + 1.0) * b + c), -other * ((by_other + 1.0) * b + d)]
+        return [stiffness * (PULL - rate), grows, -one * by_one, -other * by_other, *moved]
+
+    y, scale, growth = np.array([0.601 * WEIGHT, 0.0, 0.0, 0.0, 0.003, 0.5, 0.7, 0.2]), np.array([100.0, 1.0, 1.0, 1.0]), []
+    for _ in range(int(lasts / every)):
+        y = solve_ivp(paces, (0.0, every), y, method="LSODA", rtol=1e-8, atol=1e-10).y[:, -1]
+        flow = scale * paces(0.0, y)[:4]
+        across = scale * y[4:]
+        across -= flow * (flow @ across) / (flow @ flow)
+        growth.append(math.log(np.linalg.norm(across)))
+        y[4:] = across / np.linalg.norm(across) / scale
+    parts = [part.mean() / every for part in np.array_split(growth[len(growth) // 5 :], 10)]
+    return float(np.mean(parts)), float(np.std(parts)) / 3.0
+
+
+def test_a_block_under_two_state_friction_is_chaotic_as_an_own_integration_has_it() -> None:
+    """To 3 standard errors of both."""
+    law = ss.friction.TwoStateRateAndState(0.6, A, B[0], LENGTHS[0], B[1], LENGTHS[1], evolution="slip")
+    start = {"initial_load": 0.601 * WEIGHT, "initial_rate": PULL, "initial_state": LENGTHS[0] / PULL}
+    block = ss.SpringBlock(mass=MASS, stiffness=675.0, normal_force=WEIGHT)
+    problem = ss.Problem(block, law, pull_rate=PULL, initial_second_state=LENGTHS[1] / PULL, **start)
+    found = ss.studies.lyapunov(problem, 30_000.0)
+    own, error = own_exponent(675.0, 30_000.0, 400.0)
+    assert found.exponent > 0.0
+    assert abs(found.exponent - own) < 3.0 * math.hypot(found.error, error)
+    assert found.error < 0.4 * found.exponent
+    assert found.sum_of_all < -10.0
