@@ -46,13 +46,15 @@ def test_only_what_leaves_the_band_counts(ramp: ConvergedBenchmark, off: float, 
     """Slip rate and traction have scales of 2; slip of 4."""
     found = ss.studies.judge_series(series(off))
     assert found.table.share.to_numpy() == pytest.approx([0.5 * share, share, share], rel=1e-9, abs=1e-4)
-    assert found.passed is passes
+    assert found.passed == passes
     assert np.array_equal(ramp.band.slip_rate, np.full(TIME.size, BAND))
     assert found.sentences[0].startswith("passed" if passes else "not passed")
 
 
 def test_the_command_gives_and_judges_it(command: Command, ramp: ConvergedBenchmark, tmp_path: Path) -> None:
-    assert "ramp" in command("benchmark", "list").out
+    listed = command("benchmark", "list").out
+    assert "nothing but a ramp (converged, with an error band)" in listed
+    assert f"{len(benchmarks.BENCHMARKS)} problems." in listed
     command("benchmark", "get", "ramp")
     rows = np.column_stack([getattr(series(1.0), name) for name in ("time", "slip", "rate", "traction")])
     np.savetxt("mine.csv", rows, delimiter=",", header="time_s,slip_m,slip_rate_m_per_s,traction_Pa", comments="")

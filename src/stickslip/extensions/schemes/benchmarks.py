@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stickslip.extensions.schemes.benchmark_kinds import Benchmark, ConvergedBenchmark
 from stickslip.extensions.schemes.contract import Series
@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 BENCHMARKS: dict[str, Benchmark | ConvergedBenchmark] = {one.name: one for one in OF_ONE_CONTACT}
 """The problems by name."""
+
+ALL = "all"
+"""What stands for every problem."""
 
 
 def benchmark_of(name: str) -> Benchmark | ConvergedBenchmark:
@@ -58,7 +61,7 @@ def judge_series(
     rtol: float = 1e-10,
     columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
-) -> Schemes | SeriesWithinBand:
+) -> Any:  # Schemes, but for the name of a benchmark whose series has converged: those who type need no cast
     """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
 
     Parameters
@@ -88,25 +91,40 @@ def judge_series(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    from stickslip.extensions.schemes.series import read_series
-
-    given_series = [series] if isinstance(series, Series | str | Path) else list(series)
-    several = tuple(one if isinstance(one, Series) else read_series(one, columns=columns) for one in given_series)
-    if not several:
+    given = [series] if isinstance(series, Series | str | Path) else list(series)
+    if not given:
         raise InputError("judge_series: needs a series or more")
-    name = several[0].name if problem is None else problem
+    name = _name_of(given[0]) if problem is None else problem
     if isinstance(name, str) and name in BENCHMARKS:
         named = BENCHMARKS[name]
         if isinstance(named, ConvergedBenchmark):
-            return named.judge(several, tolerance, progress)
+            return named.judge(_read(given, columns), tolerance, progress)
         problem = named.scenario
-    ends = max(float(one.time[-1]) for one in several) if isinstance(problem, Problem) else None
-    scenario = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem, ends)
-    return judged(scenario, several, (tolerance, rtol), progress, to_their_ends=ends is not None)
+    source = scenario_named(_name_of(given[0])) if problem is None else problem
+    if not isinstance(source, Problem):
+        scenario = read_source("judge_series", source)
+        several = _read(given, columns, scenario.problem.body.load_unit)
+        return judged(scenario, several, (tolerance, rtol), progress)
+    several = _read(given, columns, source.body.load_unit)
+    scenario = read_source("judge_series", source, max(float(one.time[-1]) for one in several))
+    return judged(scenario, several, (tolerance, rtol), progress, to_their_ends=True)
+
+
+def _name_of(series: Series | str | Path) -> str:
+    return series.name if isinstance(series, Series) else Path(series).stem
+
+
+def _read(
+    given: Sequence[Series | str | Path], columns: Mapping[str, str | int] | None, load_unit: str = "Pa"
+) -> tuple[Series, ...]:
+    """Return series, those in files read as the series of a body with this unit of loads."""
+    from stickslip.extensions.schemes.series import read_series
+
+    return tuple(one if isinstance(one, Series) else read_series(one, columns=columns, load_unit=load_unit) for one in given)
 
 
 def exact_series(name: str) -> xr.Dataset:
-    """Return the right series of a problem: time, slip since t = 0, slip rate and traction, and in an exact one events and shocks."""
+    """Return the right series of a problem: time, slip since t = 0, slip rate, traction, and in an exact one events and shocks."""
     return benchmark_of(name).series()
 
 
@@ -127,20 +145,25 @@ def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Pa
     return scenario, series, checksums
 
 
+def write_all(folder: str | Path = ".") -> Path:
+    """Write every problem of BENCHMARKS to a folder, as `write_benchmark` does, and return the path of a file of all checksums."""
+    sums = "".join(write_benchmark(name, folder)[-1].read_text(encoding="utf-8") for name in BENCHMARKS)
+    return write_atomically(Path(folder) / f"{ALL}.sha256", lambda draft: draft.write_text(sums, encoding="utf-8", newline="\n"))
+
+
 def judge_benchmark(
-    file: str | Path,
+    file: str | Path | Sequence[str | Path],
     name: str | None = None,
     *,
     tolerance: float = TOLERANCE,
     columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
 ) -> Schemes | SeriesWithinBand:
-    """Compare the series of another program with the right one of a problem.
+    """Compare the series of another program, in one file or in several of different steps, with the right one of a problem.
 
-    `stickslip.extensions.schemes.series.read_series` reads the file. The problem is by default that with the name of the file; the
-    other arguments are as for `judge_series`. Raises InputError if the name is unknown, or the file cannot be read.
+    `stickslip.extensions.schemes.series.read_series` reads a file. The problem is by default that with the name of the first; the
+    other arguments are as for `judge_series`. Raises InputError if the name is unknown, or a file cannot be read.
     """
-    from stickslip.extensions.schemes.series import read_series
-
-    found = benchmark_of(Path(file).stem if name is None else name)
-    return found.judge([read_series(file, columns=columns)], tolerance, progress)
+    files = [file] if isinstance(file, str | Path) else list(file)
+    found = benchmark_of(Path(files[0]).stem if name is None else name)
+    return found.judge(_read(files, columns, found.scenario.problem.body.load_unit), tolerance, progress)
