@@ -17,6 +17,7 @@ from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
+    from stickslip.extensions.schemes.converged import SeriesWithinBand
     from stickslip.extensions.schemes.schemes import Schemes
 
 MOST_CURVES = 4
@@ -99,3 +100,25 @@ def _draw_curves(axes: Axes, drawn: list[SchemeCurve], name: str) -> None:
         axes.plot(one.time / clock[1], heights, one.linestyle, color=one.colour, linewidth=one.width)
     zero_line(axes)
     axes.set(xlabel=curve_label("time", clock[0]), ylabel=curve_label(name, unit[0]))
+
+
+@styled
+def draw_within_band(study: SeriesWithinBand, **place: Unpack[Place]) -> Figure:
+    """Draw slip, slip rate and traction of series, below one another, over the converged ones and their error bands."""
+    figure = sheet((6.2, 6.4), **place)
+    axes: Any = figure.subplots(3, sharex=True)
+    time = study.right.time.to_numpy()
+    for one, name in zip(axes, ("slip", "slip_rate", "traction"), strict=True):
+        right, band = (study.right[column].to_numpy() for column in (name, f"{name}_band"))
+        own = [(series.name, series.time, getattr(series, name.removeprefix("slip_"))) for series in study.series]
+        unit = readable_unit(si_unit(name, "Pa"), right)
+        one.fill_between(time, (right - band) / unit[1], (right + band) / unit[1], color=GREY, alpha=0.4, linewidth=0.0)
+        one.plot(time, right / unit[1], color=INK, linewidth=1.0, label="converged")
+        for colour, (text, times, values) in zip(LINE_COLOURS, own, strict=False):
+            one.plot(times, values / unit[1], color=colour, linewidth=1.2, label=text)
+        one.set_ylabel(curve_label(name, unit[0]))
+    axes[-1].set(xlabel=curve_label("time", "s"), xlim=(time[0], time[-1]))
+    letter_panels(axes, ["slip", "slip rate", "traction"])
+    add_legend(axes[0], axes[0].lines)
+    set_title(figure, "Series beside the converged one")
+    return figure

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stickslip.cli.output.show import print_numbers, print_sentences, say, titled
+from stickslip.extensions.schemes.converged import SeriesWithinBand
 from stickslip.extensions.schemes.measures import period_of
 from stickslip.foundation.show import clean, number
 
@@ -18,11 +19,29 @@ if TYPE_CHECKING:
     from stickslip.problem.scenarios import Scenario
 
 
-def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Callable[[Path], object]]]:
-    """Return the files of a study with what writes each: the table, and a table of shocks beside it."""
+def tables_of(study: Schemes | SeriesWithinBand, out: Path | None) -> list[tuple[Path | None, Callable[[Path], object]]]:
+    """Return the files of a study with what writes each: the table, and a table of shocks beside it if there is an exact series."""
     if out is None:
         return []
+    if isinstance(study, SeriesWithinBand):
+        return [(out, study.to_csv)]
     return [(out, study.to_csv), (out.with_name(f"{out.stem}-shocks{out.suffix}"), study.shocks_to_csv)]
+
+
+def show_judged(scenario: Scenario, study: Schemes | SeriesWithinBand) -> None:
+    """Print what a series of another program gives beside the right one of a benchmark, exact or converged."""
+    if not isinstance(study, SeriesWithinBand):
+        show_schemes(scenario, study)
+        return
+    screen = titled(scenario)
+    rows = [
+        [clean(row["series"]), row["quantity"], *(number(row[name], 3) for name in ("distance", "beyond", "share"))]
+        for row in study.table.to_dict("records")
+    ]
+    headings = ("\nseries", "\nquantity", "mean distance,\nSI", "beyond\nthe band, SI", "beyond,\nshare")
+    print_numbers(screen, headings, rows, text=2)
+    screen.print()
+    print_sentences(screen, *(clean(text) for text in study.sentences))
 
 
 def show_schemes(scenario: Scenario, study: Schemes) -> None:

@@ -85,14 +85,14 @@ def _judge(
     """Judge a series, show and write what comes out, and return True if it passes."""
     from stickslip.cli.overrides import typed_columns
     from stickslip.extensions.schemes.benchmarks import benchmark_of, judge_benchmark
-    from stickslip.extensions.schemes.summary import show_schemes, tables_of
+    from stickslip.extensions.schemes.summary import show_judged, tables_of
     from stickslip.run import progress_line
 
     asked = benchmark_of(file.stem if name is None else name)
     columns = typed_columns(column, "benchmark: --column")
     with progress_line("benchmark") as tell:
         study = judge_benchmark(file, asked.name, tolerance=tolerance, columns=columns, progress=tell)
-    show_schemes(asked.scenario, study)
+    show_judged(asked.scenario, study)
     out, figure, look = results
     announce(*write_files(*tables_of(study, out), (figure, drawing(study.plot, look))))
     return study.passed

@@ -95,9 +95,12 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
 
 def _judged(scenario: Scenario, paths: list[Path], column: list[str] | None) -> Schemes:
     from stickslip.cli.overrides import typed_columns
-    from stickslip.extensions.schemes.benchmarks import judge_series
+    from stickslip.extensions.schemes.judgement import TOLERANCE
+    from stickslip.extensions.schemes.judging import judged
+    from stickslip.extensions.schemes.series import read_series
     from stickslip.run import progress_line
 
     columns = typed_columns(column, "schemes: --column")
+    several = [read_series(path, columns=columns) for path in paths]
     with progress_line("schemes") as tell:
-        return judge_series(paths, scenario, rtol=scenario.rtol, columns=columns, progress=tell)
+        return judged(scenario, several, (TOLERANCE, scenario.rtol), tell)
