@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.schemes.benchmark_kinds import Benchmark
 from stickslip.extensions.schemes.benchmarks import (
     BENCHMARKS,
     benchmark_of,
@@ -21,6 +22,7 @@ from stickslip.extensions.schemes.benchmarks import (
     write_benchmark,
 )
 from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.problems import OF_ONE_CONTACT
 from stickslip.extensions.schemes.run import SCHEMES, run_scheme
 from stickslip.extensions.schemes.schemes import schemes
 from stickslip.extensions.schemes.series import read_series
@@ -97,23 +99,32 @@ def test_a_series_that_is_wrong_without_a_wrong_unit_is_judged() -> None:
     assert judge_series(wrong, "fig4-loop").verdicts == {"mine": "none"}
 
 
-TELL_RULES_APART = {"loop", "dwell"}
+OF_A_SLAB = tuple(BENCHMARKS)[:12]
+"""Problems that have a grid."""
 
 
 def test_there_are_twelve_that_any_scheme_can_run() -> None:
-    assert len(BENCHMARKS) == 12
-    for name in BENCHMARKS:
+    for name in OF_A_SLAB:
         scenario = benchmark_of(name).scenario
         series = run_scheme(scenario.problem, 0.2, SCHEMES["sbp4"], 20)
         assert np.isfinite(series.slip).all()
 
 
-@pytest.mark.parametrize("name", BENCHMARKS)
-def test_only_those_that_say_so_tell_rules_apart(name: str) -> None:
-    scenario = benchmark_of(name).scenario
-    series = run_scheme(scenario.problem, scenario.duration, SCHEMES["characteristics"], 20)
-    groups = judge_series(series, scenario).paths.groups()
-    assert (len(groups) > 1) == (name in TELL_RULES_APART)
+@pytest.mark.parametrize("name", [one.name for one in OF_ONE_CONTACT if one.name not in OF_A_SLAB])
+def test_schemes_refuse_the_others(name: str) -> None:
+    with pytest.raises(InputError, match=r"schemes: .*(has no grid|not in the schemes)"):
+        schemes(benchmark_of(name).scenario)
+
+
+@pytest.mark.parametrize("one", OF_ONE_CONTACT, ids=lambda one: one.name)
+def test_only_those_that_say_so_tell_rules_apart(one: Benchmark) -> None:
+    """The exact series of each is judged right, and no file is needed for that."""
+    scenario = one.scenario
+    run, time = ss.simulate(scenario), np.linspace(0.0, scenario.duration, 2001)
+    slip = run.slip(time) - scenario.problem.initial_slip
+    study = judge_series(Series(time, slip, run.slip_rate(time), run.traction(time), one.name))
+    assert study.passed, study
+    assert (len(study.paths.groups()) > 1) == one.tells_rules
 
 
 def test_the_series_of_coulomb_friction_is_the_closed_form() -> None:

@@ -46,7 +46,7 @@ def test_only_what_leaves_the_band_counts(ramp: ConvergedBenchmark, off: float, 
     """Slip rate and traction have scales of 2; slip of 4."""
     found = ss.studies.judge_series(series(off))
     assert found.table.share.to_numpy() == pytest.approx([0.5 * share, share, share], rel=1e-9, abs=1e-4)
-    assert found.passed is passes
+    assert found.passed == passes
     assert np.array_equal(ramp.band.slip_rate, np.full(TIME.size, BAND))
     assert found.sentences[0].startswith("passed" if passes else "not passed")
 

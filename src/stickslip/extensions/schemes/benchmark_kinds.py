@@ -42,6 +42,8 @@ class Benchmark:
     name: str
     asks: str
     make: Callable[[], Scenario]
+    tells_rules: bool = False
+    """True if its solution depends on the selection rule."""
 
     band: ClassVar[Band | None] = None
     """How far the series itself may be off; None if it is exact."""
@@ -72,6 +74,8 @@ class ConvergedBenchmark:
     asks: str
     make: Callable[[], Scenario]
     converge: Callable[[Scenario], xr.Dataset]
+
+    tells_rules: ClassVar[bool] = False
 
     @property
     def scenario(self) -> Scenario:

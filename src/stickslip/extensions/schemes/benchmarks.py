@@ -88,25 +88,40 @@ def judge_series(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    from stickslip.extensions.schemes.series import read_series
-
-    given_series = [series] if isinstance(series, Series | str | Path) else list(series)
-    several = tuple(one if isinstance(one, Series) else read_series(one, columns=columns) for one in given_series)
-    if not several:
+    given = [series] if isinstance(series, Series | str | Path) else list(series)
+    if not given:
         raise InputError("judge_series: needs a series or more")
-    name = several[0].name if problem is None else problem
+    name = _name_of(given[0]) if problem is None else problem
     if isinstance(name, str) and name in BENCHMARKS:
         named = BENCHMARKS[name]
         if isinstance(named, ConvergedBenchmark):
-            return named.judge(several, tolerance, progress)
+            return named.judge(_read(given, columns), tolerance, progress)
         problem = named.scenario
-    ends = max(float(one.time[-1]) for one in several) if isinstance(problem, Problem) else None
-    scenario = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem, ends)
-    return judged(scenario, several, (tolerance, rtol), progress, to_their_ends=ends is not None)
+    source = scenario_named(_name_of(given[0])) if problem is None else problem
+    if not isinstance(source, Problem):
+        scenario = read_source("judge_series", source)
+        several = _read(given, columns, scenario.problem.body.load_unit)
+        return judged(scenario, several, (tolerance, rtol), progress)
+    several = _read(given, columns, source.body.load_unit)
+    scenario = read_source("judge_series", source, max(float(one.time[-1]) for one in several))
+    return judged(scenario, several, (tolerance, rtol), progress, to_their_ends=True)
+
+
+def _name_of(series: Series | str | Path) -> str:
+    return series.name if isinstance(series, Series) else Path(series).stem
+
+
+def _read(
+    given: Sequence[Series | str | Path], columns: Mapping[str, str | int] | None, load_unit: str = "Pa"
+) -> tuple[Series, ...]:
+    """Return series, those in files read as the series of a body with this unit of loads."""
+    from stickslip.extensions.schemes.series import read_series
+
+    return tuple(one if isinstance(one, Series) else read_series(one, columns=columns, load_unit=load_unit) for one in given)
 
 
 def exact_series(name: str) -> xr.Dataset:
-    """Return the right series of a problem: time, slip since t = 0, slip rate and traction, and in an exact one events and shocks."""
+    """Return the right series of a problem: time, slip since t = 0, slip rate, traction, and in an exact one events and shocks."""
     return benchmark_of(name).series()
 
 
@@ -140,7 +155,5 @@ def judge_benchmark(
     `stickslip.extensions.schemes.series.read_series` reads the file. The problem is by default that with the name of the file; the
     other arguments are as for `judge_series`. Raises InputError if the name is unknown, or the file cannot be read.
     """
-    from stickslip.extensions.schemes.series import read_series
-
     found = benchmark_of(Path(file).stem if name is None else name)
-    return found.judge([read_series(file, columns=columns)], tolerance, progress)
+    return found.judge(_read([file], columns, found.scenario.problem.body.load_unit), tolerance, progress)

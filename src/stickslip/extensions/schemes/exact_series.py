@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import stickslip
+from stickslip.foundation.names import in_files
 from stickslip.problem.scenarios import Scenario
 from stickslip.run.simulate import simulate
 
@@ -37,7 +38,7 @@ def dataset_of(scenario: Scenario) -> xr.Dataset:
     events = run.events[["start", "end", "slip", "peak_rate", "pulses"]].rename(columns=lambda column: f"event_{column}")
     found = table.to_xarray().merge(events.rename_axis("event").to_xarray())
     values = {"time": time, "slip": run.slip(time) - run.problem.initial_slip, "slip_rate": rate, "traction": traction}
-    units = {"time": "s", "slip": "m", "slip_rate": "m s-1", "traction": "Pa"}
-    found = found.assign({column: ("sample", values[column][order], {"units": unit}) for column, unit in units.items()})
+    units = {"time": "s"} | {name: run.problem.unit_of(name) for name in ("slip", "slip_rate", "traction")}
+    found = found.assign({column: ("sample", values[column][order], {"units": in_files(unit)}) for column, unit in units.items()})
     about = {"title": scenario.title, "asks": scenario.description, "rtol": scenario.rtol, "version": stickslip.__version__}
     return found.assign_attrs(**about, rule=run.problem.rule, scenario=scenario.to_toml())

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stickslip.extensions.schemes.measures import units_for
 from stickslip.figures.panels import add_legend, letter_panels, set_log_ticks, set_title, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, axis_text, curve_label, styled
@@ -66,7 +67,7 @@ def draw_schemes(study: Schemes, **place: Unpack[Place]) -> Figure:
     axes: Any = figure.subplot_mosaic([["errors", "slip"], ["errors", "slip_rate"]], width_ratios=(1, 1.25))
     marks, drawn = _draw_errors(axes["errors"], study), curves(study)
     for name in ("slip", "slip_rate"):
-        _draw_curves(axes[name], drawn, name)
+        _draw_curves(axes[name], drawn, name, study.problem.body.load_unit)
     letter_panels(axes.values(), ["errors", "slip", "slip rate"])
     figure.align_ylabels([axes["slip"], axes["slip_rate"]])
     for one in drawn:
@@ -79,7 +80,7 @@ def draw_schemes(study: Schemes, **place: Unpack[Place]) -> Figure:
 
 def _draw_errors(axes: Axes, study: Schemes) -> list[Line2D]:
     table = study.table
-    clock, length = readable_unit("s", table.step), readable_unit("m", table.slip_error)
+    clock, length = readable_unit("s", table.step), readable_unit(units_for(study.problem.body.load_unit)["m"], table.slip_error)
     for i, (name, own) in enumerate(table.groupby("scheme", sort=False)):
         errors = np.where(own.slip_error > 0.0, own.slip_error / length[1], np.nan)
         look: Any = {"color": LINE_COLOURS[i % len(LINE_COLOURS)], "linestyle": STYLES[i // len(LINE_COLOURS) % len(STYLES)]}
@@ -92,9 +93,9 @@ def _draw_errors(axes: Axes, study: Schemes) -> list[Line2D]:
     ]
 
 
-def _draw_curves(axes: Axes, drawn: list[SchemeCurve], name: str) -> None:
+def _draw_curves(axes: Axes, drawn: list[SchemeCurve], name: str, load_unit: str) -> None:
     clock = readable_unit("s", *(one.time for one in drawn))
-    unit = readable_unit(si_unit(name, "Pa"), *(one.values[name] for one in drawn))
+    unit = readable_unit(si_unit(name, load_unit), *(one.values[name] for one in drawn))
     for one in drawn:
         heights = one.values[name] / unit[1]
         axes.plot(one.time / clock[1], heights, one.linestyle, color=one.colour, linewidth=one.width)

@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.schemes.measures import MeasuredSeries
+from stickslip.extensions.schemes.traits import EXPLAINS, traits_of
 from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 
 TOLERANCE = 0.05
 """A series may be off by this share of the exact values, if no other is given."""
-EXPLAINS = 0.2
-"""Name a convention if it lessens the distance from the exact series by this factor."""
-QUANTITIES_JUDGED = {"slip": "m", "slip rate": "m/s", "traction": "Pa"}
-"""What a series has, with units."""
+QUANTITIES_JUDGED = {"slip": "slip", "slip rate": "slip_rate", "traction": "traction"}
+"""What a series has, each with the name by which a problem knows its unit."""
 SIDES = "of two elastic sides each slips by half, and the jump between them counts"
 ZERO = "another zero than the exact"
 CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {
@@ -60,6 +59,9 @@ class Judgement:
         slip = one.exact.slip(one.time) - one.exact.problem.initial_slip
         found = (slip + one.gap, slip), (one.rate, one.exact_rate), (one.traction, one.exact_traction)
         return dict(zip(QUANTITIES_JUDGED, found, strict=True))
+
+    def _unit_of(self, what: str) -> str:
+        return self.measured.exact.problem.unit_of(QUANTITIES_JUDGED[what])
 
     def _shares(self, what: str, own: Floats) -> dict[str, float]:
         exact, away = self._pairs[what][1], self.measured.away
@@ -108,6 +110,11 @@ class Judgement:
         """The conventions that explain what is off, one sentence each."""
         return () if self.passed else tuple(self._conventions())
 
+    @cached_property
+    def traits(self) -> tuple[str, ...]:
+        """What the series shows of its program, whether it passes or not: ringing, a shift by a step, a wrong echo."""
+        return traits_of(self.measured)
+
     def _conventions(self) -> Iterator[str]:
         explained: dict[str, list[str]] = {}
         for what, (own, exact) in self._pairs.items():
@@ -118,7 +125,7 @@ class Judgement:
         for said, names in explained.items():
             cure = CONVENTIONS[said][0]
             if said == ZERO:
-                zeros = (brief(float(np.median(np.subtract(*self._pairs[what]))), QUANTITIES_JUDGED[what], 4) for what in names)
+                zeros = (brief(float(np.median(np.subtract(*self._pairs[what]))), self._unit_of(what), 4) for what in names)
                 cure = f"subtract {' and '.join(zeros)}"
             yield f"{self.name} has {said} {', '.join(names[:-1])}{' and ' if len(names) > 1 else ''}{names[-1]}: {cure}"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,6 +15,7 @@ from stickslip.extensions.schemes.contract import Energies, Series
 from stickslip.extensions.schemes.shocks import Shock, shadow, shocks_of
 from stickslip.extensions.schemes.verdict import mean_magnitude
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import KINDS_OF_BODY
 from stickslip.friction import FrictionLaw
 from stickslip.problem import default_event_rate
 from stickslip.solution import Solution
@@ -50,6 +52,18 @@ COLUMNS_OF_SCHEMES = {
     "rule": ("", "selection rule whose exact path the series follows; none; or cannot tell, if it could be any rule's"),
 }
 """Columns of the table, each with its unit and meaning."""
+
+
+def units_for(load_unit: str) -> Mapping[str, str]:
+    """Return the units that take the place of those of a slab for a body whose loads have this unit."""
+    kind = KINDS_OF_BODY[load_unit]
+    return {"m": kind.slip, "m/s": f"{kind.slip}/s", "Pa": load_unit, "J/m^2": kind.energy}
+
+
+def in_units(columns: Mapping[str, tuple[str, str]], load_unit: str) -> dict[str, tuple[str, str]]:
+    """Return columns with the units that they have for such a body."""
+    units = units_for(load_unit)
+    return {name: (units.get(unit, unit), meaning) for name, (unit, meaning) in columns.items()}
 
 
 def pulses_in(rate: Floats, threshold: float) -> int:

@@ -14,7 +14,8 @@ from stickslip.extensions.schemes.benchmark_kinds import Benchmark
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
 from stickslip.friction.laws.of_rate import Coulomb
 from stickslip.problem import Problem
-from stickslip.problem.bodies import ElasticSlab
+from stickslip.problem.bodies import ElasticSlab, TwoSlabs
+from stickslip.problem.loading import PiecewiseLinear
 from stickslip.problem.scenarios import Scenario, load_scenario
 
 ROCK = ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
@@ -55,6 +56,30 @@ def _dwell() -> Scenario:
     return Scenario(Problem(MATCHED, law, initial_load=7e7, far_stress=7.5e7), 8.0)
 
 
+def _soft_layer() -> Scenario:
+    return replace(load_scenario("low-velocity-zone"), duration=14.0)
+
+
+def _two_slabs() -> Scenario:
+    plates = TwoSlabs([0.048], [7850.0], [3200.0], [0.09], [2650.0], [3000.0], normal_stress=5e6)
+    return Scenario(Problem(plates, Coulomb(static=0.7, dynamic=0.6), pull_rate=1e-3, initial_excess=0.0), 2e-4)
+
+
+def _bow_at_a_tenth() -> Scenario:
+    return replace(load_scenario("bowed-string-tenth"), duration=0.04)
+
+
+def _pressed() -> Scenario:
+    pressed = PiecewiseLinear([1.0, 3.0, 5.0], [1e8, 7.5e7, 1e8])
+    return Scenario(Problem(ROCK, Coulomb(static=0.8, dynamic=0.6), initial_load=7e7, normal_load=pressed), 9.0)
+
+
+def _shaken() -> Scenario:
+    column = ElasticSlab(density=1900.0, wave_speed=160.0, thickness=20.0, normal_stress=360e3, driver_impedance=0.0)
+    ground = PiecewiseLinear([0.1, 0.2, 0.4], [0.0, -0.3, 0.0])
+    return Scenario(Problem(column, Coulomb(static=0.37, dynamic=0.37), initial_load=9.6e4, ground_velocity=ground), 2.0)
+
+
 def _bundled(name: str) -> Callable[[], Scenario]:
     return lambda: load_scenario(name)
 
@@ -70,7 +95,17 @@ OF_ONE_CONTACT: tuple[Benchmark, ...] = (
     Benchmark("regular-rate", "friction of slip rate with one solution, under a fast driver", _regular),
     Benchmark("rate-shock", "an onset from the strength exactly, and two shocks of 4 m/s", _bundled("fig6-slab")),
     Benchmark("weak-shock", "a shock of 2.6e-5 m/s that must neither be lost nor grow", _bundled("fig7-slab-critical")),
-    Benchmark("loop", "which selection rule: the load passes both folds", _bundled("fig4-loop")),
-    Benchmark("dwell", "which selection rule: the load rises to between the folds and stays there", _dwell),
+    Benchmark("loop", "which selection rule: the load passes both folds", _bundled("fig4-loop"), tells_rules=True),
+    Benchmark("dwell", "which selection rule: the load rises to between the folds and stays there", _dwell, tells_rules=True),
+    Benchmark("soft-layer", "echoes of an interface: a soft layer makes two slips of one", _soft_layer, tells_rules=True),
+    Benchmark("two-slabs", "two unlike elastic sides, whose echoes return at different times", _two_slabs, tells_rules=True),
+    Benchmark(
+        "bow-at-a-tenth",
+        "a string on both sides of a bow, under a law of slip rate: Helmholtz' motion",
+        _bow_at_a_tenth,
+        tells_rules=True,
+    ),
+    Benchmark("varying-normal-load", "a normal load that falls and rises again: onset, slip that follows it, arrest", _pressed),
+    Benchmark("moving-ground", "a column with a free top on ground that moves: slip counts from the ground", _shaken),
 )
 """Problems of one contact, whose series are exact."""

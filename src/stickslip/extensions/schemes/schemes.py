@@ -19,10 +19,11 @@ import pandas as pd
 import stickslip
 from stickslip.extensions.schemes.contract import Scheme, Series
 from stickslip.extensions.schemes.judgement import TOLERANCE, Judgement
-from stickslip.extensions.schemes.measures import COLUMNS_OF_SCHEMES, MeasuredSeries
+from stickslip.extensions.schemes.measures import COLUMNS_OF_SCHEMES, MeasuredSeries, in_units
 from stickslip.extensions.schemes.regularisations import LAB
 from stickslip.extensions.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
 from stickslip.extensions.schemes.shocks import SHOCK_COLUMNS
+from stickslip.extensions.schemes.traits import orders_of
 from stickslip.extensions.schemes.verdict import NONE, SAME_PATH, UNTOLD, RulePaths, change, exact_runs, local_orders
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
@@ -109,10 +110,31 @@ class Schemes(Study):
         return table
 
     @property
+    def told(self) -> tuple[str, ...]:
+        """What is said of series of another program: whether each passes, what is off, what explains it, and how errors fall."""
+        texts = [text for one in self.judgements for text in (one.text, one.reasons, *one.hints, *one.traits)]
+        return tuple(text for text in (*texts, orders_of(self.measured)) if text)
+
+    @property
+    def not_told(self) -> str:
+        """Why the problem cannot tell selection rules apart, and which benchmarks can; "" if it can."""
+        from stickslip.extensions.schemes.problems import OF_ONE_CONTACT  # here, because those are made of this
+
+        if len(self.paths.groups()) > 1:
+            return ""
+        *some, last = [one.name for one in OF_ONE_CONTACT if one.tells_rules]
+        can = f"the benchmarks {', '.join(some)} and {last} can tell rules apart"
+        if len(self.exact) < len(self.problem.rules):
+            return f"under a normal load that varies like this only {self.problem.rule} is followed: {can}"
+        return f"all selection rules have the same solution here: {can}"
+
+    @property
     def columns(self) -> dict[str, tuple[str, str]]:
         """The columns of the table, each with its unit and meaning."""
         meaning = "distance from the exact path of {}, as a share of the distance from that to the next rule's path"
-        return COLUMNS_OF_SCHEMES | {f"miss_{rule}": ("", meaning.format(rule)) for rule in self.exact}
+        return in_units(COLUMNS_OF_SCHEMES, self.problem.body.load_unit) | {
+            f"miss_{rule}": ("", meaning.format(rule)) for rule in self.exact
+        }
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
@@ -158,7 +180,8 @@ class Schemes(Study):
 
     def shocks_to_csv(self, path: str | Path) -> Path:
         """Write the table of shocks as CSV, with the meaning of its columns in comment lines (#), and return its path."""
-        about = [f"{name}{f' ({unit})' if unit else ''}: {meaning}" for name, (unit, meaning) in SHOCK_COLUMNS.items()]
+        columns = in_units(SHOCK_COLUMNS, self.problem.body.load_unit)
+        about = [f"{name}{f' ({unit})' if unit else ''}: {meaning}" for name, (unit, meaning) in columns.items()]
         return write_table(Path(path), self.shocks, about)
 
     def _about(self) -> Iterator[str]:
@@ -175,13 +198,12 @@ class Schemes(Study):
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"
         if self.interrupted:
             yield "interrupted: these are the runs that were finished"
-        if len(self.paths.groups()) == 1:
-            yield "all selection rules have the same solution here"
+        if self.not_told:
+            yield self.not_told
         else:
             yield from (f"{scheme} follows {rule}" for scheme, rule in self.verdicts.items())
         if self.tolerance is not None:
-            for one in self.judgements:
-                yield from (one.text, one.reasons, *one.hints)
+            yield from self.told
 
 
 def _depends(found: list[str]) -> str:

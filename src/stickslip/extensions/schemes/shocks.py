@@ -37,7 +37,7 @@ def check_units(series: Series, exact: Solution, problem: Problem) -> None:
     peak = float(np.abs(series.slip - series.slip[0]).max())
     if abs(series.slip[0]) > max(0.1 * peak, 2.0 * series.step * float(np.abs(series.rate).max())):
         hint = " (it seems to be absolute)" if problem.initial_slip else ""
-        _refuse(series, f"slip is {series.slip[0]:g} m at the start{hint}: slip must count from t = 0")
+        _refuse(series, f"slip is {series.slip[0]:g} {problem.unit_of('slip')} at the start{hint}: slip must count from t = 0")
     time = series.time[series.time <= exact.history.span[1]]
     own = {"slip": peak, "slip rate": float(np.abs(series.rate).max()), "traction": float(np.abs(series.traction).max())}
     expected = {
@@ -45,8 +45,8 @@ def check_units(series: Series, exact: Solution, problem: Problem) -> None:
         "slip rate": float(np.abs(exact.slip_rate(time)).max()),
         "traction": float(np.abs(exact.traction(time)).max()),
     }
-    for name, unit in (("slip", "m"), ("slip rate", "m/s"), ("traction", "Pa")):
-        wrong = _prefix(own[name], expected[name])
+    for name in expected:
+        wrong, unit = _prefix(own[name], expected[name]), problem.unit_of(name.replace(" ", "_"))
         if wrong:
             _refuse(series, f"largest {name} is {own[name]:g} {unit}, exact {expected[name]:g} {unit}: is it in {wrong}{unit}?")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from stickslip.cli.output.show import print_numbers, print_sentences, say, titled
 from stickslip.extensions.schemes.converged import SeriesWithinBand
-from stickslip.extensions.schemes.measures import period_of
+from stickslip.extensions.schemes.measures import period_of, units_for
 from stickslip.foundation.show import clean, number
 
 if TYPE_CHECKING:
@@ -47,17 +47,18 @@ def show_judged(scenario: Scenario, study: Schemes | SeriesWithinBand) -> None:
 def show_schemes(scenario: Scenario, study: Schemes) -> None:
     """Print errors, orders, pulses and the rule that each run follows on standard output."""
     screen = titled(scenario)
-    own = study.own
+    own, units = study.own, units_for(study.problem.body.load_unit)
+    unit, rate = units["m"], units["m/s"]
     slip = float(own.slip(study.until)) - study.problem.initial_slip
     is_periodic = bool(study.table.periods.notna().any())
     periods = f", {number(slip / period_of(study.problem.friction), 3)} periods of friction," if is_periodic else ""
-    say(screen, f"exact, {study.problem.rule}: slip {number(slip, 6)} m{periods} after {number(study.until, 6)} s\n")
-    headings: tuple[str, ...] = ("\nscheme", "\ncells", "mean slip\nerror m", "\norder", "rate error\nm/s", "\npulses")
+    say(screen, f"exact, {study.problem.rule}: slip {number(slip, 6)} {unit}{periods} after {number(study.until, 6)} s\n")
+    headings: tuple[str, ...] = ("\nscheme", "\ncells", f"mean slip\nerror {unit}", "\norder", f"rate error\n{rate}", "\npulses")
     headings = (
         *headings,
         *["periods\nof slip"] * is_periodic,
         "arrest\ns",
-        "final slip\nm",
+        f"final slip\n{unit}",
         "own\nshocks",
         "heat\nerror",
         "damped,\nof heat",
@@ -77,14 +78,14 @@ def show_schemes(scenario: Scenario, study: Schemes) -> None:
     _show_shocks(screen, study)
     if study.interrupted:
         print_sentences(screen, "Interrupted: these are the runs that were finished")
-    if len(study.paths.groups()) == 1:
-        print_sentences(screen, "all selection rules have the same solution here")
+    if study.not_told:
+        print_sentences(screen, study.not_told)
     else:
         for verdict in dict.fromkeys(study.verdicts.values()):
             names = [clean(scheme) for scheme, found in study.verdicts.items() if found == verdict]
             print_sentences(screen, f"rule {verdict}: {', '.join(names)}")
     if study.tolerance is not None:
-        print_sentences(screen, *(clean(text) for one in study.judgements for text in (one.text, one.reasons, *one.hints)))
+        print_sentences(screen, *(clean(text) for text in study.told))
 
 
 def _order(value: float) -> str:
@@ -98,7 +99,8 @@ def _show_shocks(screen: Console, study: Schemes) -> None:
     table = table[table.exact_time.notna()]
     if table.empty:
         return
-    headings = ("\nshocks of", "\ncells", "exact\ntime s", "\ntime s", "\ndelay s", "exact\nm/s", "\nm/s", "\nsize")
+    rate = units_for(study.problem.body.load_unit)["m/s"]
+    headings = ("\nshocks of", "\ncells", "exact\ntime s", "\ntime s", "\ndelay s", f"exact\n{rate}", f"\n{rate}", "\nsize")
     rows = []
     for row in table.to_dict("records"):
         times = [number(row["exact_time"], 6), number(row["time"], 6), number(row["delay"], 2)]

@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.contact import folds_not_followed
 from stickslip.extensions.schemes.contract import Series
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Problem
-from stickslip.problem.bodies import as_slab
 from stickslip.run import TextProgress, uninterrupted
 from stickslip.run.simulate import simulate
 from stickslip.solution import Solution
@@ -70,8 +70,7 @@ def change(coarse: Series, fine: Series, until: float) -> Gap:
 
 def cell_time(series: Series, exact: Solution) -> float:
     """Return the time (s) that a series cannot resolve: the travel time of a cell, or the step of time if that is longer."""
-    slab = as_slab(exact.problem.body, "schemes: a block has no grid")
-    return max(slab.thickness / slab.wave_speed / series.cells if series.cells else 0.0, series.step)
+    return max(exact.problem.body.time_to_driver / series.cells if series.cells else 0.0, series.step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,10 +156,12 @@ class RulePaths:
 
 
 def exact_runs(problem: Problem, duration: float, rtol: float, tell: TextProgress) -> dict[str, Solution]:
-    """Return the exact solution of a problem under its own selection rule and under all built-in ones that it may have."""
+    """Return the exact solution of a problem under its own selection rule and under all built-in ones that are followed for it."""
     found = {}
     for rule in dict.fromkeys((problem.rule, *problem.rules)):
-        tell(f"exact answer, {rule}")
         selected = problem if rule == problem.rule else replace(problem, selection=rule)
+        if rule != problem.rule and folds_not_followed(selected):
+            continue
+        tell(f"exact answer, {rule}")
         found[rule] = uninterrupted(simulate(selected, duration, rtol))
     return found
