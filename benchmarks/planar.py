@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
+from unittest.mock import patch
 
 import jax
 import jax.numpy as jnp
@@ -23,7 +24,7 @@ from tests.extensions.planar.planar_methods import PlanarCase, SlipWeakeningAtNo
 import stickslip as ss
 from benchmarks.planar_kernels import NumbaSteps, convolved, exponentials, exponentials_in_c, lines_of_nodes
 from stickslip.extensions.planar.memory import advanced
-from stickslip.extensions.planar.solver import PlanarSolver, our_settings
+from stickslip.extensions.planar.solver import PlanarSolver, functions_of, our_settings
 
 Floats = NDArray[np.float64]
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
@@ -163,7 +164,7 @@ def memory() -> Iterator[tuple[str, ...]]:
         for trips in (1, 3, 10):
             slab = ss.PlanarSlab(ss.Problem(SLAB, LAW, initial_load=60e6), nodes=nodes, length=LENGTH)
             run = PlanarSolver(slab, trips * ROUND)
-            parts = ((run.waves.memory, run.constants.decay, run.constants.gain), run.waves[-2:], (run.echo, run.spectra))
+            parts = ((run.waves.memory, run.constants.half_space), run.waves[-2:], (run.echo, run.spectra))
             sizes = [sum(one.nbytes for one in jax.tree.leaves(part)) for part in parts]
             modes, steps = nodes // 2 + 1, run.steps * trips
             every = (*sizes, modes * steps * (2 * 16 + 2 * 8))
@@ -207,30 +208,46 @@ def exponentials_in_jax(decay: Any, gain: Any, slip: Floats) -> float:
 
 
 def whole_steps() -> Iterator[tuple[str, ...]]:
-    """Yield whole steps of a contact, in the first round trip, with the solver and with numba, which must agree."""
-    yield ("nodes", "wavenumbers x poles", "steps in R", "JAX: a step", "steps per second", "numba and scipy's FFT")
+    """Yield whole steps of a contact, in the first round trip, with the solver, with JAX alone and with numba, which must agree."""
+    yield ("nodes", "wavenumbers x poles", "steps in R", "a step", "steps per second", "JAX alone", "numba and scipy's FFT")
     law = ss.friction.LinearSlipWeakening(static=0.7, dynamic=0.5, distance=0.4)
     for nodes, width in ((256, 0), (1024, 0), (4096, 0), (64, 64), (128, 128), (256, 256)):
         plane: dict[str, Any] = {"width": 2e4, "width_nodes": width} if width else {}
         bump = {"initial.load": lambda *at: 60e6 + 11e6 * np.exp(-sum((x / 4e3) ** 2 for x in at))}
         slab = ss.PlanarSlab(ss.Problem(SLAB, law, initial_load=60e6), nodes=nodes, length=2e4, along=bump, **plane)
-        run = PlanarSolver(slab, ROUND)
+        run, jax_alone = PlanarSolver(slab, ROUND), in_jax_alone(slab)
         plain, each = NumbaSteps(run), min(50, run.steps // 8)
-        times: list[list[float]] = [[], []]
+        times: list[list[float]] = [[], [], []]
         for _ in range(6):
-            begin = time.process_time()
-            run.advance(each)
-            jax.block_until_ready(run.waves)
-            middle = time.process_time()
+            moments = [time.process_time()]
+            for one in (run, jax_alone):
+                one.advance(each)
+                moments.append(time.process_time())
             for _ in range(each):
                 plain.advance()
-            for found, spent in zip(times, (middle - begin, time.process_time() - middle), strict=True):
+            moments.append(time.process_time())
+            for found, spent in zip(times, np.diff(moments).tolist(), strict=True):
                 found.append(spent / each)
-        assert np.abs(run.now().slip.ravel() - plain.slip).max() < 1e-12 * plain.slip.max()
-        ours, numba = (statistics.median(found[1:]) for found in times)
+        for one in (run, jax_alone):
+            assert np.abs(one.now().slip.ravel() - plain.slip).max() < 1e-12 * plain.slip.max()
+        ours, alone, numba = (statistics.median(found[1:]) for found in times)
         waves = f"{plain.waves} x {plain.memory.shape[-1]}"
         name = f"{nodes} x {width}" if width else str(nodes)
-        yield (name, waves, str(run.steps), f"{1e3 * ours:.3f} ms", f"{1 / ours:.0f}", f"x {numba / ours:.2f}")
+        others = (f"x {one / ours:.2f}" for one in (alone, numba))
+        yield (name, waves, str(run.steps), f"{1e3 * ours:.3f} ms", f"{1 / ours:.0f}", *others)
+
+
+def in_jax_alone(slab: ss.PlanarSlab) -> PlanarSolver:
+    """Return a solver whose half-space is advanced step by step in JAX, as on a graphics card."""
+    functions_of.cache_clear()
+    with patch("stickslip.extensions.planar.half_space.target", return_value=""):
+        run = PlanarSolver(slab, ROUND)
+        run.advance(1)
+    functions_of.cache_clear()
+    run.trip = run.step = 0
+    with our_settings():
+        run._begin()
+    return run
 
 
 def main() -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from stickslip.extensions.planar.memory import horizon, recurrence
 from stickslip.extensions.planar.solver import PlanarSolver
 from stickslip.friction import LinearSlipWeakening
 
@@ -94,7 +95,9 @@ class NumbaSteps:
         law, normal = run.slab.problem.friction, run.body.normal_stress
         assert isinstance(law, LinearSlipWeakening)
         self.numbers = (run.body.impedance, normal * law.static, normal * law.dynamic, law.distance)
-        apart = [np.asarray(one)[:, 0].reshape(one.shape[0], -1).T for one in (given.decay, given.gain)]
+        frequencies = run.layout.wavenumbers(run.slab.spacing).ravel() * run.body.wave_speed
+        law_of_waves = recurrence(frequencies, run.body.impedance, run.dt, horizon(run.trips) * run.body.two_way_time)
+        apart = [one.T for one in (law_of_waves.decay, law_of_waves.gain)]
         self.decay, self.gain = (np.ascontiguousarray(np.stack([one.real, one.imag], axis=1)) for one in apart)
         self.waves = self.decay.shape[0]
         self.memory = np.zeros((self.waves, 2, 2, self.decay.shape[2]))

@@ -20,6 +20,7 @@ FILE = "What to write: curves (.csv or .nc), or the text of the SCEC (.txt or .d
 RATE = "Samples a second. Not given: 100 in the text of the SCEC; for curves 1001 times from start to end."
 COMPONENTS = "All eight columns of the three-dimensional benchmarks."
 AREA = 'Area of a block\'s contact ("0.75 m^2"): the text of the SCEC then has its stresses.'
+STATION = 'Of a contact of many nodes: the node at y, as in "8 km", or at y and z (by default that in the middle).'
 OF_SCEC = (".txt", ".dat")
 """File suffixes of the text of the SCEC."""
 SCEC_RATE = 100.0
@@ -36,6 +37,7 @@ def export(
     antialias: Annotated[bool, typer.Option("--antialias", help="Low-pass to half the sampling rate first.")] = False,
     components: Annotated[bool, typer.Option("--components", help=COMPONENTS)] = False,
     area: Annotated[str | None, option(AREA)] = None,
+    station: Annotated[str | None, option(STATION)] = None,
     duration: Duration = None,
 ) -> None:
     r"""Export the curves of the contact at evenly spaced times, for a spreadsheet, a script or a rupture modeller.
@@ -53,10 +55,11 @@ def export(
       stickslip export fig6-slab fig6.txt --sampling-rate 200
       stickslip export direct-shear-block shear.txt --area "0.75 m^2"
       stickslip export second-event-maxwell late.csv --event 1
-      stickslip export fault.zarr middle.csv
+      stickslip export fault.zarr 8km.txt --station "8 km"
 
-    Of a contact of many nodes a folder of `run --out` is read: .csv then has the
-    motion of the node in the middle, .nc that of all, at the frames of the run.
+    Of a contact of many nodes a folder of `run --out` is read: .csv and the text
+    of the SCEC then have the motion of one node, .nc that of all, at the frames
+    of the run.
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
@@ -72,8 +75,11 @@ def export(
     reader = None if run == STDIN else reader_of(Path(run))
     if reader is not None:
         given = {"--sampling-rate": sampling_rate, "--points": points, "--event": event, "--duration": duration}
-        _export_special(reader, Path(run), file, given | {"--antialias": antialias or None})
+        of_curves = {"--antialias": antialias or None, "--components": components or None, "--area": area}
+        _export_special(reader, Path(run), file, given | of_curves, {} if station is None else {"station": station})
         return
+    if station is not None:
+        raise InputError("export: --station is for the folder of a contact of many nodes: leave it out")
     source = _source(run, duration)
     with progress_line(f"{source.name}:") as report:
         solution = source.solution(report)
@@ -96,15 +102,17 @@ def _check_fitting(file: Path, for_scec: dict[str, bool], for_curves: dict[str, 
         raise InputError(f"export: {wrong[0]} is for files {others}, not for {file.suffix.lower()}: leave it out")
 
 
-def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any]) -> None:
+def _export_special(reader: Reader, path: Path, file: Path, given: dict[str, Any], station: dict[str, str]) -> None:
     """Write the results of an extension at their own times. Raises InputError for options that choose others."""
-    wrong = [name for name, value in given.items() if value is not None]
-    if wrong or file.suffix.lower() in OF_SCEC:
+    run, in_scec = reader.open(path), file.suffix.lower() in OF_SCEC
+    has_stations = hasattr(run, "to_scec")
+    wrong = [name for name, value in given.items() if value is not None] + ["--station"] * bool(station and not has_stations)
+    if wrong or (in_scec and not has_stations):
         what = f"leave out {wrong[0]}" if wrong else f"write .csv or .nc, not {file.suffix.lower()}"
         raise InputError(f"export: {path} holds {reader.what}, which is written at its own times: {what}")
-    if not hasattr(run := reader.open(path), "to_csv"):
+    if not hasattr(run, "to_csv"):
         raise InputError(f"export: {path} holds {reader.what}, which has no table")
-    announce(run.to_csv(file) or file)
+    announce((run.to_scec if in_scec else run.to_csv)(file, **station) or file)
 
 
 def _source(run: str, duration: str | None) -> RunSource:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from stickslip.extensions.planar.solver import PlanarSolver
+    from stickslip.extensions.planar.stations import Station
     from stickslip.extensions.planar.step import PlanarMotion
     from stickslip.foundation.place import Place
 
@@ -268,14 +269,25 @@ class PlanarSolution(NamesAttributes):
         """The figures: `plot()` draws slip rate over the contact and time, `plot.animation(path)` writes a film."""
         return PlanarPlots(self)
 
-    def to_csv(self, path: str | Path) -> Path:
-        """Write time, slip, slip rate, traction and heat of the node in the middle at the frames as CSV, and return the path.
+    def to_csv(self, path: str | Path, *, station: Station | None = None) -> Path:
+        """Write time, slip, slip rate, traction and heat of a node at the frames as CSV, and return the path.
 
-        The headings name the units (SI). A path that ends in .nc makes a netCDF file of `dataset`, with all nodes.
+        The node is the one in the middle, or the closest to a `station`: y in m or a text, as in "8 km"; of a plane y and z, as in
+        "8 km, 0 km". The headings name the units (SI). A path that ends in .nc makes a netCDF file of `dataset`, with all nodes.
         """
         from stickslip.extensions.planar.curves import write_contact
 
-        return write_contact(self, as_path("to_csv: path", path))
+        return write_contact(self, as_path("to_csv: path", path), station)
+
+    def to_scec(self, path: str | Path, *, station: Station | None = None) -> Path:
+        """Write the motion of a node at the frames as text, in the layout of the SCEC benchmarks, and return the path.
+
+        The columns are time (s), slip since the start (m), slip rate (m/s) and shear stress (MPa). The `station` is as for
+        `to_csv`. Raises InputError for a station that lies on no node.
+        """
+        from stickslip.extensions.planar.stations import write_station
+
+        return write_station(self, as_path("to_scec: path", path), station)
 
     def dataset(self) -> xr.Dataset:
         """Return slip, slip rate, traction and heat as an xarray dataset over time, y and, for a plane, z (SI units)."""

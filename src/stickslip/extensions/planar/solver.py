@@ -27,6 +27,7 @@ from stickslip.extensions.planar.compiled_before import COMPILED_BEFORE
 from stickslip.extensions.planar.driving import locked_load
 from stickslip.extensions.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
+from stickslip.extensions.planar.half_space import SAVED, StepByStep, half_space_of
 from stickslip.extensions.planar.layout import Layout, whole
 from stickslip.extensions.planar.memory import horizon, recurrence
 from stickslip.extensions.planar.slab import PlanarSlab
@@ -47,7 +48,7 @@ class Spread(NamedTuple):
     spectra: PartitionSpec
 
     @classmethod
-    def of(cls, layout: Layout, parameters: tuple[str, ...]) -> Spread:
+    def of(cls, layout: Layout, parameters: tuple[str, ...], half_space: StepByStep) -> Spread:
         """Return how they are spread for a law with parameters of these names."""
         rank = len(layout.shape)
         y, more = layout.along_y(rank), layout.along_y(rank + 1)
@@ -55,9 +56,9 @@ class Spread(NamedTuple):
         nodes = Nodes(y, y, more, dict.fromkeys(parameters, more), y, ALIKE)
         return cls(
             motion=PlanarMotion(y, y, y, y, more, y, y),
-            waves=PlanarWaves(paths, k, k, k, k, paths, paths),
+            waves=PlanarWaves(half_space.memory_lies, k, k, k, k, paths, paths),
             echo=Echo(histories, paths, paths, ALIKE, k),
-            constants=Constants(nodes, y, paths, paths, layout.along_k(rank), ALIKE),
+            constants=Constants(nodes, y, half_space.numbers_lie, layout.along_k(rank), ALIKE),
             spectra=histories,
         )
 
@@ -87,7 +88,8 @@ def functions_of(contact: ContactOfNodes, layout: Layout, parameters: tuple[str,
     if functions_of.cache_info().currsize >= MOST_FORMS:
         functions_of.cache_clear()
         jax.clear_caches()
-    step, spread = PlanarStep(contact, layout), Spread.of(layout, parameters)
+    half_space = half_space_of(layout)
+    step, spread = PlanarStep(contact, layout, half_space), Spread.of(layout, parameters, half_space)
 
     def march(motion: PlanarMotion, waves: PlanarWaves, constants: Constants, loading: Any, between: Any) -> Any:
         def one(number: Any, now: tuple[PlanarMotion, PlanarWaves]) -> tuple[PlanarMotion, PlanarWaves]:
@@ -131,7 +133,8 @@ class PlanarSolver:
         self.dt = body.two_way_time / self.steps
         self.trips = self.slab.round_trips(self.duration)
         self.layout, parameters = Layout(self.slab.shape, self.devices), tuple(self.slab.values.numbers[0])
-        self.spread = Spread.of(self.layout, parameters)
+        self.half_space = half_space_of(self.layout)
+        self.spread = Spread.of(self.layout, parameters, self.half_space)
         self.functions = functions_of(ContactOfNodes.of(self.slab.values.law), self.layout, parameters)
         with our_settings():
             self._begin()
@@ -168,11 +171,12 @@ class PlanarSolver:
         frequencies = layout.wavenumbers(self.slab.spacing) * self.body.wave_speed
         law_of_waves = recurrence(frequencies, self.body.impedance, self.dt, horizon(self.trips) * self.body.two_way_time)
         nodes = Nodes.of(values, self.slab.locked, self.body.impedance)
-        decay, gain, now = law_of_waves.decay[:, None], law_of_waves.gain[:, None], law_of_waves.now
-        self.constants = self._put(Constants(nodes, values.load, decay, gain, now, np.float64(self.dt)), self.spread.constants)
+        numbers = self.half_space.numbers(law_of_waves)
+        constants = Constants(nodes, values.load, numbers, law_of_waves.now, np.float64(self.dt))
+        self.constants = self._put(constants, self.spread.constants)
         none, amplitudes = np.zeros(self.slab.shape), (2, *layout.modes)
         path = np.zeros((self.steps + 1, *amplitudes))
-        memory = np.zeros((law_of_waves.decay.shape[0], *amplitudes), complex)
+        memory = self.half_space.silent(len(law_of_waves.decay))
         self.motion = self._put(
             PlanarMotion(values.slip, none, values.load, values.law_slip, values.states, none, none), self.spread.motion
         )
@@ -239,7 +243,8 @@ class PlanarSolver:
         """Return what a run needs to continue, beside W since its start."""
         with our_settings():
             waves = {f"waves_{name}": whole(getattr(self.waves, name))[..., : self.layout.half] for name in KEPT}
-        waves["waves_memory"] = np.stack([waves["waves_memory"].real, waves["waves_memory"].imag])
+            memory = self.half_space.saved(self.waves.memory, self.constants.half_space)
+        waves |= {f"memory_{name}": one for name, one in memory.items()}
         return waves | {f"motion_{name}": one for name, one in self.now()._asdict().items()}
 
     def restore(self, state: Mapping[str, Floats], trip: int, step: int, sent: Callable[[int], Floats]) -> None:
@@ -251,23 +256,24 @@ class PlanarSolver:
         more = self.layout.modes[-1] - self.layout.half
 
         def filled(amplitudes: Any) -> Any:
-            return np.pad(amplitudes, [(0, 0)] * (amplitudes.ndim - 1) + [(0, more)])
+            return np.pad(amplitudes, [(0, 0)] * (amplitudes.ndim - 1) + [(0, more)]) if amplitudes.ndim else amplitudes
 
         with our_settings():
             where, arriving = self.spread.waves, self.waves.arriving
             for n in range(trip):  # the echoes follow from what was sent
                 arriving = self._turn(self.layout.put(filled(sent(n)), where.sent))
             kept = {name: filled(state[f"waves_{name}"]) for name in KEPT}
-            kept["memory"] = kept["memory"][0] + 1j * kept["memory"][1]
+            saved = {name: filled(state[f"memory_{name}"]) for name in SAVED}
+            memory = self._put(self.half_space.restored(saved, self.constants.half_space), where.memory)
             path = np.zeros((self.steps + 1, *self.waves.now.shape))
             path[: step + 1] = filled(sent(trip))
             put = {name: self.layout.put(value, getattr(where, name)) for name, value in (kept | {"sent": path}).items()}
-            self.waves = PlanarWaves(arriving=arriving, **put)
+            self.waves = PlanarWaves(memory, arriving=arriving, **put)
             self.motion = self._put(PlanarMotion(*(state[f"motion_{name}"] for name in PlanarMotion._fields)), self.spread.motion)
             self.trip, self.step = trip, step
 
 
-KEPT = tuple(name for name in PlanarWaves._fields if name not in ("arriving", "sent"))
+KEPT = tuple(name for name in PlanarWaves._fields if name not in ("memory", "arriving", "sent"))
 """Fields of `PlanarWaves` that the state of a run holds."""
 
 

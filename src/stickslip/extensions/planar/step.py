@@ -9,8 +9,8 @@ import jax
 import jax.numpy as jnp
 
 from stickslip.extensions.planar.friction import ContactOfNodes, Nodes
+from stickslip.extensions.planar.half_space import StepByStep
 from stickslip.extensions.planar.layout import Layout
-from stickslip.extensions.planar.memory import advanced
 
 
 class PlanarMotion(NamedTuple):
@@ -40,7 +40,7 @@ class PlanarWaves(NamedTuple):
     """What waves do, as amplitudes over the wavenumbers: the last axes are 2 (real and imaginary part) and the wavenumbers."""
 
     memory: Any
-    """The exponentials of the half-space, one more axis in front."""
+    """What the half-space remembers: `HalfSpaceMemory`."""
     inherited: Any
     """The part of F at the end of the next step that does not depend on slip there, Pa."""
     now: Any
@@ -60,8 +60,8 @@ class Constants(NamedTuple):
 
     nodes: Nodes
     initial_load: Any
-    decay: Any
-    gain: Any
+    half_space: Any
+    """What its memory is advanced with: `HalfSpaceNumbers`."""
     now: Any
     length: Any
     """Length of a step of time, s."""
@@ -73,6 +73,7 @@ class PlanarStep:
 
     contact: ContactOfNodes
     layout: Layout
+    half_space: StepByStep
 
     def opened(
         self, motion: PlanarMotion, waves: PlanarWaves, constants: Constants, loading: Any
@@ -94,7 +95,7 @@ class PlanarStep:
         loads = constants.initial_load + loading, arriving
         guess, _ = self._moved(now, (motion, waves.rate), constants, loads)
         found, waves = self._moved(now, (guess, self.layout.amplitudes(guess.rate)), constants, loads)
-        memory, inherited = advanced(waves.memory, constants.decay, constants.gain, waves.slip)
+        memory, inherited = self.half_space.advanced(waves.memory, constants.half_space, waves.slip)
         waves = waves._replace(memory=memory, inherited=inherited, rate=self.layout.amplitudes(found.rate))
         sent = jax.lax.dynamic_update_index_in_dim(waves.sent, _leaving(waves, constants, arriving), step, 0)
         return found, waves._replace(sent=sent)

@@ -1,0 +1,1 @@
+"""What becomes machine code when the package is built."""
