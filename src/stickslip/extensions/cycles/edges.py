@@ -16,7 +16,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 FOLD, DOUBLING, TORUS = "fold of cycles", "period doubling", "Neimark-Sacker"
-LOSS_OF_STICK, FIRST_STICK, STEADY_END = "loss of stick", "first stick", "steady sliding"
+LOSS_OF_STICK, FIRST_STICK, STEADY_END, GRAZING = "loss of stick", "first stick", "steady sliding", "grazing"
 NOT_FOUND = "not followed further"
 MEANING = {
     FOLD: "a multiplier is +1: a stable and an unstable cycle meet and vanish",
@@ -25,11 +25,10 @@ MEANING = {
     LOSS_OF_STICK: "the arrest is grazed: the contact no longer comes to rest",
     FIRST_STICK: "the slip rate touches 0: the contact begins to rest",
     STEADY_END: "the amplitude is 0: the cycle vanishes in steady sliding, which changes its stability there (Hopf)",
+    GRAZING: "rest or slip is touched elsewhere in the period: beyond it another slip or rest begins there",
     NOT_FOUND: "Newton's iteration finds no cycle beyond",
 }
 """The edges by name, and what happens there."""
-SAME_STEP = 1e-13
-"""An edge within a step is found to this share of the step (1)."""
 CLOSE_TO_REST, NEARER, MOST_NEARER = 1e-7, 0.05, 30
 """A branch is followed to this share (1) of the pull rate as least slip rate, each time this much nearer, at most so often."""
 SMALLEST_BISECTED = 1e-12
@@ -78,7 +77,7 @@ def edges_between(path: Path, begin: PlaceOnBranch, end: PlaceOnBranch, length: 
             return test(seen[at])
 
         try:
-            where = float(brentq(value, 0.0, length, xtol=SAME_STEP * length, rtol=1e-12))
+            where = float(brentq(value, 0.0, length, xtol=path.same_step * length, rtol=1e-12))
         except NoCycleError:
             continue
         at = seen.get(where) or path.step(begin, where)

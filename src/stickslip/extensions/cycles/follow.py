@@ -221,11 +221,14 @@ class _Following:
         self, path: Path, now: PlaceOnBranch, values: list[float], amplitudes: list[float]
     ) -> tuple[Path, PlaceOnBranch] | None:
         """Say why a part of the branch ends, and return where the next one begins; None if none does."""
+        if path.at_onset and not path.joins:
+            self._edge(path.end_beyond(now))
+            return None
         if path.at_onset:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span
             edge, last = loss_of_stick(path, now, float(beyond))
             self._edge(edge)
-            return self._without_rest(path, edge, last) if path.joins else None
+            return self._without_rest(path, edge, last)
         small = amplitudes[-1] < 0.05 * now.orbit.section.problem.first_pull_rate
         if len(values) > 1 and small and amplitudes[-1] < amplitudes[-2]:
             found = end_in_steady_sliding(path, np.array(values), np.array(amplitudes))

@@ -52,6 +52,8 @@ class Path:
     """Sizes of the coordinates of the start; the last is the range of the parameter."""
     joins: bool = True
     """True: cycles with and without rest are parts of one branch."""
+    same_step: float = 1e-13
+    """An edge within a step is found to this share of the step (1)."""
 
     def section(self, value: float) -> Section:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, CycleEdge
+from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.path import NoCycleError, PlaceOnBranch
 from stickslip.extensions.cycles.waves.krylov import solved
 from stickslip.extensions.cycles.waves.orbit import (
@@ -34,6 +36,11 @@ CLOSED, STILL_CLOSED = 1e-8, 1e-6
 DIRECTION_SHARE = 1e-3
 """The direction of a branch is known to this share (1)."""
 
+FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
+"""First step towards an end (1), the number of steps, halved where there is no cycle, and by what share a period may change there."""
+SHORT_REST = 1e-2
+"""A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch."""
+
 
 @dataclass(frozen=True)
 class WavePath:
@@ -49,6 +56,8 @@ class WavePath:
     """The slip rate on a section without rest, as a share of the pull rate (1)."""
     joins: bool = False
     """False: cycles with and without rest are not joined to one branch."""
+    same_step: float = 1e-7
+    """An edge within a step is found to this share of the step (1), which is what multipliers are known to."""
 
     def section(self, value: float) -> WaveSection:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
@@ -146,6 +155,20 @@ class WavePath:
         except InputError as error:
             raise NoCycleError(str(error)) from None
         return self.at(target, begin.way, orbit.period, moved.over(trip))
+
+    def end_beyond(self, last: PlaceOnBranch) -> CycleEdge:
+        """Return the edge where cycles with rest end, beyond the last place of a branch, by steps that become shorter."""
+        length = FIRST_SHORT
+        for _ in range(MOST_SHORT):
+            try:
+                new = self.step(last, length)
+                if abs(new.orbit.period - last.orbit.period) > SAME_MOTION * last.orbit.period:
+                    raise NoCycleError("follow: this is another cycle")
+                last = new if new.way @ last.way >= 0.0 else replace(new, way=-new.way)
+            except NoCycleError:
+                length *= 0.5
+        rests = measures_of(last.orbit).stick_share > SHORT_REST
+        return CycleEdge(GRAZING if rests else LOSS_OF_STICK, last.value, last.orbit)
 
     def longest_step(self, begin: PlaceOnBranch, share: float) -> float:
         """Return the longest step that moves the start by no more than a share (1) of the extent of the cycle."""

@@ -140,7 +140,7 @@ class WaveSection:
             raise InputError(f"cycle: a run of one period did not reach its end: {run.solution(code).status}")
         solution = run.solution(code)
         trip, met = self.problem.round_trip_time, self.met(solution.history)
-        if not len(met.time):
+        if not len(met.time) or np.abs(met.time - trip - guess).min() > (longer - 1.0) * guess:  # what is beyond the run is farther
             what = "begins to slip after a rest" if self.at_onset else "passes its mean slip rate"
             raise InputError(f"cycle: the contact no longer {what} within {longer * guess:.4g} s: there is no cycle near")
         nearest = int(np.abs(met.time - trip - guess).argmin())
