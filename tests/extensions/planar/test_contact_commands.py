@@ -27,6 +27,7 @@ IN_1D = {
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
     "lyapunov": ("planar-patch",),
     "schemes": ("planar-patch",),
+    "sensitivity": ("planar-patch",),
     "slide": ("record.AT2", "--yield", "0.1", "--analysis", "coupled", "--body", "planar-patch"),
     "sweep": ("planar-patch", "--vary", "friction.static=0.6,0.7"),
 }

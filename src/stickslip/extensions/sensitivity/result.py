@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,10 +15,13 @@ from stickslip.extensions.sensitivity.differences import OfNumber
 from stickslip.extensions.sensitivity.outputs import CurveAtTimes, Output
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import brief
+from stickslip.foundation.show import brief, number
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import Scenario
 from stickslip.run import Study
+
+MOST_DIGITS = 6
+"""Digits of derivatives in sentences, if all of them are known."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -132,7 +136,7 @@ class Sensitivity(Study):
         by = f"{one.parameter.name} = {brief(one.parameter.value, one.parameter.unit)}"
         of, by_unit = (f" {name}" if name not in ("", "1") else "" for name in (self.unit, one.parameter.unit))
         per = f" per{by_unit}" if by_unit else ""
-        size = f"{one.slope[at]:.9g} ± {one.error[at]:.1g}{of}{per}"
+        size = f"{_as_known(float(one.slope[at]), float(one.error[at]))}{of}{per}"
         if one.parameter.value == 0.0:
             return f"{by}: the derivative is {size}{when}"
         change = 0.01 * float(scaled[at])
@@ -153,3 +157,9 @@ class Sensitivity(Study):
         from stickslip.extensions.sensitivity.figures.sensitivity import draw_sensitivity
 
         return draw_sensitivity
+
+
+def _as_known(value: float, error: float) -> str:
+    """Return a number with the digits that are known, at most MOST_DIGITS."""
+    known = math.floor(math.log10(abs(value) / error)) if value and error else 1
+    return number(value, min(max(known, 1), MOST_DIGITS))
