@@ -21,7 +21,7 @@ IMPEDANCE, NORMAL, STATIC, DYNAMIC, ALPHA, BACK, FAR, TRIP = 9.8e6, 1e8, 0.8, 0.
 def slab(load: float, **changes: Any) -> ss.Problem:
     """Return a slab whose far end gives way under a steady stress, so that its load is constant in each half of a round trip."""
     far_end = IMPEDANCE * (1.0 - BACK) / (1.0 + BACK)
-    body = ss.ElasticSlab(21500.0, 3500.0, 1e4, NORMAL, driver_impedance=far_end)
+    body = ss.ElasticSlab(2800.0, 3500.0, 1e4, NORMAL, driver_impedance=far_end)
     law = ss.friction.HyperbolicRate(STATIC, DYNAMIC, ALPHA)
     return ss.Problem(body, law, **{"pull_rate": 0.0, "initial_load": load, "far_stress": FAR} | changes)
 

@@ -19,10 +19,14 @@ from stickslip.extensions.cycles.exponent import Growth, along
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
 from stickslip.extensions.cycles.orbit import extent_of
 from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
-from stickslip.extensions.cycles.tangent import RigidMotion, Tangent, values_at
+from stickslip.extensions.cycles.tangent import FIRST_STATE_ROW, RATE_ROW, values_at
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
+from stickslip.friction.contract import one_argument
+from stickslip.friction.formula import value_and_slopes
 from stickslip.problem import Problem
+from stickslip.problem.bodies import as_on_spring
 from stickslip.run import TextProgress, uninterrupted
 from stickslip.run.simulate import simulate
 from stickslip.run.study import MAX_PIECES
@@ -126,17 +130,31 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
 
 def _divergence(one: Return) -> float:
     """Return the logarithm (1) by which a volume of disturbances grows in a return; NaN under a law whose formula changes."""
-    store, count = one.history.store, one.piece + 1
-    if Tangent(one.history, one.piece, one.place).has_knots:
+    store, count, problem = one.history.store, one.piece + 1, one.history.problem
+    if len(problem.friction.pieces) > 1:
         return math.nan
     ends = np.append(np.ones(count - 1), one.place)
-    places = (ends[:, None] * 0.5 * (GAUSS_PLACES + 1.0)).ravel()
-    at = Positions.inside(np.repeat(np.arange(count), len(GAUSS_PLACES)), places)
-    values, mode = values_at(one.history, at), store.mode[at.piece]
+    at = Positions.inside(np.repeat(np.arange(count), len(GAUSS_PLACES)), (ends[:, None] * 0.5 * (GAUSS_PLACES + 1.0)).ravel())
     lasts = np.repeat(ends, len(GAUSS_PLACES)) * (store.speed[at.piece] + 2.0 * store.bend[at.piece] * at.xi)
     lasts *= np.tile(0.5 * GAUSS_WEIGHTS, count)
-    found, motion = 0.0, RigidMotion(one.history.problem)
+    values, mode, found = values_at(one.history, at), store.mode[at.piece], 0.0
     for direction in np.unique(mode).tolist():
         here = mode == direction
-        found += float(lasts[here] @ np.trace(motion.slopes(values[:, here], direction), axis1=1, axis2=2))
+        found += float(lasts[here] @ _trace(problem, values[:, here], direction))
+    return found
+
+
+def _trace(problem: Problem, values: Floats, direction: int) -> Floats:
+    """Return the divergence (1/s) of the motion where load, slip rate and states, a row each, are known."""
+    law = problem.friction.ways[1] if direction < 0 and problem.friction.backward_from else problem.friction
+    signs = np.ones(len(law.states))
+    if direction < 0:
+        signs[list(problem.friction.reverses)] = -1.0
+    rate, seen = np.abs(values[RATE_ROW]), [sign * state for sign, state in zip(signs, values[FIRST_STATE_ROW:], strict=True)]
+    found = np.zeros(len(rate))
+    if direction:
+        body = as_on_spring(problem.body)
+        found -= (body.total_damping + problem.normal * law.slopes(0.0, rate, one_argument(seen))[1]) / body.inertia
+    for n, tree in enumerate(law.state_trees()):
+        found += value_and_slopes(tree, law.numbers(), np.zeros(len(rate)), rate, *seen)[1][2 + n]
     return found
