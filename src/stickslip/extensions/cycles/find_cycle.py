@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stickslip.extensions.cycles.limit_cycle import LimitCycle, is_stable
-from stickslip.extensions.cycles.orbit import Orbit, closed_if_settled, near_end, places_of
-from stickslip.extensions.cycles.section import Section, passages
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
+from stickslip.extensions.cycles.orbit import Orbit, near_end
+from stickslip.extensions.cycles.settling import settled
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -28,8 +28,6 @@ RTOL = 1e-12
 """Default tolerance of the runs (1)."""
 FIRST_NEAR, LONGER, ATTEMPTS = 4.0, 8.0, 4
 """Without a duration: the first run lasts so many times what a cycle may take, the next longer by a factor, up to so many runs."""
-PARTS = 4
-"""Largest number of parts (1) of a run that is to settle; each lasts twice as long as the one before it."""
 WHOSE = {"rigid": "", "belt": "", "loop": "body in a position loop", "uniform": "slab or string", "layered": "body of layers"}
 """Kinds of bodies, with what is said of those whose cycles are not found; on a belt a body moves as one whose spring is pulled."""
 INSTEAD = "a run and its events say how it moves, and find where that changes"
@@ -91,7 +89,8 @@ def cycle(
     first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
         begin = without_load(scenario.problem)
-        early = settled(begin, _time_to_load(scenario.problem, begin), rtol, tell) if near is None else None
+        wait = (scenario.problem.load - begin.load) / (begin.body.stiffness * begin.first_pull_rate)
+        early = settled(begin, (wait, FIRST_NEAR * time_of_cycle(begin)), rtol, tell) if near is None else None
         return LimitCycle(early or _searched(begin, first, attempts, rtol, tell), scenario)
 
 
@@ -112,36 +111,9 @@ def without_load(problem: Problem) -> Problem:
 
 def time_of_cycle(problem: Problem) -> float:
     """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
-    falls = problem.normal * problem.friction.variation
-    return problem.body.round_trip_time + 2.0 * falls / (problem.body.stiffness * problem.first_pull_rate)
-
-
-def _time_to_load(problem: Problem, begin: Problem) -> float:
-    """Return how long (s) the spring is pulled until a problem that begins without load has that of steady sliding."""
-    return (problem.load - begin.load) / (problem.body.stiffness * problem.first_pull_rate) if begin is not problem else 0.0
-
-
-def settled(problem: Problem, wait: float, rtol: float, tell: TextProgress) -> Orbit | None:
-    """Return the stable cycle to which a run under a law with states settles, as soon as it has; None if it takes long.
-
-    The run is made in parts, each from the last passage of the one before it, until two passages in it are close to each other, and
-    Newton's iteration leads from there to a stable cycle next to the run. `wait` is the time (s) before the motion begins.
-    """
-    if not problem.friction.states:
-        return None
-    section, start, lasts = Section(problem, at_onset=False, rtol=rtol), problem, FIRST_NEAR * time_of_cycle(problem)
-    for _ in range(PARTS):
-        run = uninterrupted(simulate(start, wait + lasts, rtol, max_pieces=MAX_PIECES))
-        if not run.status.ok:
-            return None
-        tell(f"run of {brief(wait + lasts, 's')}")
-        met, lasts = passages(run.history), 2.0 * lasts
-        found = closed_if_settled(section, run.history, met) if len(met.time) > 2 else None
-        if found is not None and is_stable(found.multipliers):
-            return found
-        if len(met.time):
-            start, wait = section.start_at(places_of(run.history, met)[:, -1]), 0.0
-    return None
+    law = problem.friction
+    falls = law.variation if law.states else min(law.variation, float(law.static_coefficient(0.0)))
+    return problem.body.round_trip_time + 2.0 * problem.normal * falls / (problem.body.stiffness * problem.first_pull_rate)
 
 
 def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> Orbit:

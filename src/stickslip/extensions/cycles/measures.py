@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.engine import History, Positions
+from stickslip.extensions.cycles.compiled.places import Body, write_extremes
 from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.foundation.arrays import Floats
 
-FINE_PLACES = np.linspace(0.0, 1.0, 33)
-"""Places (1) in each piece between which a largest value is looked for."""
 ROUNDING = 1e-12
 """A slip rate of this share (1) of the greatest is rounding, where the contact rests."""
-CLOSER = 6
-"""How often the neighbours of the largest value are divided again (1), by 32 each time."""
 
 
 class Measures(NamedTuple):
@@ -47,8 +44,7 @@ def measures_of(orbit: Orbit) -> Measures:
     end, history = orbit.closed, orbit.closed.history
     count = end.piece + 1
     ends = np.append(np.ones(count - 1), end.place)
-    rates = _extremes(history, ends, History.rate)
-    tractions = _extremes(history, ends, History.friction)
+    rates, tractions = _extremes(history, ends)
     rested = np.flatnonzero(history.rests[:count]) + 1
     if len(rested):  # the load when a rest ends that was not recorded
         loads = history.excess(history.just_before(rested[rested < len(history)]))
@@ -71,7 +67,7 @@ def measures_of(orbit: Orbit) -> Measures:
 def least_rate(orbit: Orbit) -> float:
     """Return the least slip rate (m/s) of a cycle."""
     end = orbit.closed
-    return _extremes(end.history, np.append(np.ones(end.piece), end.place), History.rate)[0]
+    return _extremes(end.history, np.append(np.ones(end.piece), end.place))[0][0]
 
 
 def _slip_time(history: History, ends: Floats) -> float:
@@ -81,18 +77,9 @@ def _slip_time(history: History, ends: Floats) -> float:
     return float(lasts[store.mode[here] != 0].sum())
 
 
-def _extremes(history: History, ends: Floats, of: Any) -> tuple[float, float]:
-    """Return the least and the greatest value that a function of history and positions has in the first pieces."""
-    pieces = np.arange(len(ends))
-    places = ends[:, None] * FINE_PLACES
-    values = of(history, Positions.inside(np.repeat(pieces, len(FINE_PLACES)), places.ravel())).reshape(places.shape)
-    found = []
-    for sign in (-1.0, 1.0):
-        piece, best = np.unravel_index(int(np.argmax(sign * values)), values.shape)
-        width, middle, value = ends[piece] / (len(FINE_PLACES) - 1), places[piece, best], sign * values[piece, best]
-        for _ in range(CLOSER):
-            near = np.clip(middle + width * np.linspace(-1.0, 1.0, len(FINE_PLACES)), 0.0, ends[piece])
-            tried = sign * of(history, Positions.inside(np.full(len(FINE_PLACES), piece), near))
-            value, middle, width = max(value, tried.max()), near[int(tried.argmax())], 2.0 * width / (len(FINE_PLACES) - 1)
-        found.append(float(sign * value))
-    return found[0], found[1]
+def _extremes(history: History, ends: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the least and the greatest slip rate (m/s), and traction less the reference strength (N), in the first pieces."""
+    body, found = history.problem.body, np.empty((2, 2))
+    write_extremes(history.store.pieces, Body(body.total_damping, body.inertia), 0, ends, found)
+    rates, tractions = ((low, high) for low, high in found.tolist())
+    return rates, tractions
