@@ -138,16 +138,15 @@ def two_frequencies(zeta: float, coupled: float) -> ss.Problem:
         {"s1": 0.02, "s3": 0.2, "s5": 0.4, "v0": "1 m/s", "coupled": coupled, "zeta": zeta, "omega": f"{FREQUENCY} 1/s"},
         evolution="dy/dt = omega*z; dz/dt = -omega*(y + zeta*z) + omega*(v/v0 - 1)",
     )
-    states = {"initial_state": 0.5, "initial_second_state": 0.1}
-    start = {"initial_rate": 1.0, "initial_load": 0.5 * NORMAL + 0.85 * 1e3**0.5}
-    return ss.Problem(ss.SpringBlock(1.0, 1e3, NORMAL), law, pull_rate=1.0, **start, **states)
+    start: dict[str, Any] = {"initial_rate": 1.0, "initial_load": 0.5 * NORMAL + 0.85 * 1e3**0.5}
+    return ss.Problem(ss.SpringBlock(1.0, 1e3, NORMAL), law, pull_rate=1.0, initial_state=0.5, initial_second_state=0.1, **start)
 
 
 def own_monodromy(zeta: float, start: Any, period: float) -> Any:
     """Return end and matrix of disturbances of load, slip rate and two states after a time, by DOP853."""
 
     def paces(_: float, y: Any) -> Any:
-        (load, rate, first, second), a = y[:4], y[1] - 1.0
+        (load, _, first, second), a = y[:4], y[1] - 1.0
         mu, slope = 0.5 + 0.02 * a - 0.2 * a**3 + 0.4 * a**5 + COUPLED * first, 0.02 - 0.6 * a**2 + 2.0 * a**4
         own = [-1e3 * a, load - NORMAL * mu, FREQUENCY * second, -FREQUENCY * (first + zeta * second) + FREQUENCY * a]
         slopes = np.zeros((4, 4))
@@ -161,7 +160,7 @@ def own_monodromy(zeta: float, start: Any, period: float) -> Any:
 
 @pytest.mark.parametrize("coupled", [0.0, COUPLED])
 def test_a_pair_of_multipliers_leaves_the_unit_circle_at_an_edge(coupled: float) -> None:
-    """Without coupling exp(-(zeta omega -+ i omega root(4 - zeta^2)) T / 2), and the edge at 0 to 1e-12; with it |.| = 1 to 1e-8."""
+    """Without coupling exp(-(zeta -+ i root(4 - zeta^2)) omega T / 2), and the edge at 0 to 1e-12; with it |.| = 1 to 1e-8."""
     begin = ss.studies.cycle(two_frequencies(0.002, coupled), near=1.0)
     branch = ss.studies.follow(begin, "friction.parameters.zeta", to=-0.006, steps=1)
     assert [edge.name for edge in branch.edges] == ["Neimark-Sacker"]

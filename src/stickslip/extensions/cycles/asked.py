@@ -31,8 +31,11 @@ class CycleKind:
         """Return why no cycle of a problem is looked for, in words; empty if there is no reason."""
         return f"cycles are found of rigid bodies on a spring, slabs and strings, and this is a {self.what}"
 
-    def settled(self, problem: Problem, wait: float, rtol: float, tell: TextProgress) -> FoundCycle | None:
-        """Return the cycle to which a run settles early; None if it takes long. `wait` is the time (s) before the motion begins."""
+    def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> FoundCycle | None:
+        """Return the cycle to which a run settles early; None if it takes long.
+
+        `times` (s) are that before the motion begins, and that of the first part of the run behind it.
+        """
         return None
 
     def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:

@@ -10,7 +10,6 @@ from typing import Any
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
-from stickslip.extensions.cycles.settled import FIRST_NEAR, time_of_cycle
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -25,8 +24,8 @@ NEAR = Quantity("s", "duration of the run at whose end a cycle is looked for", a
 TOLERANCE_OF_RUNS = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-6)
 RTOL = 1e-12
 """Default tolerance of the runs (1)."""
-LONGER, ATTEMPTS = 8.0, 4
-"""Without a duration: by what factor the next run is longer (1), and largest number of runs."""
+FIRST_NEAR, LONGER, ATTEMPTS = 4.0, 8.0, 4
+"""Without a duration: the first run lasts so many times what a cycle may take, the next longer by a factor, up to so many runs."""
 INSTEAD = "a run and its events say how it moves, and find where that changes"
 """What can be done where no cycle is looked for."""
 
@@ -86,8 +85,9 @@ def cycle(
     first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
         begin = without_load(scenario.problem)
-        kind, wait = CYCLE_KINDS[begin.body.structure], _time_to_load(scenario.problem, begin)
-        early = kind.settled(begin, wait, rtol, tell) if near is None else None
+        wait = (scenario.problem.load - begin.load) / (begin.body.stiffness * begin.first_pull_rate)
+        times, kind = (wait, FIRST_NEAR * time_of_cycle(begin)), CYCLE_KINDS[begin.body.structure]
+        early = kind.settled(begin, times, rtol, tell) if near is None else None
         return LimitCycle(early or _searched(begin, first, attempts, rtol, tell), scenario)
 
 
@@ -106,9 +106,11 @@ def without_load(problem: Problem) -> Problem:
     return replace(problem, initial_rate=None, initial_load=0.0, **states)
 
 
-def _time_to_load(problem: Problem, begin: Problem) -> float:
-    """Return how long (s) the spring is pulled until a problem that begins without load has that of steady sliding."""
-    return (problem.load - begin.load) / (problem.body.stiffness * problem.first_pull_rate) if begin is not problem else 0.0
+def time_of_cycle(problem: Problem) -> float:
+    """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
+    law = problem.friction
+    falls = law.variation if law.states else min(law.variation, float(law.static_coefficient(0.0)))
+    return problem.body.round_trip_time + 2.0 * problem.normal * falls / (problem.body.stiffness * problem.first_pull_rate)
 
 
 def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> FoundCycle:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine import History, Positions
+from stickslip.engine import Positions
+from stickslip.extensions.cycles.compiled.places import Body, write_extremes
 from stickslip.extensions.cycles.found import ClosedRun, FoundCycle
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Integers
 
-FINE_PLACES = np.linspace(0.0, 1.0, 33)
-"""Places (1) in each piece between which a largest value is looked for."""
 ROUNDING = 1e-12
 """A slip rate of this share (1) of the greatest is rounding, where the contact rests."""
-CLOSER = 6
-"""How often the neighbours of the largest value are divided again (1), by 32 each time."""
 
 
 class Measures(NamedTuple):
@@ -45,7 +42,7 @@ class Measures(NamedTuple):
 def measures_of(orbit: FoundCycle) -> Measures:
     """Return the numbers of a cycle, from its run."""
     end, history = orbit.closed, orbit.closed.history
-    rates, tractions = _extremes(end, History.rate), _extremes(end, History.friction)
+    rates, tractions = _extremes(end)
     rested = end.first + np.flatnonzero(history.rests[end.first : end.piece + 1]) + 1
     if len(rested):  # the load when a rest ends that was not recorded
         loads = history.excess(history.just_before(rested[rested < len(history)]))
@@ -67,10 +64,10 @@ def measures_of(orbit: FoundCycle) -> Measures:
 
 def least_rate(orbit: FoundCycle) -> float:
     """Return the least slip rate (m/s) of a cycle."""
-    return _extremes(orbit.closed, History.rate)[0]
+    return _extremes(orbit.closed)[0][0]
 
 
-def _pieces(run: ClosedRun) -> tuple[Any, Floats]:
+def _pieces(run: ClosedRun) -> tuple[Integers, Floats]:
     """Return the pieces of a run that belong to the cycle, and the places (1) where they end."""
     pieces = np.arange(run.first, run.piece + 1)
     return pieces, np.append(np.ones(len(pieces) - 1), run.place)
@@ -83,18 +80,10 @@ def _slip_time(run: ClosedRun) -> float:
     return float(lasts[store.mode[pieces] != 0].sum())
 
 
-def _extremes(run: ClosedRun, of: Any) -> tuple[float, float]:
-    """Return the least and the greatest value that a function of history and positions has in a cycle."""
-    history, (pieces, ends) = run.history, _pieces(run)
-    places = ends[:, None] * FINE_PLACES
-    values = of(history, Positions.inside(np.repeat(pieces, len(FINE_PLACES)), places.ravel())).reshape(places.shape)
-    found = []
-    for sign in (-1.0, 1.0):
-        row, best = np.unravel_index(int(np.argmax(sign * values)), values.shape)
-        width, middle, value = ends[row] / (len(FINE_PLACES) - 1), places[row, best], sign * values[row, best]
-        for _ in range(CLOSER):
-            near = np.clip(middle + width * np.linspace(-1.0, 1.0, len(FINE_PLACES)), 0.0, ends[row])
-            tried = sign * of(history, Positions.inside(np.full(len(FINE_PLACES), pieces[row]), near))
-            value, middle, width = max(value, tried.max()), near[int(tried.argmax())], 2.0 * width / (len(FINE_PLACES) - 1)
-        found.append(float(sign * value))
-    return found[0], found[1]
+def _extremes(run: ClosedRun) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the least and the greatest slip rate (m/s) of a cycle, and traction less the reference strength."""
+    history, (_, ends), found = run.history, _pieces(run), np.empty((2, 2))
+    body = history.problem.body
+    write_extremes(history.store.pieces, Body(body.total_damping, body.inertia), run.first, ends, found)
+    rates, tractions = ((low, high) for low, high in found.tolist())
+    return rates, tractions

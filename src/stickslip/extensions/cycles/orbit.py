@@ -30,10 +30,6 @@ MOST_MEETINGS = 16
 """Largest number of meetings with the section in one period (1) that is looked for."""
 CLOSES = 1e-2
 """A run that comes back this close (1, share of its extent) is taken to close there."""
-NEARLY_CLOSES = 0.03
-"""From this close (1, share of its extent) Newton's iteration is tried while a run settles."""
-SETTLED = 0.25
-"""A cycle is that to which a run settles if it is no farther (1, share of its extent) from the end of the run."""
 INSTANT = 1e-6
 """A rest shorter than this share (1) of the period is an instant."""
 STEADY_SHARE = 1e-9
@@ -182,21 +178,6 @@ def places_of(history: History, met: Crossings) -> Floats:
     return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset=False)
 
 
-def closed_if_settled(section: Section, history: History, met: Crossings) -> Orbit | None:
-    """Return the cycle next to the last passages of a run, if these are close to each other; None if none is near."""
-    places, last = places_of(history, met), int(met.piece[-1])
-    pieces = np.repeat(np.arange(int(met.piece[-3]), last + 1), 2)
-    extent = np.ptp(coordinates(values_at(history, Positions.inside(pieces, np.tile([0.0, 1.0], len(pieces) // 2))), False), axis=1)
-    every = _meetings(places, extent, NEARLY_CLOSES)
-    if not every:
-        return None
-    try:
-        found = closed(section, places[:, -1], float(met.time[-1] - met.time[-1 - every]))
-    except InputError:
-        return None
-    return found if np.all(np.abs(found.place - places[:, -1]) <= SETTLED * found.extent) else None
-
-
 def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
     """Return the cycle near the end of a run. Raises InputError if there is none."""
     at_onset = len(onsets(history).time) > 1 and not problem.friction.states
@@ -209,14 +190,14 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
     if at_onset:
         return closed(Section(problem, at_onset, rtol), np.zeros(0), float(met.time[-1] - met.time[-2]))
     places = places_of(history, met)
-    every = _meetings(places, extent_of(history, False, len(history) - 1), CLOSES) or 1
+    every = meetings(places, extent_of(history, False, len(history) - 1), CLOSES) or 1
     found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
     if problem.friction.states or not found.sticks:
         return found
     return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
 
 
-def _meetings(places: Floats, extent: Floats, share: float) -> int:
+def meetings(places: Floats, extent: Floats, share: float) -> int:
     """Return after how many meetings with the section the run closes to a share (1) of its extent, 0 if it does so nowhere."""
     for every in range(1, min(MOST_MEETINGS, places.shape[1] - 1) + 1):
         if np.all(np.abs(places[:, -1] - places[:, -1 - every]) <= share * extent):

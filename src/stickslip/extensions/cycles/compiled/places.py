@@ -1,6 +1,9 @@
-"""Places in the pieces of a history: load, slip rate and states there, and where the slip rate passes a value."""
+"""Load, slip rate and states at places in the pieces of a history; passages of the slip rate; largest slip rates and tractions."""
 
 from __future__ import annotations
+
+import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +21,10 @@ MOST_HALVINGS = 200
 """Newton's iterations and halvings to a passage (1)."""
 ROUNDING_OF_PLACE, NARROWEST = 1e-16, 4e-16
 """A change of a place, and a distance of two, that is rounding (1)."""
+INTERVALS, CLOSER = 32, 6
+"""A largest value is looked for between so many parts of each piece (1), and so often again next to the largest."""
+OF_RATE, OF_TRACTION = range(2)
+"""What has a largest value: rows of what `write_extremes` writes."""
 
 
 @entry
@@ -71,3 +78,61 @@ def find_passages(table: Integers2, value: float, pieces: Integers1, places: Flo
                 count += 1
             below = stays
     return count
+
+
+class Body(NamedTuple):
+    """What turns a load into a traction: the damping (N s/m), and the mass (kg)."""
+
+    damping: float
+    inertia: float
+
+
+@kernel
+def seen(table: Integers2, body: Body, what: int, piece: int, place: float) -> float:
+    """Return the slip rate (m/s), or the traction less the reference strength (N): load less damping and inertia."""
+    one = pieces_of(table)[piece]
+    rate = evaluate(one.rate, place)
+    if what == OF_RATE:
+        return rate
+    load = evaluate(one.load, place) - body.damping * rate
+    if one.mode == 0 or body.inertia == 0.0:
+        return load
+    grows = 0.0
+    for k in range(TERMS - 1, 0, -1):
+        grows = grows * place + k * one.rate[k]
+    return load - body.inertia * grows / (one.speed + 2.0 * one.bend * place)
+
+
+@kernel
+def refined(table: Integers2, body: Body, what: int, best: tuple[int, float, float], span: tuple[float, float]) -> float:
+    """Return the largest value of `seen`, times a sign, near a place where it is large.
+
+    `best` has the piece, the place in it (1) and the value; `span` the end of the piece (1) and the sign.
+    """
+    piece, middle, value = best
+    end, sign = span
+    width = end / INTERVALS
+    for _ in range(CLOSER):
+        low, high, there = max(0.0, middle - width), min(end, middle + width), middle
+        for i in range(INTERVALS + 1):
+            place = low + (high - low) * i / INTERVALS
+            tried = sign * seen(table, body, what, piece, place)
+            if tried > value:
+                value, there = tried, place
+        middle, width = there, 2.0 * width / INTERVALS
+    return value
+
+
+@entry
+def write_extremes(table: Integers2, body: Body, first: int, ends: Floats1, found: Floats2) -> None:
+    """Write the least and the greatest slip rate, and the same of the traction, in pieces from one on up to their `ends`."""
+    for what in range(len(found)):
+        for side in range(2):
+            sign, piece, middle, value = 2.0 * side - 1.0, 0, 0.0, -math.inf
+            for n in range(len(ends)):
+                for i in range(INTERVALS + 1):
+                    place = ends[n] * i / INTERVALS
+                    tried = sign * seen(table, body, what, first + n, place)
+                    if tried > value:
+                        piece, middle, value = n, place, tried
+            found[what, side] = sign * refined(table, body, what, (first + piece, middle, value), (ends[piece], sign))

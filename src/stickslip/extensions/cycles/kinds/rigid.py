@@ -6,7 +6,7 @@ from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
 from stickslip.extensions.cycles.orbit import Orbit, near_end
 from stickslip.extensions.cycles.path import Path, path_of
-from stickslip.extensions.cycles.settled import settled
+from stickslip.extensions.cycles.settling import settled
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.scenarios import ParameterPath, Scenario
@@ -24,9 +24,9 @@ class CyclesOfRigid(CycleKind):
             return "cycles against hard stops are not found"
         return not_steady(problem)
 
-    def settled(self, problem: Problem, wait: float, rtol: float, tell: TextProgress) -> Orbit | None:
+    def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> Orbit | None:
         """Return the cycle to which a run settles early; None if it takes long."""
-        return settled(problem, wait, rtol, tell)
+        return settled(problem, times, rtol, tell)
 
     def near_end(self, history: History, problem: Problem, rtol: float) -> Orbit:
         """Return the cycle near the end of a run. Raises InputError if there is none."""
