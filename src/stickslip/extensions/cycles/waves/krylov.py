@@ -43,20 +43,21 @@ def _spaces(operator: Operator, start: Floats, most: int) -> Iterator[tuple[Floa
             return
 
 
-def solved(operator: Operator, right: Floats, accuracy: float, most: int) -> tuple[Floats, float]:
-    """Return x with operator(x) = right up to a share (1) of its size, and the share that is left after `most` directions."""
+def solved(operator: Operator, right: Floats, accuracy: float, most: int) -> tuple[Floats, float, int]:
+    """Return x with operator(x) = right up to a share (1) of its size, the share that is left, and the number of directions."""
     size = float(np.linalg.norm(right))
     if size == 0.0:
-        return np.zeros(len(right)), 0.0
-    found, left = np.zeros(len(right)), 1.0
+        return np.zeros(len(right)), 0.0, 0
+    found, left, count = np.zeros(len(right)), 1.0, 0
     for basis, matrix in _spaces(operator, right, most):
         first = np.zeros(len(matrix))
         first[0] = size
         weights = np.linalg.lstsq(matrix, first, rcond=None)[0]
-        found, left = basis @ weights, float(np.linalg.norm(first - matrix @ weights)) / size
+        found, count = basis @ weights, len(weights)
+        left = float(np.linalg.norm(first - matrix @ weights)) / size
         if left <= accuracy:
             break
-    return found, left
+    return found, left, count
 
 
 def leading(operator: Operator, start: Floats, many: int, large: float, most: int) -> NDArray[Any]:

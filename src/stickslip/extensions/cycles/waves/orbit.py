@@ -9,7 +9,6 @@ Source: Knoll & Keyes 2004, J. Comput. Phys. 193, 357, for Newton's iteration wi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -37,6 +36,8 @@ MOST_ITERATIONS, MOST_HALVINGS = 14, 5
 """Newton's iterations (1), and how often a step is shortened that leads away."""
 CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 """A cycle closes to this share (1) of its extent; where rounding or kinks forbid that, to the second."""
+SAME_MESH = 1e-7
+"""The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MOST_MEETINGS, CLOSES = 16, 3e-2
@@ -175,12 +176,13 @@ def grown(image: Image, section: WaveSection) -> Operator:
     return along
 
 
-def difference(residual: Callable[[Floats], Floats], at: Floats, missed: Floats) -> Operator:
-    """Return the derivative of a residual as an operator, by differences from its value."""
+def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
+    """Return the derivative of what a return misses, by differences from what it misses at the place itself."""
 
     def along(way: Floats) -> Floats:
         step = NUDGE / np.abs(way).max()
-        return np.asarray((residual(at + step * way) - missed) / step)
+        at = image.start + step * way
+        return np.asarray((image.of(at, section)[0] - at - missed) / step)
 
     return along
 
@@ -189,6 +191,23 @@ def fitted_mesh(met: WaveReturn) -> WaveMesh:
     """Return the mesh for the wave at a return."""
     history, body = met.history, met.history.problem.body
     return mesh_of(met.source, kinks(history, met.end, met.time, abs(body.front_reflection)))
+
+
+def with_sharp_kinks(section: WaveSection, now: WaveReturn, share: float) -> WaveReturn:
+    """Return the return of a return that misses its start by a share (1), whose wave has its kinks where the mesh has edges.
+
+    If it misses more it is not taken: the start is put on the new mesh. Where kinks no longer move, all stays as it is.
+    """
+    if share <= SAME_MESH:
+        return now
+    mesh = fitted_mesh(now)
+    try:
+        again = section.returned(now.on(mesh), now.time)
+        if missed_share(again) <= share:
+            return again
+    except InputError:
+        pass
+    return section.returned(now.start.on(mesh), now.time)
 
 
 def even_mesh(trip: float) -> WaveMesh:
@@ -212,26 +231,19 @@ def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
 
     Raises InputError if the iteration finds none.
     """
-    now = section.returned(place, guess)
-    now, runs, change = section.returned(now.start.on(fitted_mesh(now)), now.time), 2, math.inf
+    now, runs, change = section.returned(place, guess), 1, math.inf
     best: WaveOrbit | None = None
     for _ in range(MOST_ITERATIONS):
+        now, runs = with_sharp_kinks(section, now, missed_share(now)), runs + 1
         share = missed_share(now)
         before, best = best, WaveOrbit(now, section, share, runs, change) if best is None or share < best.share else best
         if share <= CLOSED_SHARE or (before is not None and before.share <= GOOD_ENOUGH and share > 0.5 * before.share):
             return checked(best)
-        mesh = fitted_mesh(now)
-        image = Image(now.start.on(mesh), now.time)
-        asked: list[Floats] = []
-
-        def residual(at: Floats, image: Image = image, asked: list[Floats] = asked) -> Floats:
-            asked.append(at)
-            return image.of(at, section)[0] - at
-
-        missed = now.on(mesh).vector / image.scale - image.start
-        step, _ = solved(difference(residual, image.start, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+        image = Image(now.start, now.time)
+        missed = now.on(now.start.mesh).vector / image.scale - image.start
+        step, _, directions = solved(difference(image, section, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
         period, now = now.time, _shortened(image, section, step, share)
-        runs, change = runs + len(asked) + 1, abs(now.time - period)
+        runs, change = runs + directions + 1, abs(now.time - period)
     if best is not None and best.share <= GOOD_ENOUGH:
         return checked(best)
     raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")

@@ -20,9 +20,10 @@ from stickslip.extensions.cycles.waves.orbit import (
     WaveOrbit,
     checked,
     coordinates,
+    difference,
     even_mesh,
-    fitted_mesh,
     missed_share,
+    with_sharp_kinks,
 )
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
@@ -37,7 +38,7 @@ DIRECTION_SHARE = 1e-3
 """The direction of a branch is known to this share (1)."""
 
 FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
-"""First step towards an end (1), the number of steps, halved where there is no cycle, and by what share a period may change there."""
+"""First step towards an end (1), the number of steps, halved without a cycle, and by what share (1) a period may change there."""
 SHORT_REST = 1e-2
 """A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch."""
 
@@ -98,15 +99,16 @@ class WavePath:
         """Return the cycle to which Newton's iteration leads from a return."""
         share, last, runs = np.inf, np.inf, 0
         for _ in range(NEWTON_ROUNDS):
-            image = Image(now.start.on(fitted_mesh(now)), now.time)
-            off = float(self._off(coordinates(now.start), value, target, way))
-            last, share = share, max(missed_share(now), abs(off))
+            section = self.section(value)
+            now = with_sharp_kinks(section, now, missed_share(now))
+            off = self._off(coordinates(now.start), value, target, way)
+            last, share, image = share, max(missed_share(now), abs(off)), Image(now.start, now.time)
             good = share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last)
-            along = self._derivative(image, value, now, target, way)
+            along = self._derivative(image, value, way)
             if good:
                 break
             missed = np.append(now.on(image.place.mesh).vector / image.scale - image.start, off)
-            step, _ = solved(along, -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+            step, _, _ = solved(along, -missed, LINEAR_SHARE, MOST_DIRECTIONS)
             value += float(step[-1]) * self.range
             now, runs = image.of(image.start + step[:-1], self.section(value))[1], runs + 1
         if share > STILL_CLOSED:
@@ -114,7 +116,7 @@ class WavePath:
         orbit = checked(WaveOrbit(now, self.section(value), share, runs, 0.0))
         ahead = np.zeros(len(image.start) + 1)
         ahead[-1] = 1.0
-        grown, _ = solved(along, ahead, DIRECTION_SHARE, MOST_DIRECTIONS)
+        grown, _, _ = solved(along, ahead, DIRECTION_SHARE, MOST_DIRECTIONS)
         moved = image.place.moved_to(grown[:-1] * image.scale)
         new = np.append(coordinates(moved) / self.scales[:-1], grown[-1])
         return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))
@@ -123,16 +125,17 @@ class WavePath:
         """Return how far a start is from the plane through `target` across `way`."""
         return float((self.together(place, value) - target) @ way)
 
-    def _derivative(self, image: Image, value: float, now: WaveReturn, target: Floats, way: Floats) -> Callable[[Floats], Floats]:
+    def _derivative(self, image: Image, value: float, way: Floats) -> Callable[[Floats], Floats]:
         """Return the derivative of what a return misses, and of the distance from the plane, by start and parameter."""
-        missed = image.of(image.start, self.section(value))[0] - image.start
+        section = self.section(value)
+        missed = image.of(image.start, section)[0] - image.start
+        ends = [image.of(image.start, self.section(value + sign * NUDGE * self.range))[0] for sign in (1.0, -1.0)]
+        by_value, grown = (ends[0] - ends[1]) / (2.0 * NUDGE), difference(image, section, missed)
 
         def along(change: Floats) -> Floats:
-            step = NUDGE / np.abs(change).max()
-            at, new = image.start + step * change[:-1], value + step * float(change[-1]) * self.range
-            there = image.of(at, self.section(new))[0]
+            here = grown(change[:-1]) if change[:-1].any() else np.zeros(len(missed))
             moved = coordinates(image.place.moved_to(change[:-1] * image.scale)) / self.scales[:-1]
-            return np.append((there - at - missed) / step, np.append(moved, change[-1]) @ way)
+            return np.append(here + change[-1] * by_value, np.append(moved, change[-1]) @ way)
 
         return along
 

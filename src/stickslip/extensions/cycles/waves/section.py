@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -103,6 +103,12 @@ class WaveReturn:
         return bool((self.history.store.mode[here] == 0).any() or self.history.rests[self.first : self.piece].any())
 
 
+@lru_cache(maxsize=8)
+def _options(problem: Problem, duration: float, rtol: float) -> CallOptions:
+    """Return the options of runs of one duration (s)."""
+    return CallOptions.of(Scenario(problem, duration), duration=duration, rtol=rtol, creep_rtol=0.0).check("cycle", problem)
+
+
 @dataclass(frozen=True)
 class WaveSection:
     """A section of the motion of a body with waves, and the returns to it."""
@@ -121,9 +127,7 @@ class WaveSection:
 
     def run_from(self, place: WavePlace, lasts: float) -> tuple[ExactRun, int]:
         """Return the run from a place that lasts so long (s), and the code of its end."""
-        duration = self.problem.round_trip_time + lasts
-        options = CallOptions.of(Scenario(self.problem, duration), duration=duration, rtol=self.rtol, creep_rtol=0.0)
-        run = ExactRun.begin(self.problem, options.check("cycle", self.problem))
+        run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
         begin_with(run, WaveBefore(place.mesh.edges, place.mesh.series(place.wave), self.rate, place.states))
         while True:
             code = run.advance(PASSES)
