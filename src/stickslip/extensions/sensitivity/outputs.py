@@ -13,17 +13,20 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import ENERGY_NAMES, QUANTITIES, TURNS, si_unit
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import Problem
-from stickslip.solution import Solution
-from stickslip.solution.evaluation import AT_DRIVE, CURVES
-from stickslip.solution.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, event_columns
+from stickslip.solution import CURVES, Solution
+from stickslip.solution.observables import EVENT_COLUMNS, event_columns
 
 TIMED_ENERGIES = tuple(name for name in ENERGY_NAMES if not name.endswith("_in_layer") and name != "balance")
 """Energies of a run that are numbers at each time."""
+DRIVE_CURVES = ("drive_rate", "drive_traction")
+"""What is measured at the driver of any body."""
+EVENT_ENERGIES = ("released", "work", "damped", "trapped", "heat")
+"""Energies of a slip event."""
 COUNTED = ("pulses", "phase", "amplification", "start_row", "start_offset", "balance")
 """Columns of events that have no derivative: whole numbers, rests of a division, and what is zero or follows another rule."""
 AT_BEGIN = ("start", "recurrence", "traction_before")
 """Columns of events that are known when an event begins, and do not change with what follows."""
-EVENT_NUMBERS = tuple(name for name in (*EVENT_COLUMNS, *ENERGY_COLUMNS) if name not in COUNTED)
+EVENT_NUMBERS = tuple(name for name in (*EVENT_COLUMNS, *EVENT_ENERGIES) if name not in COUNTED)
 """The numbers of an event."""
 
 
@@ -90,7 +93,7 @@ class NumberOfEvent:
 
     def unit(self, problem: Problem) -> str:
         """Return its SI unit."""
-        return si_unit((EVENT_COLUMNS | ENERGY_COLUMNS)[self.name].unit, problem.load_unit)
+        return si_unit("energy" if self.name in EVENT_ENERGIES else EVENT_COLUMNS[self.name].unit, problem.load_unit)
 
     def of(self, run: Solution) -> Reading | None:
         """Return the value of a run, or None if it has no such event."""
@@ -98,7 +101,7 @@ class NumberOfEvent:
         if self.event >= len(events.pulses):
             return None
         one = events.some(slice(self.event - 1 if self.event else 0, self.event + 1))
-        value = float(np.asarray(event_columns(run.history, one, energies=self.name in ENERGY_COLUMNS)[self.name])[-1])
+        value = float(np.asarray(event_columns(run.history, one, energies=self.name in EVENT_ENERGIES)[self.name])[-1])
         if not (np.isfinite(value) and (one.is_over[-1] or self.name in AT_BEGIN)):
             return None
         piece = int(one.begin.piece[-1] if self.name in AT_BEGIN else one.end.piece[-1])
@@ -111,5 +114,5 @@ Output = CurveAtTimes | NumberOfEvent
 
 def curves_of(problem: Problem) -> tuple[str, ...]:
     """Return the names of all that has a value at each time of a run."""
-    drive = AT_DRIVE if problem.load_unit == TURNS else AT_DRIVE[:2]
-    return (*CURVES, *STATE_NAMES[: len(problem.friction.states)], *drive, *TIMED_ENERGIES)
+    turns = ("surface_torque",) if problem.load_unit == TURNS else ()
+    return (*CURVES, *STATE_NAMES[: len(problem.friction.states)], *DRIVE_CURVES, *turns, *TIMED_ENERGIES)

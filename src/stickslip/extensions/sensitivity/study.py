@@ -29,10 +29,10 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem import Parameter, Problem, default_event_rate
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling
-from stickslip.solution import Solution
-from stickslip.solution.evaluation import times_of
+from stickslip.solution import Solution, times_of
 
 MEMBER_RTOL = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-8)
+TIME_ASKED = Quantity("s", "time of a curve or an energy")
 FINE_RTOL = 1e-14
 """Default tolerance of the runs (1)."""
 EVEN_TIMES = 360

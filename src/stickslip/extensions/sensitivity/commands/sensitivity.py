@@ -76,10 +76,10 @@ def _parts(text: str | None) -> list[str] | None:
 
 def _times(text: str) -> list[float]:
     """Return the times (s) in a text. Raises InputError."""
+    from stickslip.extensions.sensitivity.study import TIME_ASKED
     from stickslip.problem.scenarios import typed_number
-    from stickslip.solution.evaluation import TIME
 
-    found = [TIME.check("sensitivity", "at", typed_number(one)) for one in _parts(text) or []]
+    found = [TIME_ASKED.check("sensitivity", "at", typed_number(one)) for one in _parts(text) or []]
     if not found:
         raise InputError("sensitivity: --at: give a time, or several with commas between them")
     return found
