@@ -13,8 +13,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stickslip.extensions.cycles.edges import MEANING, CycleEdge
+from stickslip.extensions.cycles.hysteresis import Interval, joined, with_stable_cycles, with_stable_sliding
 from stickslip.extensions.cycles.limit_cycle import LimitCycle, is_stable, row_of
 from stickslip.extensions.cycles.measures import Measures
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import ParameterPath
@@ -29,6 +31,17 @@ class PointOnBranch(NamedTuple):
     multipliers: NDArray[Any]
     sticks: bool
     edge: str
+    part: int = 0
+    """The part of the branch (1): one more for each that begins at a period doubling."""
+    doubled: int = 0
+    """How often its period has doubled (1) since the first cycle."""
+    start: Floats = np.zeros(0)
+    """Where the section is met, as the path counts it; nothing at an onset of slip, or where a branch cannot go on."""
+
+    @property
+    def at_onset(self) -> bool:
+        """True if it is cut at an onset of slip."""
+        return not len(self.start)
 
     @property
     def stable(self) -> bool | None:
@@ -40,7 +53,9 @@ class PointOnBranch(NamedTuple):
 class BranchOfCycles(Study):
     """The result of `follow`: the cycles along a branch in their order, and its edges.
 
-    `table` has a row for each: the parameter, then the columns of `LimitCycle.table`, and edge, the name of an edge or "", in SI.
+    `table` has a row for each: the parameter, then the columns of `LimitCycle.table`, and edge, the name of an edge or "", in SI;
+    part counts the parts that begin at period doublings, doubled how often the period has doubled, and start_1 and so on are load
+    and inner states where the cycle begins, from which `follow` goes on.
     """
 
     start: LimitCycle
@@ -49,6 +64,8 @@ class BranchOfCycles(Study):
     edges: tuple[CycleEdge, ...] = field(compare=False)
     """The edges in their order: name, value (SI) of the parameter, and the cycle next to it."""
     to: float = np.nan
+    interrupted: bool = False
+    """True if Ctrl-C ended it before its end: `follow(..., resume=branch)` goes on."""
 
     @property
     def problem(self) -> Problem:
@@ -58,10 +75,42 @@ class BranchOfCycles(Study):
     @cached_property
     def table(self) -> pd.DataFrame:
         """The cycles along the branch, in SI."""
-        rows = [
-            {self.parameter.name: one.value} | row_of(one.measures, one.multipliers) | {"edge": one.edge} for one in self.points
-        ]
+        rows = []
+        for one in self.points:
+            row = {self.parameter.name: one.value} | row_of(one.measures, one.multipliers)
+            row |= {"edge": one.edge, "part": one.part, "doubled": one.doubled}
+            rows.append(row | {f"start_{n}": value for n, value in enumerate(one.start.tolist(), 1)})
         return pd.DataFrame(rows)
+
+    @cached_property
+    def hysteresis(self) -> tuple[Interval, ...]:
+        """Intervals (SI) of the parameter where a cycle of the branch and steady sliding are both stable."""
+        values = [one.value for one in self.points]
+        both = [with_stable_sliding(one, values, self._problem_at) for one in with_stable_cycles(self.points)]
+        return tuple(joined([one for several in both for one in several]))
+
+    def _problem_at(self, value: float) -> Problem:
+        return self.start.scenario.problem.parameters[self.parameter.name].put(value)
+
+    @property
+    def hysteresis_text(self) -> str:
+        """Say in one sentence where steady sliding and a cycle are both stable; "" if they are so nowhere."""
+        unit = self.parameter.unit
+        between = [f"{brief(one.low, unit, 10)} and {brief(one.high, unit, 10)}" for one in self.hysteresis]
+        if not between:
+            return ""
+        where = f"between {self.parameter.name} = {', and between '.join(between)}"
+        return f"hysteresis {where}: steady sliding and a cycle are both stable, and the contact keeps to the one it came from"
+
+    @property
+    def interrupted_text(self) -> str:
+        """Say in one sentence where Ctrl-C ended it; "" if it did not."""
+        at = brief(self.points[-1].value, self.parameter.unit)
+        return (
+            f"interrupted at {self.parameter.name} = {at}: the branch can go on there, from its table (--resume)"
+            if self.interrupted
+            else ""
+        )
 
     @property
     def text(self) -> str:
@@ -83,10 +132,10 @@ class BranchOfCycles(Study):
         )
 
     def _about(self) -> Iterable[str]:
-        return tuple(self._sentences())
+        return tuple(text for text in self._sentences() if text)
 
     def _sentences(self) -> Iterable[str]:
-        return self.text, *self.edge_texts
+        return self.text, *self.edge_texts, self.hysteresis_text, self.interrupted_text
 
     def _figure(self) -> Callable[..., Any]:
         from stickslip.extensions.cycles.figures.branch import draw_branch

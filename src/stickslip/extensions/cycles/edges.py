@@ -16,12 +16,14 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 FOLD, DOUBLING, TORUS = "fold of cycles", "period doubling", "Neimark-Sacker"
+HALVING = "end of doubling"
 LOSS_OF_STICK, FIRST_STICK, STEADY_END, GRAZING = "loss of stick", "first stick", "steady sliding", "grazing"
 NOT_FOUND = "not followed further"
 MEANING = {
     FOLD: "a multiplier is +1: a stable and an unstable cycle meet and vanish",
     DOUBLING: "a multiplier is -1: a cycle of twice the period branches off",
-    TORUS: "a pair of multipliers is on the unit circle: a motion with two frequencies branches off",
+    TORUS: "a pair of multipliers is on the unit circle: a motion with two frequencies branches off, which is not followed",
+    HALVING: "both halves of the period become alike: the cycle vanishes in one of half its period",
     LOSS_OF_STICK: "the arrest is grazed: the contact no longer comes to rest",
     FIRST_STICK: "the slip rate touches 0: the contact begins to rest",
     STEADY_END: "the amplitude is 0: the cycle vanishes in steady sliding, which changes its stability there (Hopf)",

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from os import PathLike
 
 import numpy as np
 
-from stickslip.engine import Positions
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
+from stickslip.extensions.cycles.doubling import MOST_DOUBLED, end_of_doubling, first_doubled
 from stickslip.extensions.cycles.edges import (
+    DOUBLING,
     NOT_FOUND,
     STEADY_END,
     CycleEdge,
@@ -20,10 +22,9 @@ from stickslip.extensions.cycles.edges import (
 )
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import measures_of
-from stickslip.extensions.cycles.orbit import extent_of
+from stickslip.extensions.cycles.meeting import with_rest, without_rest
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
-from stickslip.extensions.cycles.section import coordinates, passages
-from stickslip.extensions.cycles.tangent import values_at
+from stickslip.extensions.cycles.resuming import check_can_be_kept, edge_of, orbit_of, place_to_go_on, points_to_go_on
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -42,10 +43,8 @@ STRAIGHT, SAME_PERIOD = 0.8, 0.3
 """A step is too long if the branch turns by more than this cosine (1), or the period changes by more than this share."""
 VANISHING = 2e-3
 """A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding."""
-NEXT_TO_EDGE = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-"""Distances (1, shares of the range) from an edge, where a branch is taken up again, with or without rest."""
-CLOSE_PERIOD = 0.1
-"""Cycles that meet at an edge have periods that differ by no more than this share (1), next to it."""
+MOST_COORDINATES = 8
+"""Of cycles with more coordinates of the start than this (1), such as waves, these are not kept, and no branch goes on."""
 MOST_PARTS = 4
 """Largest number of parts of a branch (1), which alternately rest and do not."""
 
@@ -57,6 +56,8 @@ def follow(
     *,
     to: float | str | WithUnit,
     steps: int = STEPS,
+    double: bool = False,
+    resume: BranchOfCycles | str | PathLike[str] | None = None,
     progress: TextProgress | bool | None = None,
 ) -> BranchOfCycles:
     """Follow a cycle along one number of its problem, through folds, with the edges where it changes.
@@ -71,27 +72,31 @@ def follow(
         Its value (SI, or a text with a unit) at the other end. Behind a fold the branch may come back to where it began.
     steps : int
         About how many steps cross the range.
+    double : bool
+        True follows the cycles of twice the period, too, that branch off where the period doubles, up to eight times the period.
+    resume : BranchOfCycles, str or Path, optional
+        A branch of the same cycle that Ctrl-C has ended, or its table (.csv): it goes on where it ends, to another `to`, too.
     progress : bool or callable, optional
         True shows the progress in one line; a function is called with a line of text after each cycle.
 
     Returns
     -------
     BranchOfCycles
-        The cycles in their order along the branch, and its edges.
+        The cycles in their order along the branch, and its edges. Ctrl-C ends it early: it is then `interrupted`, and can go on.
 
     Raises
     ------
     InputError
-        If the parameter is unknown or is no number, or if there is no other value to go to.
+        If the parameter is unknown or is no number, if there is no other value to go to, or if `resume` is another branch.
     KeyboardInterrupt
-        If the user presses Ctrl-C.
+        If the user presses Ctrl-C before the first cycle.
 
     Notes
     -----
     Start and parameter are changed together along the branch (pseudo-arclength), so that it can turn back. Edges: a fold of cycles
     (multiplier +1), period doubling (-1), Neimark-Sacker (a pair on the unit circle), loss of stick (the arrest is grazed), first
-    stick, and steady sliding, where a cycle vanishes. Branches that begin at an edge are not followed, but for those with and
-    without rest that meet where stick is lost.
+    stick, and steady sliding, where a cycle vanishes. Of the branches that begin at an edge those with and without rest that meet
+    where stick is lost are followed, and cycles of twice the period if they are wished.
 
     Examples
     --------
@@ -108,21 +113,22 @@ def follow(
     parameter = find_parameter(cycle.scenario, along, "follow")
     if not isinstance(parameter.declared, Quantity) or parameter.name.startswith(("initial.", "run.")):
         raise InputError(f"follow: {parameter.name} is no number on which a cycle depends: give one of the body, law or loading")
-    begin = number_of(cycle, parameter)
+    begin = float(cycle.scenario.problem.parameters[parameter.name].value)
     end = float(parameter.declared.check("follow", "to", to))
     if end == begin:
         raise InputError(f"follow: to: {parameter.name} is {brief(begin, parameter.unit)} already: give another value")
     if steps < 1:
         raise InputError(f"follow: steps must be 1 or more, got {steps}")
+    check_can_be_kept(cycle, double=double, resume=resume is not None)
     with telling(progress, "follow") as tell:
-        search = _Following(cycle, parameter, (begin, end), steps, tell)
-        search.run()
-    return BranchOfCycles(cycle, parameter, tuple(search.points), tuple(search.edges), end)
-
-
-def number_of(cycle: LimitCycle, parameter: ParameterPath) -> float:
-    """Return the value (SI) of a parameter of the cycle's problem."""
-    return float(cycle.scenario.problem.parameters[parameter.name].value)
+        search, interrupted = _Following(cycle, parameter, (begin, end), steps, tell, double), False
+        try:
+            search.run([] if resume is None else points_to_go_on(resume, cycle, parameter, begin))
+        except KeyboardInterrupt:
+            if not search.points:
+                raise
+            interrupted = True
+    return BranchOfCycles(cycle, parameter, tuple(search.points), tuple(search.edges), end, interrupted)
 
 
 @dataclass
@@ -134,33 +140,81 @@ class _Following:
     ends: tuple[float, float]
     steps: int
     tell: TextProgress
+    double: bool = False
     points: list[PointOnBranch] = field(default_factory=list)
     edges: list[CycleEdge] = field(default_factory=list)
+    number: int = 0
+    """The number (1) of the part: one more for each that begins at a period doubling."""
+    doubled: int = 0
+    """How often the period has doubled (1)."""
+    doublings: list[tuple[int, Path, CycleEdge]] = field(default_factory=list)
+    """Where the period doubles: how often it has done so before, the path, and the edge."""
 
     @property
     def span(self) -> float:
         """The range of the parameter, SI."""
         return abs(self.ends[1] - self.ends[0])
 
-    def run(self) -> None:
-        """Follow all parts of the branch."""
+    def run(self, earlier: list[PointOnBranch]) -> None:
+        """Follow all parts of the branch, from the end of earlier cycles on if there are any."""
         orbit = self.cycle.orbit
         path = CYCLE_KINDS[self.cycle.problem.body.structure].path(orbit, self.cycle.scenario, self.parameter, self.span)
         start = path.at_value(self.ends[0], orbit.place, orbit.period)
         if start.way[-1] * (self.ends[1] - self.ends[0]) < 0.0:
             start = replace(start, way=-start.way)
+        if earlier:
+            path, start = self._gone_on(path, start, earlier)
         part: tuple[Path, PlaceOnBranch] | None = (path, start)
         for _ in range(MOST_PARTS):
-            if part is None:
-                return
+            if part is None or self.doubled:
+                break
             part = self._part(*part)
+        self._doubled_parts(path, start)
+
+    def _gone_on(self, path: Path, start: PlaceOnBranch, earlier: list[PointOnBranch]) -> tuple[Path, PlaceOnBranch]:
+        """Take over earlier cycles but the last one, and return that with the way on."""
+        *self.points, last = earlier
+        self.number, self.doubled = last.part, last.doubled
+        for one in self.points:
+            if one.edge:
+                self.edges.append(edge_of(one, self.cycle, self.parameter))
+                self._note(path, self.edges[-1], one.doubled)
+        if last.at_onset != path.at_onset:
+            extent = orbit_of(last, self.cycle, self.parameter).extent
+            path = replace(path, at_onset=last.at_onset, scales=np.append(extent, self.span))
+        return path, place_to_go_on(path, start, earlier)
+
+    def _note(self, path: Path, edge: CycleEdge, doubled: int) -> None:
+        """Note where a branch of cycles of twice the period begins, if they are wished."""
+        if self.double and edge.name == DOUBLING and doubled < MOST_DOUBLED:
+            self.doublings.append((doubled, path, edge))
+
+    def _doubled_parts(self, path: Path, start: PlaceOnBranch) -> None:
+        """Follow the cycles of twice the period, and of twice theirs; one that an earlier branch has begun goes on first."""
+        if self.doubled:
+            self._part(path, start)
+        while self.number < len(self.doublings):
+            doubled, path, edge = self.doublings[self.number]
+            self.number, self.doubled = self.number + 1, doubled + 1
+            begun = first_doubled(path, edge)
+            if begun is not None:
+                self._part(path, begun)
 
     def _add(self, place: PlaceOnBranch, edge: str = "") -> None:
         if len(self.points) >= MOST_POINTS:
             raise InputError(f"follow: the branch has more than {MOST_POINTS} cycles: give fewer steps, or a nearer end (to)")
-        self.points.append(PointOnBranch(place.value, measures_of(place.orbit), place.orbit.multipliers, place.orbit.sticks, edge))
-        period, at = brief(place.orbit.period, "s"), brief(place.value, self.parameter.unit)
-        self.tell(f"{self.parameter.name} = {at}: period {period}")
+        orbit = place.orbit
+        start = orbit.place if len(orbit.place) <= MOST_COORDINATES else np.zeros(0)
+        self.points.append(
+            PointOnBranch(
+                *(place.value, measures_of(orbit), orbit.multipliers, orbit.sticks, edge),
+                self.number,
+                self.doubled,
+                np.array(start),
+            )
+        )
+        at = brief(place.value, self.parameter.unit)
+        self.tell(f"{self.parameter.name} = {at}: period {brief(orbit.period, 's')}")
 
     def _edge(self, edge: CycleEdge) -> None:
         self.edges.append(edge)
@@ -179,11 +233,16 @@ class _Following:
                 if length >= SHORTEST * min(1.0, path.longest_step(now, 1.0)):
                     continue
                 return self._at_end(path, now, values, amplitudes)
+            halves = end_of_doubling(path, now, new)
+            if halves is not None and low <= halves.value <= high:
+                self._edge(halves)
+                return None
             if not low <= new.value <= high:
                 self._to_the_end(path, now, new)
                 return None
             for edge in edges_between(path, now, new, step):
                 self._edge(edge)
+                self._note(path, edge, self.doubled)
             self._add(new)
             amplitudes.append(self.points[-1].measures.amplitude)
             values.append(new.value)
@@ -215,6 +274,7 @@ class _Following:
         length = float(np.linalg.norm(path.together(last.orbit.place, value) - path.together(now.orbit.place, now.value)))
         for edge in edges_between(path, now, last, length):
             self._edge(edge)
+            self._note(path, edge, self.doubled)
         self._add(last)
 
     def _at_end(
@@ -228,7 +288,7 @@ class _Following:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span
             edge, last = loss_of_stick(path, now, float(beyond))
             self._edge(edge)
-            return self._without_rest(path, edge, last)
+            return without_rest(path, edge, last)
         small = amplitudes[-1] < 0.05 * now.orbit.section.problem.first_pull_rate
         if len(values) > 1 and small and amplitudes[-1] < amplitudes[-2]:
             found = end_in_steady_sliding(path, np.array(values), np.array(amplitudes))
@@ -239,52 +299,7 @@ class _Following:
             touched = first_stick(path, now)
             if touched is not None:
                 self._edge(touched[0])
-                return self._with_rest(path, *touched) if path.joins else None
+                came_up = bool(np.all(np.diff([one.value for one in self.points[-2:]]) >= 0.0))
+                return with_rest(path, *touched, came_up=came_up) if path.joins else None
         self._edge(CycleEdge(NOT_FOUND, now.value, now.orbit))
         return None
-
-    def _without_rest(self, path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
-        """Return where cycles without rest begin, at an edge where stick is lost."""
-        met = passages(last.orbit.closed.history)
-        if not len(met.time):
-            return None
-        at = values_at(last.orbit.closed.history, Positions.inside(met.piece[:1], met.place[:1]))
-        place = coordinates(at, at_onset=False)[:, 0]
-        other = self._other(path, edge, at_onset=False)
-        along = np.eye(len(other.scales))[0]  # the load where the pull rate is passed is the largest: less of it does not graze
-        for share in NEXT_TO_EDGE:
-            target = other.together(place, edge.value) - share * along
-            try:
-                found = other.at(target, along, edge.orbit.period)
-            except NoCycleError:
-                continue
-            if _is_next_to(edge, found, at_onset=False):
-                return other, found if found.way[0] < 0.0 else replace(found, way=-found.way)
-        return None
-
-    def _with_rest(self, path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
-        """Return where cycles with rest begin, at an edge where the slip rate touches 0; under laws with states none is found."""
-        if last.orbit.section.problem.friction.states:
-            return None
-        other = self._other(path, edge, at_onset=True)
-        came_up = len(self.points) > 1 and self.points[-1].value >= self.points[-2].value
-        for share in NEXT_TO_EDGE:
-            for sign in (1.0, -1.0) if came_up else (-1.0, 1.0):
-                value = edge.value + sign * share * self.span
-                try:
-                    found = other.at_value(value, np.zeros(0), edge.orbit.period)
-                except NoCycleError:
-                    continue
-                if _is_next_to(edge, found, at_onset=True):
-                    return other, found if found.way[-1] * sign > 0.0 else replace(found, way=-found.way)
-        return None
-
-    def _other(self, path: Path, edge: CycleEdge, *, at_onset: bool) -> Path:
-        """Return the path of cycles next to an edge that are cut at the other section."""
-        extent = extent_of(edge.orbit.closed.history, at_onset, edge.orbit.closed.piece)
-        return replace(path, at_onset=at_onset, scales=np.append(extent, self.span))
-
-
-def _is_next_to(edge: CycleEdge, found: PlaceOnBranch, *, at_onset: bool) -> bool:
-    """Return True if a cycle may be the one that meets another at an edge."""
-    return abs(found.orbit.period - edge.orbit.period) <= CLOSE_PERIOD * edge.orbit.period and found.orbit.sticks == at_onset

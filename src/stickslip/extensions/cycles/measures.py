@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.compiled.places import Body, write_extremes
 from stickslip.extensions.cycles.found import ClosedRun, FoundCycle
-from stickslip.foundation.arrays import Floats, Integers
+from stickslip.foundation.arrays import Floats, Integers1
 
 ROUNDING = 1e-12
 """A slip rate of this share (1) of the greatest is rounding, where the contact rests."""
@@ -67,7 +67,7 @@ def least_rate(orbit: FoundCycle) -> float:
     return _extremes(orbit.closed)[0][0]
 
 
-def _pieces(run: ClosedRun) -> tuple[Integers, Floats]:
+def _pieces(run: ClosedRun) -> tuple[Integers1, Floats]:
     """Return the pieces of a run that belong to the cycle, and the places (1) where they end."""
     pieces = np.arange(run.first, run.piece + 1)
     return pieces, np.append(np.ones(len(pieces) - 1), run.place)

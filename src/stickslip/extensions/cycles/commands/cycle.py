@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 NEAR = "Duration of the run at whose end the cycle is looked for: s, or with a unit. Default: long enough for some cycles."
 ALONG = "Follow the cycle along this number of the scenario, such as pull_rate or body.stiffness; with --to."
 TO = "Value at the other end of --along, a number in SI or with a unit."
+DOUBLE = "Follow cycles of twice the period, too, where the period doubles."
+RESUME = "Go on with the branch in --out, which Ctrl-C has ended, or to another --to."
 ROWS_SHOWN = 24
 """Largest number of cycles of a branch that are printed; edges are printed beside them."""
 
@@ -32,7 +34,9 @@ def cycle(
     along: Annotated[str | None, option(ALONG)] = None,
     to: Annotated[str | None, option(TO)] = None,
     steps: Annotated[int, typer.Option(help="About how many steps cross the range of --along.")] = 40,
+    double: Annotated[bool, typer.Option("--double", help=DOUBLE)] = False,
     out: Annotated[Path | None, table_of("cycle")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help=RESUME)] = False,
     figure: FigureFile = None,
     look: FigureLook,
 ) -> None:
@@ -44,7 +48,8 @@ def cycle(
     and --to it is followed as one number changes, around folds: edges where
     stick is lost, the period doubles, or the cycle ends in steady sliding are
     found and named. The figure shows one period, or amplitude and period of
-    the branch, dashed where it is unstable.
+    the branch, dashed where it is unstable. Ctrl-C keeps what there is of a
+    branch in --out, and --resume goes on.
 
     \b
       stickslip cycle block --figure cycle.png
@@ -63,18 +68,30 @@ def cycle(
     look.check(figure)
     if (along is None) != (to is None):
         raise InputError(f"cycle: {'--to needs --along' if along is None else '--along needs --to'}: give both, or neither")
+    _check_branch(along, out, double=double, resume=resume)
     chosen = load(scenario, "cycle", changes)
     with progress_line(f"{chosen.name}:") as report:
         found = search(chosen, None if near is None else typed_number(near), progress=report)
         branch = None
         if along is not None and to is not None:
-            branch = follow(found, along, to=typed_number(to), steps=steps, progress=report)
+            earlier = out if resume else None
+            branch = follow(found, along, to=typed_number(to), steps=steps, double=double, resume=earlier, progress=report)
     screen = titled(chosen)
     print_sentences(screen, found.text, found.stability_text, found.certainty_text)
     if branch is not None:
         _show_branch(screen, branch)
     drawn = found if branch is None else branch
     announce(*write_files((out, drawn.to_csv), (figure, drawing(drawn.plot, look))))
+    if branch is not None and branch.interrupted:
+        raise KeyboardInterrupt
+
+
+def _check_branch(along: str | None, out: Path | None, *, double: bool, resume: bool) -> None:
+    """Refuse options of a branch without one. Raises InputError."""
+    if along is None and (double or resume):
+        raise InputError(f"cycle: {'--double' if double else '--resume'} is for branches: give --along and --to, too")
+    if resume and (out is None or not out.is_file()):
+        raise InputError("cycle: --resume goes on with the branch in the table --out: give one that is there")
 
 
 def _show_branch(screen: Console, branch: BranchOfCycles) -> None:
@@ -101,4 +118,5 @@ def _show_branch(screen: Console, branch: BranchOfCycles) -> None:
     headings = (branch.parameter.name.rpartition(".")[2], "period", "amplitude", "rest", "largest\nmultiplier", "stable", "edge")
     print_numbers(screen, headings, rows)
     say(screen, "")
-    print_sentences(screen, branch.text, *branch.edge_texts)
+    more = [text for text in (branch.hysteresis_text, branch.interrupted_text) if text]
+    print_sentences(screen, branch.text, *branch.edge_texts, *more)

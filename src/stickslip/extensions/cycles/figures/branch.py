@@ -54,11 +54,13 @@ def _draw_cycles(axes: Axes, found: BranchOfCycles, values: Floats, sizes: Float
     kinds: list[bool | None] = []
     for one in found.points:  # an edge belongs to the cycles before it
         kinds.append(kinds[-1] if one.edge and kinds else one.stable)
-    ends = [0, *(n for n in range(1, len(kinds)) if kinds[n] != kinds[n - 1]), len(kinds)]
+    parts = [one.part for one in found.points]
+    ends = [0, *(n for n in range(1, len(kinds)) if kinds[n] != kinds[n - 1] or parts[n] != parts[n - 1]), len(kinds)]
     named = set()
     for first, past in pairwise(ends):
         colour, line, word = LOOKS[kinds[first]]
-        drawn = slice(max(first - 1, 0), past)  # from the cycle before: the branch is one line
+        joins = first > 0 and parts[first] == parts[first - 1]
+        drawn = slice(first - 1 if joins else first, past)  # from the cycle before: a part of the branch is one line
         axes.plot(values[drawn], sizes[drawn], line, color=colour, label="" if word in named else word, marker=".", markersize=3)
         named.add(word)
     names = list(dict.fromkeys(one.edge for one in found.points if one.edge))

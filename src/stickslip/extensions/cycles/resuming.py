@@ -1,0 +1,135 @@
+"""A branch of cycles that goes on: read from its table, or from the branch itself."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
+from stickslip.extensions.cycles.edges import MEANING, CycleEdge
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
+from stickslip.extensions.cycles.measures import Measures
+from stickslip.extensions.cycles.orbit import Orbit, extent_of
+from stickslip.extensions.cycles.path import Path, PlaceOnBranch
+from stickslip.extensions.cycles.section import Section
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+from stickslip.problem.scenarios import ParameterPath
+
+SAME = 1e-6
+"""The first cycle of a table is that of the scenario if value and period differ by less than this share (1)."""
+BESIDE_EDGE = (-1e-11, 1e-11, -1e-9, 1e-9)
+"""Shares (1) of the value of an edge, which is found to rounding, by which a run beside it is moved if there is none at it."""
+
+
+def check_can_be_kept(cycle: LimitCycle, *, double: bool, resume: bool) -> None:
+    """Refuse what needs the start of a cycle in a few numbers where that is a wave. Raises InputError."""
+    if (double or resume) and not isinstance(cycle.orbit, Orbit):
+        what = "double: cycles of twice the period are followed" if double else "resume: a branch goes on"
+        raise InputError(f"follow: {what} for rigid bodies only, and this is a body of waves: leave it out")
+
+
+def points_to_go_on(
+    earlier: BranchOfCycles | str | os.PathLike[str], cycle: LimitCycle, parameter: ParameterPath, begin: float
+) -> list[PointOnBranch]:
+    """Return the cycles of an earlier branch up to the last one that is no edge. Raises InputError if it is another branch."""
+    if isinstance(earlier, BranchOfCycles):
+        where, name, points = "follow: resume", earlier.parameter.name, list(earlier.points)
+    else:
+        where = f"follow: {os.fspath(earlier)}"
+        name, points = _read(FilePath(earlier), where, parameter)
+    if name != parameter.name:
+        raise InputError(f"{where}: holds a branch along {name}, not along {parameter.name}")
+    if not points:
+        raise InputError(f"{where}: holds no cycle: leave out resume")
+    same_value = abs(points[0].value - begin) <= SAME * max(abs(begin), abs(points[0].value))
+    if not same_value or abs(points[0].measures.period - cycle.period) > SAME * cycle.period:
+        found, wanted = (
+            f"{brief(value, parameter.unit)} with a period of {brief(period, 's')}"
+            for value, period in ((points[0].value, points[0].measures.period), (begin, cycle.period))
+        )
+        raise InputError(f"{where}: begins at {parameter.name} = {found}, and this cycle is at {wanted}: it is another branch")
+    while points[-1].edge:
+        points.pop()
+    return points
+
+
+def _read(path: FilePath, where: str, parameter: ParameterPath) -> tuple[str, list[PointOnBranch]]:
+    """Return the name of the parameter, and the cycles in a table. Raises InputError if it is none of `follow`."""
+    try:
+        table = pd.read_csv(path, comment="#", keep_default_na=True)
+    except OSError:
+        raise InputError(f"{where}: cannot be read: give the table (.csv) of a branch") from None
+    except (ValueError, pd.errors.ParserError):
+        raise InputError(f"{where}: is no table of a branch") from None
+    if missing := [one for one in (*Measures._fields, "edge", "part", "doubled") if one not in table]:
+        raise InputError(f"{where}: is no table of a branch that can go on: it has no column {missing[0]!r}")
+    name = str(table.columns[0])
+    try:
+        return name, [_point(row, name) for row in table.to_dict("records")]
+    except (ValueError, KeyError, TypeError):
+        raise InputError(f"{where}: a row of it is damaged") from None
+
+
+def _point(row: dict[Any, Any], name: str) -> PointOnBranch:
+    edge = "" if pd.isna(row["edge"]) else str(row["edge"])
+    if edge and edge not in MEANING:
+        raise ValueError(edge)
+    sizes = _numbered(row, "multiplier_{}"), _numbered(row, "multiplier_{}_imaginary")
+    multipliers: Any = sizes[0] if not np.any(sizes[1]) else sizes[0] + 1j * sizes[1]
+    measures = Measures(*(float(row[one]) for one in Measures._fields))
+    start = _numbered(row, "start_{}")
+    return PointOnBranch(
+        float(row[name]), measures, multipliers, measures.stick_share > 0.0, edge, int(row["part"]), int(row["doubled"]), start
+    )
+
+
+def _numbered(row: dict[Any, Any], name: str) -> Any:
+    """Return the values of columns that are counted from 1, up to an empty one; an empty multiplier is not known."""
+    found = []
+    for n in range(1, len(row)):
+        value = row.get(name.format(n))
+        if value is None or pd.isna(value):
+            break
+        found.append(float(value))
+    if not found and name.startswith("multiplier"):
+        found = [np.nan if name == "multiplier_{}" else 0.0]
+    return np.array(found)
+
+
+def orbit_of(point: PointOnBranch, cycle: LimitCycle, parameter: ParameterPath) -> Orbit:
+    """Return the cycle of a place on a branch, by a run of one period. Raises InputError if it does not come back."""
+    problem = cycle.scenario.problem.parameters[parameter.name].put(point.value)
+    at_onset = not len(point.start)
+    now = Section(problem, at_onset, cycle.orbit.section.rtol).returned(point.start, point.measures.period)
+    return Orbit(now, extent_of(now.history, at_onset, now.piece), 1, 0.0)
+
+
+def edge_of(point: PointOnBranch, cycle: LimitCycle, parameter: ParameterPath) -> CycleEdge:
+    """Return the edge at a place on a branch, with the cycle there or, where it just ceased to be, next to it.
+
+    Raises InputError.
+    """
+    for share in (0.0, *BESIDE_EDGE):
+        with suppress(InputError):
+            beside = point._replace(value=point.value * (1.0 + share))
+            return CycleEdge(point.edge, point.value, orbit_of(beside, cycle, parameter))
+    raise InputError(f"follow: resume: the cycle at {parameter.name} = {brief(point.value, parameter.unit)} does not come back")
+
+
+def place_to_go_on(path: Path, start: PlaceOnBranch, points: list[PointOnBranch]) -> PlaceOnBranch:
+    """Return the last of some cycles on a path, with the way that leads on; `start` is the first cycle. Raises NoCycleError."""
+    *others, last = points
+    before = [one for one in others if not one.edge and one.part == last.part and one.at_onset == last.at_onset]
+    way = np.append(np.zeros(len(last.start)), np.sign(start.way[-1]))
+    if before:
+        way = path.together(last.start, last.value) - path.together(before[-1].start, before[-1].value)
+    way /= np.linalg.norm(way)
+    found = path.at(path.together(last.start, last.value), way, last.measures.period)
+    return found if found.way @ way > 0.0 else replace(found, way=-found.way)
