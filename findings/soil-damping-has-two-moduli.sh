@@ -6,12 +6,12 @@
 # the other. Damping that does not depend on frequency is no differential equation: programs in time damp by mass and stiffness, and a damping
 # ratio is right there at one or two frequencies.
 #
-# Usage: findings/soil-damping-has-two-moduli.sh [PYTHON]   (makes and removes two virtual environments)
+# Usage: findings/soil-damping-has-two-moduli.sh [PYTHON]   (makes and removes a virtual environment)
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${1:-python3}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "pystrata==0.5.4" "PySeismoSoil==0.7.0" "pandas==2.3.3" "numpy==2.4.6"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "pystrata==0.5.4" "PySeismoSoil==0.7.0" "pandas==3.1.1" "numpy==2.4.6"
 "$folder/venv/bin/python" -W ignore - <<'END'
 from importlib.metadata import version
 
