@@ -40,7 +40,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, Clai
         blank(*["png"] * all_tests()),
     ):
         run_page(PAPER, whole=True)
-    assert len(steps) == 8 + 22 + 2
+    assert len(steps) == 9 + 23 + 2
     return home / "paper", found
 
 

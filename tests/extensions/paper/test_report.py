@@ -20,12 +20,12 @@ from tests.html_page import Page, check_alone, check_form, check_links
 
 
 def test_every_file_is_there_and_nothing_else(folder: Path) -> None:
-    expected = {f"figure{n}.{kind}" for n in range(1, 9) for kind in ("png", "svg", "nc")}
+    expected = {f"figure{n}.{kind}" for n in range(1, 10) for kind in ("png", "svg", "nc")}
     expected |= {f"{name}.csv" for name in ("cases", "events", "shocks", "claims", "constants", "planar")} | {"report.html"}
     assert {path.name for path in folder.iterdir()} == expected
 
 
-@pytest.mark.parametrize("number", range(1, 9))
+@pytest.mark.parametrize("number", range(1, 10))
 def test_data_reopen_with_units(number: int, folder: Path) -> None:
     dataset = xr.load_dataset(folder / f"figure{number}.nc", engine="h5netcdf")
     assert dataset.attrs["source"].startswith("stickslip ")
@@ -41,7 +41,7 @@ def test_svg_has_no_date(folder: Path) -> None:
 
 def test_tables_reopen(folder: Path) -> None:
     claims = pd.read_csv(folder / "claims.csv")
-    assert set(claims.number) == set(range(1, 23))
+    assert set(claims.number) == set(range(1, 24))
     shocks = pd.read_csv(folder / "shocks.csv")
     assert set(shocks.columns) >= {"case", "time [s]", "cause", "rate_before [m/s]", "rate_after [m/s]"}
     events = pd.read_csv(folder / "events.csv")
@@ -81,7 +81,7 @@ def page(folder: Path) -> Page:
 
 def test_the_page_has_the_form_of_a_report(page: Page) -> None:
     check_form(page)
-    assert sum("id" in attributes for _, attributes, _ in page.elements) > 8 + 20
+    assert sum("id" in attributes for _, attributes, _ in page.elements) > 9 + 20
 
 
 def test_the_table_of_verdicts_comes_first_then_figures_then_claims(page: Page) -> None:
@@ -121,7 +121,7 @@ def test_pictures_are_described_and_are_those_of_the_folder(page: Page, folder: 
         assert len(attributes["alt"]) > 60
         code = attributes["src"].partition("base64,")[2]
         assert b64decode(code) == (folder / f"figure{n}.svg").read_bytes()
-    assert len(pictures) == 8
+    assert len(pictures) == 9
 
 
 def test_visible_numbers_have_meaningful_digits(page: Page, folder: Path) -> None:

@@ -175,7 +175,7 @@ def test_a_missing_library_is_named(command: Command, monkeypatch: pytest.Monkey
 
 
 def test_the_shell_completes_the_numbers_of_a_contact() -> None:
-    assert complete_scenario("planar") == ["planar-patch", "planar-plane"]
+    assert complete_scenario("planar") == ["planar-patch", "planar-plane", "planar-pulse"]
     context = Context.__new__(Context)
     context.params, context.args = {"scenario": "planar-patch"}, []
     assert {"contact.nodes=", "contact.patches[0].initial.load="} <= set(complete_vary(context, "contact."))

@@ -1,4 +1,4 @@
-"""Figures 1 to 7 of the paper, and one on the question on which it closes: runs, data, drawing function and caption of each."""
+"""Figures 1 to 7 of the paper, and two on the question on which it closes: runs, data, drawing function and caption of each."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from stickslip.contact import uniqueness_of
-from stickslip.extensions.paper import planar
+from stickslip.extensions.paper import planar, rate_law_report
 from stickslip.extensions.paper.cases import Runs, problem, typed
 from stickslip.figures.contact import resistance, systems
 from stickslip.figures.runs import comparison
@@ -122,6 +122,15 @@ PLATES = (
         "The curve in 3D and the points on the left are stored, that in 2D is computed now if JAX is there.",
         planar.planes_data,
         planar.draw_planes,
+    ),
+    Plate(
+        9,
+        "Beyond the paper: the rate law along a fault, with a lag",
+        "2D, no echo. Above: when the middle of a fault first rests, against the load outside of its nucleus; dashed, the lower "
+        "fold of the set K, and the same with (π/2)Z for Z. Below: the time in which friction falls behind the front, 12 km from "
+        "the middle, against the lag. Right: slip rate 16 km from the middle, a pulse at 60 MPa, several at 70, a crack at 75.",
+        rate_law_report.rate_law_data,
+        rate_law_report.draw_rate_law,
     ),
 )
 """All figures, those of the paper first and in its order."""

@@ -12,6 +12,7 @@ from stickslip.extensions.paper.cases import REFERENCE, Runs
 from stickslip.extensions.paper.claims import ClaimVerdict, Outcome
 from stickslip.extensions.paper.planar import ANSWER, BASIS, table
 from stickslip.extensions.paper.plates import PLATES
+from stickslip.extensions.paper.rate_law_report import ANSWER as RATE_LAW
 from stickslip.extensions.paper.tables import cases_table, constants
 from stickslip.figures.page import DIGITS_ON_PAGE, number, picture, rendered, with_unit
 
@@ -37,6 +38,7 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[ClaimVerd
         pictures={n: picture(svg) for n, svg in images.items()},
         answer=ANSWER,
         basis=BASIS,
+        rate_law=RATE_LAW,
         study=table(),
         cases=_readable(cases),
         columns=[(str(name).partition(" [")[0].capitalize(), pd.api.types.is_numeric_dtype(cases[name])) for name in cases],

@@ -171,7 +171,8 @@ class PlanarSlab(CheckedArguments):
                 raise InputError(
                     "PlanarSlab: friction falls with the slip rate by more than radiation adds (the contact equation of this"
                     f" {type(law).__name__} is {regime}): the shorter a disturbance along the contact, the faster it grows, without"
-                    " bound, and no selection rule is known to give a solution; take slip weakening, a state, or a smaller fall"
+                    " bound, and no selection rule is known to give a solution; let it follow the slip rate with a lag (the law"
+                    " 'lagged', see docs/rate-law-on-a-fault.md), or take slip weakening, rate and state, or a smaller fall"
                 )
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stickslip.extension import is_there
 from stickslip.extensions.paper.cases import Runs
-from stickslip.extensions.paper.claims import inertia, rate_law, rules, slip_law  # noqa: F401  # importing them fills MEASUREMENTS
+from stickslip.extensions.paper.claims import faults, inertia, rate_law, rules, slip_law  # noqa: F401  # they fill MEASUREMENTS
 from stickslip.extensions.paper.claims.verdict import MEASUREMENTS, ClaimVerdict, MeasuredNumber, Outcome
 
 if is_there("chains"):
