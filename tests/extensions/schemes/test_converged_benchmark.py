@@ -52,7 +52,9 @@ def test_only_what_leaves_the_band_counts(ramp: ConvergedBenchmark, off: float, 
 
 
 def test_the_command_gives_and_judges_it(command: Command, ramp: ConvergedBenchmark, tmp_path: Path) -> None:
-    assert "ramp" in command("benchmark", "list").out
+    listed = command("benchmark", "list").out
+    assert "nothing but a ramp (converged, with an error band)" in listed
+    assert f"{len(benchmarks.BENCHMARKS)} problems." in listed
     command("benchmark", "get", "ramp")
     rows = np.column_stack([getattr(series(1.0), name) for name in ("time", "slip", "rate", "traction")])
     np.savetxt("mine.csv", rows, delimiter=",", header="time_s,slip_m,slip_rate_m_per_s,traction_Pa", comments="")

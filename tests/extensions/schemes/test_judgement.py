@@ -95,6 +95,22 @@ def test_a_right_series_in_another_convention_does_not_pass_and_is_explained(con
     assert found.hints == hints
 
 
+def test_a_series_too_coarse_for_its_shocks_is_told_so() -> None:
+    """Two shocks 30 us apart in steps of 10 us are not told apart; in steps of 2 us they are."""
+    scenario = benchmark_of("two-slabs").scenario
+    run, found = ss.simulate(scenario), []
+    for steps in (20, 100):
+        time = np.linspace(0.0, 2e-4, steps + 1)
+        series = Series(time, run.slip(time), run.slip_rate(time), run.traction(time), "mine")
+        found.append(judge_series(series, scenario).judgements[0])
+    coarse, fine = found
+    assert not coarse.passed
+    shocks = "its step is 1e-05 s, and exact shocks are as near as 3e-05 s"
+    assert coarse.hints[-1] == f"mine is too coarse for its shocks: {shocks}: write more times"
+    assert fine.passed
+    assert fine.hints == ()
+
+
 def columns() -> Any:
     one = right()
     return np.column_stack([one.time, one.slip, one.rate, one.traction])

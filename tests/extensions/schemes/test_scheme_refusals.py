@@ -10,6 +10,8 @@ CASES = [
     (["benchmark", "get", "loop", "--out", "a.csv"], "benchmark: --out does not belong to get: get writes files to --folder"),
     (["benchmark", "list", "--folder", "x"], "benchmark: --folder does not belong to list: leave it out"),
     (["benchmark", "get", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
+    (["benchmark", "get", "loop", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
+    (["benchmark", "get"], "benchmark: get needs the name of a problem: see `list`"),
     (["benchmark", "gte"], "benchmark: there is nothing called 'gte'; did you mean 'get'?"),
     (["benchmark", "judge"], "benchmark: judge needs a file"),
     (["schemes", "fig4-loop", "--nx", "20;50"], "schemes: --nx must be whole numbers separated by commas"),

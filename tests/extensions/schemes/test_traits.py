@@ -109,12 +109,29 @@ def layers(beyond: float) -> Series:
     return written(moved((side,), contact, 8e7 * (1.0 + 1e-9), TWO, 14.0, refined=15))
 
 
+def shaken(driver: float) -> Series:
+    """The benchmark moving-ground, whose top is free, with another driver."""
+    contact = replace(COULOMB, static=0.37, mu=lambda v: 0.37, normal=lambda t: 360e3, ground=moves)
+    return written(moved((Side((1900.0,), (160.0,), (1,), driver),), contact, 9.6e4, 0.125, 2.0, refined=60))
+
+
+def moves(t: float) -> float:
+    return float(np.interp(t, [0.1, 0.2, 0.4], [0.0, -0.3, 0.0]))
+
+
 AT_DRIVER = "of the driver: 1 of the stress comes back there, the series fits to"
+AT_TOP = AT_DRIVER.replace("1 of", "-1 of")
 AT_LAYER = "of where layer 1 meets layer 2: 0.3333 of the stress comes back there, the series fits to"
 WRONG: dict[str, tuple[Any, str, str]] = {
     "right driver": (lambda: coulomb(np.inf), "coulomb", ""),
     "free for rigid": (lambda: coulomb(0.0), "coulomb", f"an echo with the wrong sign {AT_DRIVER} -1"),
     "absorbed": (lambda: coulomb(9.8e6), "coulomb", f"no echo {AT_DRIVER} 0"),
+    "rigid for free": (
+        lambda: shaken(np.inf),
+        "moving-ground",
+        f"an echo with the wrong sign {AT_TOP} 1",
+    ),
+    "right top": (lambda: shaken(0.0), "moving-ground", ""),
     "right layer": (lambda: layers(1.0), "soft-layer", ""),
     "sign of the interface": (lambda: layers(0.25), "soft-layer", f"an echo with the wrong sign {AT_LAYER} -0.3333"),
     "no interface": (lambda: layers(0.5), "soft-layer", f"no echo {AT_LAYER} 0"),

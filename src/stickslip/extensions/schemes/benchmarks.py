@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stickslip.extensions.schemes.benchmark_kinds import Benchmark, ConvergedBenchmark
 from stickslip.extensions.schemes.contract import Series
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 BENCHMARKS: dict[str, Benchmark | ConvergedBenchmark] = {one.name: one for one in (*OF_ONE_CONTACT, *of_faults())}
 """The problems by name."""
+
+ALL = "all"
+"""What stands for every problem."""
 
 
 def benchmark_of(name: str) -> Benchmark | ConvergedBenchmark:
@@ -59,7 +62,7 @@ def judge_series(
     rtol: float = 1e-10,
     columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
-) -> Schemes | SeriesWithinBand:
+) -> Any:  # Schemes, but for the name of a benchmark whose series has converged: those who type need no cast
     """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
 
     Parameters
@@ -143,18 +146,25 @@ def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Pa
     return scenario, series, checksums
 
 
+def write_all(folder: str | Path = ".") -> Path:
+    """Write every problem of BENCHMARKS to a folder, as `write_benchmark` does, and return the path of a file of all checksums."""
+    sums = "".join(write_benchmark(name, folder)[-1].read_text(encoding="utf-8") for name in BENCHMARKS)
+    return write_atomically(Path(folder) / f"{ALL}.sha256", lambda draft: draft.write_text(sums, encoding="utf-8", newline="\n"))
+
+
 def judge_benchmark(
-    file: str | Path,
+    file: str | Path | Sequence[str | Path],
     name: str | None = None,
     *,
     tolerance: float = TOLERANCE,
     columns: Mapping[str, str | int] | None = None,
     progress: TextProgress | bool | None = None,
 ) -> Schemes | SeriesWithinBand:
-    """Compare the series of another program with the right one of a problem.
+    """Compare the series of another program, in one file or in several of different steps, with the right one of a problem.
 
-    `stickslip.extensions.schemes.series.read_series` reads the file. The problem is by default that with the name of the file; the
-    other arguments are as for `judge_series`. Raises InputError if the name is unknown, or the file cannot be read.
+    `stickslip.extensions.schemes.series.read_series` reads a file. The problem is by default that with the name of the first; the
+    other arguments are as for `judge_series`. Raises InputError if the name is unknown, or a file cannot be read.
     """
-    found = benchmark_of(Path(file).stem if name is None else name)
-    return found.judge(_read([file], columns, found.scenario.problem.body.load_unit), tolerance, progress)
+    files = [file] if isinstance(file, str | Path) else list(file)
+    found = benchmark_of(Path(files[0]).stem if name is None else name)
+    return found.judge(_read(files, columns, found.scenario.problem.body.load_unit), tolerance, progress)

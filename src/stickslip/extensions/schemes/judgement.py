@@ -107,8 +107,16 @@ class Judgement:
 
     @cached_property
     def hints(self) -> tuple[str, ...]:
-        """The conventions that explain what is off, one sentence each."""
-        return () if self.passed else tuple(self._conventions())
+        """The conventions that explain what is off, and a step that is too long for the shocks, one sentence each."""
+        return () if self.passed else (*self._conventions(), *self._too_coarse())
+
+    def _too_coarse(self) -> Iterator[str]:
+        """Yield a sentence if the series misses shocks, or makes some, because exact ones are nearer to each other than that."""
+        one, times = self.measured, self.measured.exact.shocks.time.to_numpy(float)
+        nearest = float(np.diff(times[times <= one.until]).min(initial=math.inf))
+        if nearest < 2.0 * one.shadow and any("shock" in fault for fault in self.faults):
+            steps = f"its step is {brief(one.series.step, 's')}, and exact shocks are as near as {brief(nearest, 's')}"
+            yield f"{self.name} is too coarse for its shocks: {steps}: write more times"
 
     @cached_property
     def traits(self) -> tuple[str, ...]:

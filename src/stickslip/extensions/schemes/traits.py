@@ -89,7 +89,7 @@ def _inside(one: MeasuredSeries) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
 
 
 class _Means(NamedTuple):
-    """Mean slip rates and loads in the steps in which waves are followed."""
+    """Mean velocities of the contact and loads in the steps in which waves are followed."""
 
     rates: Floats
     loads: Floats
@@ -146,6 +146,8 @@ def _means(echoes: Echoes, one: MeasuredSeries, exact: bool) -> _Means:
     if exact:
         slip, traction = one.exact.slip(one.time), one.exact_traction
     whole = np.append(0.0, np.cumsum(0.5 * (traction[1:] + traction[:-1]) * np.diff(one.time)))
+    ground = one.exact.problem.ground  # waves are sent by the motion of the contact in space
+    slip = slip if ground is None else slip + ground.displacement_at(one.time)
     rates, tractions = (np.diff(np.interp(ends, one.time, values)) / step for values in (slip, whole))
     return _Means(rates, tractions + echoes.impedance * rates)
 
