@@ -8,7 +8,6 @@ step of time with these, and `solver.py` a run.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,25 +84,3 @@ def length_of_process_zone(modulus: float, fall: float) -> float:
     from stickslip.extensions.planar.slab import PROCESS_ZONE
 
     return PROCESS_ZONE * modulus / fall
-
-
-def motion_at(scenario: Scenario, nodes: int, frames: int, places: Sequence[float]) -> Any:
-    """Return the times (s) of a run of a line of nodes, and for each place along y (m) slip since the start, slip rate and traction.
-
-    The scenario has a [contact], which gets this number of nodes and of frames in a two-way travel time; the nodes closest to the
-    places are taken. The result is an array (1 + 3 places, times) in SI units.
-    """
-    import numpy as np
-
-    from stickslip.extensions.planar.run import simulate_planar
-    from stickslip.extensions.planar.stations import node_at
-    from stickslip.extensions.planar.table import CONTACT, contact_of
-    from stickslip.run import CallOptions
-
-    finer = scenario.with_table(CONTACT, replace(contact_of(scenario), nodes=nodes, frames=frames))
-    run = simulate_planar(finer, CallOptions.of(finer))
-    found = [run.times]
-    for place in places:
-        (n,) = node_at(run.slab, place)
-        found += [run.slip[:, n] - run.slip[0, n], run.slip_rate[:, n], run.traction[:, n]]
-    return np.stack(found)

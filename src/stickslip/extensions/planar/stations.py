@@ -33,8 +33,9 @@ def node_at(slab: PlanarSlab, station: Station | None) -> tuple[int, ...]:
     """Return the node that is closest to a station; that in the middle if none is given. Raises InputError for one elsewhere."""
     if station is None:
         return tuple(count // 2 for count in slab.shape)
-    given: tuple[Any, ...] = tuple(station.split(",")) if isinstance(station, str) else np.atleast_1d(station)  # type: ignore[assignment]
-    given = station if isinstance(station, tuple) else given
+    given: tuple[Any, ...] = (station,)
+    if isinstance(station, str | tuple):
+        given = tuple(station.split(",")) if isinstance(station, str) else station
     axes = {"y": slab.y} | ({"z": slab.z} if slab.is_plane else {})
     if len(given) != len(axes):
         wanted = 'y and z, as in "8 km, 0 km"' if slab.is_plane else 'y, as in "8 km"'
@@ -53,7 +54,7 @@ def node_at(slab: PlanarSlab, station: Station | None) -> tuple[int, ...]:
 def write_station(run: PlanarSolution, path: Path, station: Station | None) -> Path:
     """Write the motion of the node at a station in the layout of the SCEC: see `PlanarSolution.to_scec`."""
     node = node_at(run.slab, station)
-    at = (slice(None), *node)
+    at: Any = (slice(None), *node)
     columns = (run.times, run.slip[at] - run.slip[(0, *node)], run.slip_rate[at], 1e-6 * run.traction[at])
     header = [f"# {line}" for line in _about(run, node)]
     lines = (" ".join((f"{row[0]: .13E}", *(f"{one: .12E}" for one in row[1:]))) for row in np.column_stack(columns).tolist())

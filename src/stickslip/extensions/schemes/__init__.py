@@ -15,6 +15,7 @@ class SchemesExtension(Extension):
     """The commands `schemes` and `benchmark`, and the studies `ss.studies.schemes` and `ss.studies.judge_series`."""
 
     name = "schemes"
+    uses = ("planar",)
 
     def commands(self) -> Mapping[str, Sequence[Command]]:
         """Return the commands `schemes` and `benchmark`."""

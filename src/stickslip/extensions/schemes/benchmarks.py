@@ -16,6 +16,7 @@ from stickslip.extensions.schemes.contract import Series
 from stickslip.extensions.schemes.converged import SeriesWithinBand
 from stickslip.extensions.schemes.judgement import TOLERANCE
 from stickslip.extensions.schemes.judging import judged
+from stickslip.extensions.schemes.planar_series import of_faults
 from stickslip.extensions.schemes.problems import OF_ONE_CONTACT
 from stickslip.extensions.schemes.schemes import Schemes
 from stickslip.foundation.arguments import for_users
@@ -29,7 +30,7 @@ from stickslip.run import TextProgress
 if TYPE_CHECKING:
     import xarray as xr
 
-BENCHMARKS: dict[str, Benchmark | ConvergedBenchmark] = {one.name: one for one in OF_ONE_CONTACT}
+BENCHMARKS: dict[str, Benchmark | ConvergedBenchmark] = {one.name: one for one in (*OF_ONE_CONTACT, *of_faults())}
 """The problems by name."""
 
 ALL = "all"
