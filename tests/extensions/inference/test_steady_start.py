@@ -22,6 +22,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_a_log_that_begins_in_steady_turning_gives_the_bit(log: Path) -> None:
     found = ss.studies.infer("drill-string", log, list(TRUTH), begin=92.0, end=112.0, starts=1)
     assert any("begins in steady turning, because the torque is level at first" in note for note in found.notes)

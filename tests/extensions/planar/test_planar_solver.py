@@ -70,6 +70,7 @@ def test_weights_of_echoes_are_integrals_of_the_kernel(phase: float) -> None:
             assert weights[i, 0] == pytest.approx(exact, abs=2e-11, rel=0.0)
 
 
+@pytest.mark.slow
 def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pytest.MonkeyPatch) -> None:
     """Five steps of Newton's method from 1 % beside the root, or from the root itself, meet the load to 1e-12."""
     monkeypatch.setattr("stickslip.extensions.planar.friction.ITERATIONS", 5)

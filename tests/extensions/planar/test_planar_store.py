@@ -70,6 +70,7 @@ def store(stopped: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(stopped, tmp_path / "run.zarr"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stops", [(3, 7), pytest.param((10, 1), marks=pytest.mark.slow)], ids=str)
 def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, whole: Any, stops: tuple[int, int]) -> None:
     """After frame 10 a round trip ends."""

@@ -112,6 +112,7 @@ def test_few_chunks_are_in_flight(local: Client) -> None:
     assert len(asked) == 50
 
 
+@pytest.mark.slow
 def test_a_worker_of_another_version_is_refused(local: Client, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.extensions.sweeps.execution.cluster.engine_key", lambda *_: "another")
     with pytest.raises(ss.InputError, match="another version of stickslip"):

@@ -154,6 +154,7 @@ sweep(Path(sys.argv[1]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=3)
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize("writes", [7, 14, 17])
@@ -312,6 +313,7 @@ def test_a_changed_file_is_refused_in_one_line(store: Path, whole: dict[str, byt
         assert files(path) == whole
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("version", [1, 3])
 def test_a_store_of_another_format_is_refused_in_one_line(store: Path, version: int) -> None:
     zarr.open_group(store, mode="r+").attrs["stickslip_sweep"] = version

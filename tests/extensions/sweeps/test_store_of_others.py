@@ -77,6 +77,7 @@ DESIGNS: list[Any] = [
 ]
 
 
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("design", DESIGNS)
 def test_a_design_that_no_sweep_has_is_refused_in_one_line(store: Path, design: Any) -> None:
     about = json.loads((store / "zarr.json").read_text())
@@ -95,6 +96,7 @@ FORMS: dict[str, Any] = {
 }
 
 
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("variable", ["slip", "status", "body.thickness"])
 @pytest.mark.parametrize("key", [None, *FORMS])
 def test_a_variable_of_another_form_is_refused_in_one_line(store: Path, variable: str, key: str | None) -> None:
@@ -109,6 +111,7 @@ def test_a_variable_of_another_form_is_refused_in_one_line(store: Path, variable
     refused(lambda: sweep(store), f"{store}: ")
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("text", ["[]", "NaN", "[" * 200_000, "\x00"])
 def test_metadata_of_another_form_are_refused_in_one_line(store: Path, text: str, capsys: pytest.CaptureFixture[str]) -> None:
     (store / "zarr.json").write_text(text)
@@ -118,6 +121,7 @@ def test_metadata_of_another_form_are_refused_in_one_line(store: Path, text: str
     shows(store, capsys)
 
 
+@pytest.mark.slow
 def test_a_store_whose_metadata_are_not_gathered_is_refused_in_one_line(store: Path) -> None:
     about = json.loads((store / "zarr.json").read_text())
     about.pop("consolidated_metadata")
@@ -126,6 +130,7 @@ def test_a_store_whose_metadata_are_not_gathered_is_refused_in_one_line(store: P
     refused(lambda: sweep(store), f"{store}: ")
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("unit", [5, "Pa\n\x1b[31m", None])
 def test_a_unit_that_is_no_text_is_not_shown(store: Path, unit: Any, capsys: pytest.CaptureFixture[str]) -> None:
     about = json.loads((store / "zarr.json").read_text())

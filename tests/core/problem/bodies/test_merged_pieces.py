@@ -96,6 +96,7 @@ def test_energies_balance_where_pieces_are_merged() -> None:
     assert float(np.abs(energy.balance).max()) < 1e-9 * float(energy.heat.max())
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("shortest", [None, "2 ms"])
 def test_a_run_with_merged_pieces_is_taken_up_again_bit_for_bit(shortest: str | None, tmp_path: Path) -> None:

@@ -57,7 +57,7 @@ def test_sections_of_equal_impedance_are_one_string(lengths: tuple[float, ...], 
     assert strings[1].stiffness == pytest.approx(strings[0].stiffness, rel=1e-14)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize(
     "change", [{}, {"inertia": 50.0}, {"drag": [0.05, 0.02]}, {"length": [120.0, 1841.5], "density": [7850.0, 2700.0]}]
 )

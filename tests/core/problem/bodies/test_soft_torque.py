@@ -57,6 +57,7 @@ def sent_back_in_a_run(body: Any, period: float) -> float:
     return float(abs(sent) / abs(met))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("period", [1.5, 3.0])
 def test_what_a_tuned_drive_sends_back_in_a_run_is_what_the_formula_says(period: float) -> None:
     body = STRING.with_soft_torque("3 s", inertia=500.0)

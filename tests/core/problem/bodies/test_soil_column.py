@@ -81,6 +81,7 @@ def modes(body: ss.SoilColumn, count: int) -> Floats:
     return roots[np.argsort(roots.imag)][:5]
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_the_first_two_modes_of_a_chain_have_the_damping_ratio_and_the_first_its_period(ratio: float) -> None:
     """A chain of n masses is wrong by the order n^-2: two of them extrapolate to 1e-5."""
@@ -230,6 +231,7 @@ def test_the_loads_of_a_run_follow_from_its_slip() -> None:
     assert run.proven.unproven == 0
 
 
+@pytest.mark.slow
 def test_a_long_record_ends_because_echoes_of_its_kinks_are_merged() -> None:
     """Unmerged, the 3000 kinks would come back some 170 times each, as 500 000 pieces."""
     drawn = np.random.default_rng(7).normal(size=3000)

@@ -59,6 +59,7 @@ MET: dict[str, tuple[Case, str, float]] = {
 """A case; the end of its first event (s) or its slip (m), known beforehand, or how far traction may be off the law (of S)."""
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", MET)
 def test_steps_meet_a_feature_on_their_way(name: str) -> None:
     case, what, known = MET[name]

@@ -20,6 +20,7 @@ def test_block_under_lagged_strengthening_friction_comes_to_rest(excess: float) 
     assert float(run.slip_rate(24.0)) == 0.0
 
 
+@pytest.mark.slow
 def test_catalogue_lists_events_whose_slip_rate_decays_to_nothing() -> None:
     """A block decays to 1e-320 m/s, where no bisection of a polynomial ever finds its end: the events must still be told."""
     body = ss.SpringBlock(2275678257.084148, 64.51469373151718, 248686543.23331934, damping=38316.404553044464)

@@ -129,6 +129,7 @@ def test_an_earlier_end_is_refused(tmp_path: Path) -> None:
         ss.resume(tmp_path / "run.nc", 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs locks")
 def test_a_second_run_does_not_write_into_the_file_of_one_that_goes_on(tmp_path: Path) -> None:
     """Whether it begins anew or takes the file up; another file, and the same one afterwards, may be written."""

@@ -282,6 +282,7 @@ LONG_LINES = [
 ]
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("line", LONG_LINES, ids=lambda line: line[:3].strip() or "blanks")
 def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
     """Behind the first one to three lines, or at their end; a pattern that tries all ways through one takes hours."""
