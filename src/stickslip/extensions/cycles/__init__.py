@@ -1,4 +1,4 @@
-"""Cycles: periodic motion of a rigid body, its multipliers, and how it changes along a parameter."""
+"""Cycles: periodic motion of a rigid body, slab or string, its multipliers, and how it changes along a parameter."""
 
 from __future__ import annotations
 
