@@ -113,6 +113,20 @@ class Session(Generic[Options]):
         run.restore(checkpoint)
         return run
 
+    def begin_with(self, edges: Floats, series: Floats, rate: float, states: Floats) -> None:
+        """Begin with a wave that left the contact of a uniform body, over a round trip before the start of its run.
+
+        It is 2 Z v - load, plus the reference strength (Pa), a polynomial in xi between each two phases (s) of `edges`. The contact
+        has the slip rate (m/s), rests at 0 if its law knows rest, and has states as formulas see them in forward slip.
+        """
+        from stickslip.engine.from_wave import put_wave  # of searches for periodic motion
+
+        self.reserve(len(series))
+        self.state.rate_now, self.count.piece = rate, int(self.problem.friction.piece_at(self.problem.law_slip, rate))
+        for n, value in enumerate(states.tolist()):
+            self.state.state_now[n] = value
+        put_wave(self.store, self.count, self.state, edges, series)
+
     def _lend(self) -> None:
         lend(self.memory, self.setup, self.store, self.echoes, self.waves)
 

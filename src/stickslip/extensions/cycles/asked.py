@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.by_kind import ByKind
-from stickslip.problem import LoadingHistory, Problem
-from stickslip.problem.kinds import BODY_KINDS
+from stickslip.problem import BODY_KINDS, LoadingHistory, Problem
 from stickslip.run.study import MAX_PIECES
 
 if TYPE_CHECKING:

@@ -38,13 +38,14 @@ def cycle(
     rtol: float = RTOL,
     progress: TextProgress | bool | None = None,
 ) -> LimitCycle:
-    """Find the periodic motion of a rigid body near the end of a run, with its multipliers.
+    """Find the periodic motion of a rigid body, slab or string near the end of a run, with its multipliers.
 
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        A rigid body on a spring under a steady pull, its scenario, the name of a bundled scenario, or a scenario file. Where it
-        starts decides which cycle is found. If it starts in steady sliding, the run starts without load instead.
+        A rigid body on a spring, or a slab or string whose waves fade, under a steady pull, its scenario, the name of a bundled
+        scenario, or a scenario file. Where it starts decides which cycle is found. If it starts in steady sliding, the run starts
+        without load instead.
     near : float or str, optional
         Duration (s) of the run at whose end the cycle is looked for. By default it is long enough for some cycles, and is made
         longer up to three times if no cycle is found. To find an unstable cycle start near it, and give about two periods.
@@ -61,7 +62,7 @@ def cycle(
     Raises
     ------
     InputError
-        If the body is not rigid or what moves it varies, or if Newton's iteration finds no cycle.
+        If cycles of such a body are not found or what moves it varies, or if Newton's iteration finds no cycle.
     KeyboardInterrupt
         If the user presses Ctrl-C.
 
@@ -69,7 +70,8 @@ def cycle(
     -----
     The motion is cut where slip begins after a rest, or, if the contact never rests, where the slip rate passes the pull rate
     upwards. Newton's iteration moves the start of a run until it comes back to it. The multipliers are the eigenvalues of the
-    derivative of this return, from the linear equation of disturbances along the run.
+    derivative of this return, from the linear equation of disturbances along the run. A slab or string starts with the wave of a
+    round trip as well, and its derivative is known by differences of runs.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""`stickslip cycle`: find the periodic motion of a rigid body, and follow it along a number of its scenario."""
+"""`stickslip cycle`: find the periodic motion of a body, and follow it along a number of its scenario."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def cycle(
     figure: FigureFile = None,
     look: FigureLook,
 ) -> None:
-    r"""Find the periodic motion of a rigid body, with its period and multipliers.
+    r"""Find the periodic motion of a body, with its period and multipliers.
 
     One period multiplies small disturbances by the multipliers: the cycle is
     stable if all are smaller than 1. A contact that rests forgets, and has 0.

@@ -34,7 +34,7 @@ class CyclesOfUniform(CycleKind):
         if not body.has_inertia and not law.states:
             return (
                 f"without a mass at the contact and under {type(law).__name__}, which has no states, each moment of the round trip"
-                " repeats a motion of its own, and no cycle is apart from others"
+                " moves by itself, and chaotically where r (1 - 2 Z / g') is above 1 in size"
             )
         if body.front_reflection == 1.0:
             return "a dead load holds the body nowhere"

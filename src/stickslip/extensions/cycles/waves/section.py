@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.engine.from_wave import WaveBefore, begin_with
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
 from stickslip.foundation.arrays import Floats
@@ -128,7 +127,7 @@ class WaveSection:
     def run_from(self, place: WavePlace, lasts: float) -> tuple[ExactRun, int]:
         """Return the run from a place that lasts so long (s), and the code of its end."""
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
-        begin_with(run, WaveBefore(place.mesh.edges, place.mesh.series(place.wave), self.rate, place.states))
+        run.begin_with(place.mesh.edges, place.mesh.series(place.wave), self.rate, place.states)
         while True:
             code = run.advance(PASSES)
             if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
