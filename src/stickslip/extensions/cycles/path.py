@@ -102,7 +102,8 @@ class Path:
         """Return the run from a start, and the derivative of its miss by start and parameter, over their scales."""
         value, place = float(at[-1] * self.range), at[:-1] * self.scales[:-1]
         try:
-            now = self.section(value).returned(place, guess, TRIES)
+            with np.errstate(over="ignore"):  # far from a cycle a state may overflow, which the problem refuses
+                now = self.section(value).returned(place, guess, TRIES)
         except InputError as error:
             raise NoCycleError(str(error)) from None
         if not len(place):

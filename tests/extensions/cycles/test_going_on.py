@@ -1,0 +1,131 @@
+"""Branches that go on: at period doublings, after Ctrl-C, and where steady sliding is stable beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from tests.command_line import Command
+from tests.extensions.cycles.problems import coulomb, stribeck
+from tests.extensions.cycles.test_command import BRAKE
+
+CRITICAL = 802.799465
+"""The critical stiffness (N/m) of `two_states`."""
+
+
+def two_states(share: float) -> ss.Problem:
+    """Return a block under two states and the slip law whose period doubles at 0.866 of the critical stiffness."""
+    law = ss.friction.TwoStateRateAndState(
+        reference=0.6, a=0.01, b=0.01, distance=1e-5, second_b=0.0084, second_distance=1e-5 / 0.048, evolution="slip"
+    )
+    return ss.Problem(ss.SpringBlock(100.0, share * CRITICAL, 10.0), law, pull_rate=1e-6)
+
+
+def test_cycles_of_twice_the_period_are_followed_from_the_edge_and_back_to_it() -> None:
+    """At its end the doubled branch is the cycle to which a long run comes; back from there the edge is the same: both to 1e-9."""
+    start = ss.studies.cycle(two_states(0.87))
+    branch = ss.studies.follow(start, "body.stiffness", to=0.86 * CRITICAL, steps=2, double=True)
+    [edge] = branch.edges
+    assert edge.name == "period doubling"
+    doubled = [one for one in branch.points if one.doubled]
+    alone = ss.studies.cycle(two_states(0.86))
+    assert doubled[-1].value == pytest.approx(0.86 * CRITICAL, rel=1e-12)
+    assert doubled[-1].measures.period == pytest.approx(alone.period, rel=1e-9)
+    assert doubled[-1].multipliers[0] == pytest.approx(alone.multipliers[0], rel=1e-6)
+    assert {one.part for one in doubled} == {1}
+    assert all(1.9 < one.measures.period / edge.orbit.period < 2.1 for one in doubled)
+    assert [one.stable for one in branch.points if not one.doubled and not one.edge][-1] is False
+    back = ss.studies.follow(alone, "body.stiffness", to=0.87 * CRITICAL, steps=3)
+    assert [one.name for one in back.edges] == ["end of doubling"]
+    assert back.edges[0].value == pytest.approx(edge.value, rel=1e-9)
+    assert back.edges[0].orbit.period == pytest.approx(edge.orbit.period, rel=1e-8)
+
+
+class Stop:
+    """A function for the progress that presses Ctrl-C after some lines."""
+
+    def __init__(self, after: int) -> None:
+        self.left = after
+
+    def __call__(self, line: str) -> None:
+        self.left -= 1
+        if self.left == 0:
+            raise KeyboardInterrupt
+
+
+def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: Path) -> None:
+    """While the contact rests, from the table, and while it does not, from the branch: the same edges, to 1e-9."""
+    start = ss.studies.cycle(stribeck(0.1, initial_load=0.0))
+    given: Any = {"along": "pull_rate", "to": 0.5, "steps": 5}
+    whole = ss.studies.follow(start, **given)
+    for after in (3, 9):
+        part = ss.studies.follow(start, **given, progress=Stop(after))
+        assert part.interrupted
+        assert "interrupted at loading.pull_rate" in repr(part)
+        again = ss.studies.follow(start, **given, resume=part if after > 3 else part.to_csv(tmp_path / "branch.csv"))
+        assert not again.interrupted
+        assert [edge.name for edge in again.edges] == [edge.name for edge in whole.edges]
+        assert [edge.value for edge in again.edges] == pytest.approx([edge.value for edge in whole.edges], rel=1e-9)
+        assert again.edges[0].orbit.period == pytest.approx(whole.edges[0].orbit.period, rel=1e-6)
+        assert len(again.points) > len(part.points)
+        kept = [one.value for one in part.points if not one.edge]
+        assert [one.value for one in again.points if not one.edge][: len(kept)] == pytest.approx(kept, rel=1e-12)
+
+
+def test_hysteresis_is_where_steady_sliding_and_stick_slip_are_both_stable() -> None:
+    """From the Hopf point to the loss of stick; inside, runs from both starts stay apart, and outside they do not."""
+    branch = ss.studies.follow(ss.studies.cycle(stribeck(0.1, initial_load=0.0)), "pull_rate", to=0.5, steps=10)
+    [both] = branch.hysteresis
+    lost, steady = branch.edges
+    assert both == pytest.approx((steady.value, lost.value), rel=1e-9)
+    assert "hysteresis between loading.pull_rate = 0.1497866137 m/s and 0.3022214759 m/s" in repr(branch)
+    for pull, apart in ((0.8 * both.low, False), (1.2 * both.low, True), (0.97 * both.high, True), (1.03 * both.high, False)):
+        load = 2.0 * pull + 10.0 * (0.3 + 0.2 * np.exp(-pull / 0.05))
+        sliding = ss.simulate(stribeck(pull, initial_rate=pull, initial_load=load * (1.0 - 1e-3)), 40.0)
+        sticking = ss.simulate(stribeck(pull, initial_load=0.0), 40.0)
+        rests = [bool((run.history.store.mode[-len(run.history) // 10 :] == 0).any()) for run in (sliding, sticking)]
+        assert (rests == [False, True]) is apart, pull
+    alone = ss.studies.follow(ss.studies.cycle(coulomb()), "pull_rate", to=0.2, steps=2)
+    assert alone.hysteresis == ()
+    assert alone.hysteresis_text == ""
+
+
+def test_resume_refuses_what_is_no_table_of_this_branch(tmp_path: Path) -> None:
+    start = ss.studies.cycle(coulomb())
+    branch = ss.studies.follow(start, "pull_rate", to=0.2, steps=2)
+    table = branch.to_csv(tmp_path / "a.csv")
+    other = ss.studies.cycle(coulomb(0.11))
+    (tmp_path / "b.csv").write_text("a,b\n1,2\n", encoding="utf-8")
+    damaged = tmp_path / "c.csv"
+    damaged.write_text(table.read_text(encoding="utf-8").replace(",0,0", ",x,0"), encoding="utf-8")
+    for file, cycle, along, said in (
+        (table, other, "pull_rate", r"a.csv: begins at loading.pull_rate = 0.1 m/s with a period of .* it is another branch"),
+        (table, start, "body.mass", "a.csv: holds a branch along loading.pull_rate, not along body.mass"),
+        (tmp_path / "b.csv", start, "pull_rate", "b.csv: is no table of a branch that can go on: it has no column 'period'"),
+        (tmp_path / "none.csv", start, "pull_rate", "none.csv: cannot be read"),
+        (damaged, start, "pull_rate", "c.csv: a row of it is damaged"),
+    ):
+        with pytest.raises(ss.InputError, match=said):
+            ss.studies.follow(cycle, along, to=0.3, resume=file)
+
+
+def test_the_command_goes_on_with_the_table_that_it_left(tmp_path: Path, command: Command) -> None:
+    file, table = tmp_path / "brake.toml", tmp_path / "a.csv"
+    file.write_text(BRAKE, encoding="utf-8")
+    along = "cycle", str(file), "--along", "pull_rate", "--steps", "4", "--out", str(table)
+    assert command(*along, "--to", "0.3 m/s").code == 0
+    before = pd.read_csv(table, comment="#")
+    done = command(*along, "--to", "0.35 m/s", "--resume")
+    assert done.code == 0
+    assert "Loss of stick at loading.pull_rate = 0.3022214759 m/s" in done.out
+    assert "Hysteresis between loading.pull_rate = 0.28 m/s and 0.3022214759 m/s" in done.out
+    after = pd.read_csv(table, comment="#")
+    assert after["loading.pull_rate"][: len(before)].tolist() == before["loading.pull_rate"].tolist()
+    assert command("cycle", str(file), "--resume").refusal.startswith("cycle: --resume is for branches")
+    gone = "cycle", str(file), "--along", "pull_rate", "--to", "1", "--resume", "--out", str(tmp_path / "b.csv")
+    assert command(*gone).refusal.startswith("cycle: --resume goes on with the branch in the table --out")
