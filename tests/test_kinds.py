@@ -56,7 +56,23 @@ MADE = {
     "layered": ss.Problem(ss.LayeredSlab([4e3, 6e3], [2600.0, 2800.0], [3000.0, 3500.0], 1e8), LAW, **RUN),
 }
 """A problem with each kind of body."""
-ELSEWHERE = {"tried", "run", "modes_at", "shown", "record", "part", "cycles", "own", "waves", "sliding", "rate", "fall", "high"}
+ELSEWHERE = {
+    "tried",
+    "run",
+    "modes_at",
+    "shown",
+    "record",
+    "part",
+    "cycles",
+    "own",
+    "waves",
+    "sliding",
+    "rate",
+    "fall",
+    "high",
+    "rtol",
+    "orbit",
+}
 """What answers are asked about that only a search, a fit or a page makes: those questions are asked in tests of their rooms."""
 
 

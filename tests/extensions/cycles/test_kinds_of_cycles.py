@@ -15,6 +15,7 @@ BLOCK = ss.SpringBlock(MASS, STIFFNESS, NORMAL)
 F = ss.friction
 BRISTLES = F.LuGre(static=0.15, dynamic=0.1, rate="1 mm/s", stiffness="1e4 1/m", damping="3 s/m", viscosity="0.04 s/m")
 DAMPED = ss.SpringBlock(MASS, STIFFNESS, NORMAL, damping=DAMPING)
+HEAVY_DRIVER = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5, driver_impedance=1e6, driver_inertia=1e6)
 LAGGED = F.LaggedFriction(rate=F.HyperbolicRate(0.8, 0.3, 10.0), time=0.05)
 
 
@@ -96,6 +97,9 @@ def test_static_friction_that_is_no_larger_than_dynamic_gives_no_multiplier() ->
     ("changes", "said"),
     [
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)}, "each moment of the round trip"),
+        ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5)}, "sharp waves back whole"),
+        ({"body": HEAVY_DRIVER}, "machine"),
+        ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5, driver_impedance=0.0)}, "dead load"),
         ({"body": ss.SpringBlock(MASS, STIFFNESS, NORMAL, stop_ahead=1.0)}, "hard stops"),
         ({"body": ss.SpringBlock(MASS, 0.0, NORMAL, driver_damping=1.0)}, "spring"),
         ({"friction": F.SinusoidalSlip(1.0, 0.5, 5.0)}, "changes with slip"),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.by_kind import ByKind
+from stickslip.foundation.errors import InputError
 from stickslip.problem import BODY_KINDS, LoadingHistory, Problem
 from stickslip.run.study import MAX_PIECES
 
@@ -15,19 +18,36 @@ if TYPE_CHECKING:
     from stickslip.run import TextProgress
 
 
-class CycleKind:
-    """The questions to a kind of body; by default its cycles are not found."""
-
-    what: str = ""
-    """What sentences call a body whose cycles are not found."""
+class CycleKind(ABC):
+    """The questions to a kind of body."""
 
     most_pieces: int = MAX_PIECES
     """Largest number of pieces of history (1) of the run at whose end a cycle is looked for."""
     may_be_cut: bool = False
     """True if that run may end when it has them."""
 
+    @abstractmethod
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle of a problem is looked for, in words; empty if there is no reason."""
+
+    @abstractmethod
+    def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:
+        """Return the cycle near the end of a run. Raises InputError if there is none."""
+
+    @abstractmethod
+    def path(self, orbit: Any, scenario: Scenario, parameter: ParameterPath, span: float) -> Any:
+        """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
+
+
+@dataclass(frozen=True)
+class WithoutCycles(CycleKind):
+    """Answers of a kind of body whose cycles are not found."""
+
+    what: str
+    """What sentences call such a body."""
+
+    def refusal(self, problem: Problem) -> str:
+        """Return why no cycle of a problem is looked for."""
         return f"cycles are found of rigid bodies on a spring, slabs and strings, and this is a {self.what}"
 
     def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> FoundCycle | None:
@@ -38,12 +58,12 @@ class CycleKind:
         return None
 
     def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:
-        """Return the cycle near the end of a run. Raises InputError if there is none."""
-        raise AssertionError("a problem that is refused is not run")
+        """Refuse. Raises InputError."""
+        raise InputError(f"cycle: {self.refusal(problem)}")
 
     def path(self, orbit: Any, scenario: Scenario, parameter: ParameterPath, span: float) -> Any:
-        """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
-        raise AssertionError("a problem that is refused has no cycle")
+        """Refuse. Raises InputError."""
+        raise InputError(f"follow: {self.refusal(scenario.problem)}")
 
 
 def not_steady(problem: Problem) -> str:

@@ -2,13 +2,6 @@
 
 from __future__ import annotations
 
-from stickslip.extensions.cycles.asked import CycleKind
+from stickslip.extensions.cycles.asked import WithoutCycles
 
-
-class CyclesOfLayers(CycleKind):
-    """Answers of a body of layers."""
-
-    what = "body of layers"
-
-
-ANSWERS = CyclesOfLayers()
+ANSWERS = WithoutCycles("body of layers")

@@ -2,13 +2,6 @@
 
 from __future__ import annotations
 
-from stickslip.extensions.cycles.asked import CycleKind
+from stickslip.extensions.cycles.asked import WithoutCycles
 
-
-class CyclesOfLoops(CycleKind):
-    """Answers of a body in a position loop."""
-
-    what = "body in a position loop"
-
-
-ANSWERS = CyclesOfLoops()
+ANSWERS = WithoutCycles("body in a position loop")
