@@ -160,17 +160,15 @@ def test_rate_and_state_agrees_with_the_variational_equation() -> None:
 
 
 def test_there_is_no_number_behind_an_event_that_grazes() -> None:
-    """A block slides from twice the pull rate: its slip rate swings about the pull rate, and touches 0 at one time."""
+    """A block slides from twice the pull rate: its slip rate swings about the pull rate, and all but touches 0."""
     block, law = ss.SpringBlock(1.0, 1e3, 10.0), ss.friction.Coulomb(0.6, 0.4)
-    problem = ss.Problem(block, law, pull_rate=0.1, initial_rate=0.2, initial_load=4.0)
+    problem = ss.Problem(block, law, pull_rate=0.1, initial_rate=0.2 + 1e-11, initial_load=4.0)
     touches = math.pi / math.sqrt(1e3)
     found = ss.studies.sensitivity(problem, "initial.rate", "slip", at=[0.5 * touches, 1.5 * touches], duration=0.2)
     pace = math.sqrt(1e3)
     assert found.by("initial.rate")[0] == pytest.approx(math.sin(pace * 0.5 * touches) / pace, rel=CLOSE)
     assert np.isnan(found.by("initial.rate")[1])
     (note,) = found.notes
-    assert note.startswith(
-        "no derivative with respect to initial.rate at 0.149019 s: between initial.rate = 0.2 m/s and 0.200000001907"
-    )
-    assert "a change of the contact appears or vanishes: number 2, at 99.3" in note
+    assert note.startswith("no derivative with respect to initial.rate at 0.149019 s: between initial.rate = 0.199999998")
+    assert "a change of the contact appears or vanishes: number 2, at 99.345" in note
     assert note.endswith("where it comes to rest for one of the values only")

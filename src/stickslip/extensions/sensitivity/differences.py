@@ -30,6 +30,9 @@ UNKNOWN, NO_EFFECT = 0.1, 1e-6
 the scaled derivative below NO_EFFECT of the largest value (1)."""
 SEEN, TOO_FAR, TRIALS = 1e-5, 1e-2, 24
 """The first step of a number that is 0 changes the output by a share (1) between the first two; so many are tried."""
+NEXT_TO, SAME_CELLS = 1e-8, 1e-3
+"""Travel times of layers have another ratio if a number that changes by NEXT_TO (1) changes their errors in cells by more than a
+share SAME_CELLS (1) of that."""
 NEAR_TIME = 1e-3
 """The smallest steps move a change of the contact by less than this share (1) of the run."""
 DIGITS = 12
@@ -84,26 +87,32 @@ class Differences:
         count, before = len(self.base.values), self.runs
         slope, error, step = (np.full(count, np.nan) for _ in range(3))
         error[:] = np.inf
-        trial = FIRST_STEP * abs(parameter.value) or self._first_step(parameter)
+        first = trial = FIRST_STEP * abs(parameter.value) or self._first_step(parameter)
+        if self._cuts_anew(parameter, first / FIRST_STEP):
+            nothing = np.full(count, np.nan)
+            why = "the body is cut into whole cells of equal travel time, and this changes the ratio of travel times"
+            return OfNumber(parameter, nothing, nothing, nothing, "both", Missing("", "", why), self.runs - before)
         last: _Tried | None = None
-        grows = True
-        for _ in range(MOST_STEPS):
+        grows = False
+        for n in range(MOST_STEPS):
             tried = self._members(parameter, trial)
             last = tried or last
             found = self._slopes(tried) if tried else None
+            improved = False
             if tried and found:
                 here = np.flatnonzero(tried.same)
                 better = found.error < error[here]
                 at = here[better]
                 improved = bool(np.any(found.error < 0.5 * error[here]))
                 slope[at], error[at], step[at] = found.slope[better], found.error[better], trial
-                if tried.same.all() and (not improved or np.all(error <= WELL_KNOWN * np.abs(slope).max())):
+            if np.all(error <= WELL_KNOWN * np.abs(slope).max()) or (grows and not improved):
+                break
+            if tried and tried.same.all() and not improved:
+                if n > 1:
                     break
-                worst = int(found.error.argmax())
-                grows &= bool(tried.same.all() and found.noise[worst] > 0.5 * found.error[worst])
-            grows &= found is not None
+                grows, trial = True, first  # a smaller step is worse: rounding decides
             trial *= NEXT_STEP if grows else 1.0 / NEXT_STEP
-        told = self._told(slope, error, FIRST_STEP * abs(parameter.value) or trial)
+        told = self._told(slope, error, first)
         missing = None if told.all() else self._missing(parameter, last, np.flatnonzero(~told))
         blank = np.where(told, 0.0, np.nan)
         side = last.side if last else "both"
@@ -115,6 +124,21 @@ class Differences:
             return np.zeros(len(slope), bool)
         most = max(UNKNOWN * float(np.nanmax(np.abs(slope))), NO_EFFECT * FIRST_STEP / step * float(np.abs(self.base.values).max()))
         return np.asarray(error <= most)
+
+    def _cuts_anew(self, parameter: Parameter[Problem], size: float) -> bool:
+        """Return True if layers fit their cells differently with a value next to that of a number, of this size.
+
+        The derivative of what runs with these cells give is not that of the layers.
+        """
+        cells: Any = getattr(self.problem.body, "cells", None)
+        for sign in (1.0, -1.0) if cells else ():
+            try:
+                beside = parameter.put(parameter.value + sign * NEXT_TO * size).body
+            except InputError:
+                continue
+            other = getattr(beside, "cells", cells)
+            return bool(other.counts != cells.counts or abs(other.error - cells.error) > SAME_CELLS * NEXT_TO)
+        return False
 
     def _run(self, problem: Problem) -> Reading | None:
         """Return what a run gives, or None if it fails or does not give it."""
