@@ -13,6 +13,30 @@ A, B, DISTANCE, REFERENCE, SLOW = 0.01, 0.015, 1e-5, 0.6, 1e-6
 HEAVY = 3.0 * NORMAL * A * DISTANCE / SLOW**2
 SOFT = 0.9 * (1.0 + 3.0) * NORMAL * (B - A) / DISTANCE
 """A mass and a stiffness (0.9 of the critical one, Gu et al. 1984) with which a cycle stays within one decade of slip rates."""
+BRAKE = """
+[body]
+kind = "spring-block"
+mass = 1.0
+stiffness = 1000.0
+normal_force = 10.0
+damping = 2.0
+
+[friction]
+kind = "exponential-stribeck"
+static = 0.5
+dynamic = 0.3
+rate = "50 mm/s"
+
+[loading]
+pull_rate = "0.28 m/s"
+
+[initial]
+load = 0.0
+
+[run]
+duration = "10 s"
+"""
+"""A scenario file of the block under a Stribeck law."""
 
 
 def coulomb(pull: float = PULL, **changes: Any) -> ss.Problem:

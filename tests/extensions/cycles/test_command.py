@@ -10,33 +10,9 @@ import pytest
 import stickslip as ss
 from stickslip.figures.style import image
 from tests.command_line import Command
-from tests.extensions.cycles.problems import coulomb, rate_and_state, stribeck
+from tests.extensions.cycles.problems import BRAKE, coulomb, rate_and_state, stribeck
 
 pytestmark = pytest.mark.usefixtures("closed_figures")
-
-BRAKE = """
-[body]
-kind = "spring-block"
-mass = 1.0
-stiffness = 1000.0
-normal_force = 10.0
-damping = 2.0
-
-[friction]
-kind = "exponential-stribeck"
-static = 0.5
-dynamic = 0.3
-rate = "50 mm/s"
-
-[loading]
-pull_rate = "0.28 m/s"
-
-[initial]
-load = 0.0
-
-[run]
-duration = "10 s"
-"""
 
 
 def test_the_figure_of_a_cycle_has_one_period_and_the_phase_plane() -> None:

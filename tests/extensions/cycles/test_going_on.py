@@ -11,8 +11,7 @@ import pytest
 
 import stickslip as ss
 from tests.command_line import Command
-from tests.extensions.cycles.problems import coulomb, stribeck
-from tests.extensions.cycles.test_command import BRAKE
+from tests.extensions.cycles.problems import BRAKE, coulomb, stribeck
 
 CRITICAL = 802.799465
 """The critical stiffness (N/m) of `two_states`."""

@@ -55,7 +55,7 @@ class BranchOfCycles(Study):
 
     `table` has a row for each: the parameter, then the columns of `LimitCycle.table`, and edge, the name of an edge or "", in SI;
     part counts the parts that begin at period doublings, doubled how often the period has doubled, and start_1 and so on are load
-    and inner states where the cycle begins, from which `follow` goes on.
+    and inner states where the cycle begins; `follow` goes on from them.
     """
 
     start: LimitCycle

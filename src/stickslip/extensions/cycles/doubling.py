@@ -16,11 +16,11 @@ from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.section import coordinates, crossings
 from stickslip.extensions.cycles.tangent import values_at
 
-BESIDE = (1e-2, 3e-2, 3e-3)
+BESIDE_DOUBLING = (1e-2, 3e-2, 3e-3)
 """Distances (1, shares of the extent) from an edge, along the disturbance that a period reverses, where a cycle is looked for."""
-ALIKE = 2e-3
+HALVES_ALIKE = 2e-3
 """Cycles whose halves are closer than this share (1) of the extent are of half the period."""
-HALF = 0.1
+NEAR_HALF = 0.1
 """How far (1, share of the period) from half of it the middle of a doubled cycle may be."""
 MOST_DOUBLED = 3
 """How often the period may double (1) on branches that are followed."""
@@ -32,7 +32,7 @@ def first_doubled(path: Path, edge: CycleEdge) -> PlaceOnBranch | None:
     values, vectors = np.linalg.eig(orbit.closed.slopes())
     along = np.append(np.real(vectors[:, int(np.abs(values + 1.0).argmin())]) / path.scales[:-1], 0.0)
     along /= np.linalg.norm(along)
-    for share in BESIDE:
+    for share in BESIDE_DOUBLING:
         try:
             found = path.at(path.together(orbit.place, edge.value) + share * along, along, 2.0 * orbit.period)
         except NoCycleError:
@@ -72,8 +72,8 @@ def is_of_half(orbit: Any) -> bool:
         return False
     away = np.abs(met.time - 0.5 * orbit.period)
     nearest = int(away.argmin())
-    if away[nearest] > HALF * orbit.period:
+    if away[nearest] > NEAR_HALF * orbit.period:
         return False
     at = Positions.inside(met.piece[nearest : nearest + 1], met.place[nearest : nearest + 1])
     place = coordinates(values_at(history, at), orbit.section.at_onset)[:, 0]
-    return bool(np.all(np.abs(place - orbit.place) <= ALIKE * orbit.extent))
+    return bool(np.all(np.abs(place - orbit.place) <= HALVES_ALIKE * orbit.extent))

@@ -15,16 +15,16 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief, number
 from stickslip.run import Study
 
-LOST = 0.1
+LOST_SHARE = 0.1
 """A disturbance of this share (1) of the motion changes an event into another one: it ends the horizon."""
-SURE = 3.0
+SURE_ERRORS = 3.0
 """An exponent that differs from 0 by more standard errors than this (1) is said to have its sign."""
-BATCHES = 16
+ERROR_BATCHES = 16
 """A standard error is taken from so many parts of a run (1)."""
 
 
 @dataclass(frozen=True)
-class Growth:
+class MeasuredGrowth:
     """What a run tells of its disturbances: their growth up to some times, and what is said of it."""
 
     time: Floats
@@ -49,24 +49,24 @@ class Growth:
     """The growth (1) in an event, where it is not the exponent times the time of one."""
 
 
-def along(time: Floats, growth: Floats, how: str, **more: float) -> Growth:
+def along(time: Floats, growth: Floats, how: str, **more: float) -> MeasuredGrowth:
     """Return the growth along a run, with the mean of its rate and the error of that; `time` and `growth` begin with a start."""
     counted = float(time[-1] - time[0])
     exponent = float(growth[-1] - growth[0]) / counted
     error = error_of_mean(np.diff(growth), np.diff(time), exponent)
-    return Growth(time, growth - growth[0], exponent, error, counted, how, **more)
+    return MeasuredGrowth(time, growth - growth[0], exponent, error, counted, how, **more)
 
 
 def error_of_mean(growth: Floats, lasts: Floats, rate: float) -> float:
     """Return the standard error (1/s) of a mean rate of growth from increments that depend on each other, and their durations (s).
 
-    It is that of the means of BATCHES long parts of the run, which hardly depend on each other, or of the increments if these are
-    few (batch means; Flyvbjerg & Petersen 1989, J. Chem. Phys. 91, 461).
+    It is that of the means of ERROR_BATCHES long parts of the run, which hardly depend on each other, or of the increments if
+    these are few (batch means; Flyvbjerg & Petersen 1989, J. Chem. Phys. 91, 461).
     """
     if len(growth) < 2:
         return math.nan
     left = growth - rate * lasts
-    sums = np.array([part.sum() for part in np.array_split(left, BATCHES)]) if len(left) >= 2 * BATCHES else left
+    sums = np.array([part.sum() for part in np.array_split(left, ERROR_BATCHES)]) if len(left) >= 2 * ERROR_BATCHES else left
     return math.sqrt(len(sums) / (len(sums) - 1.0) * float(sums @ sums)) / float(lasts.sum())
 
 
@@ -80,7 +80,7 @@ class LyapunovExponent(Study):
 
     problem: Any
     """What was run."""
-    found: Growth = field(compare=False)
+    found: MeasuredGrowth = field(compare=False)
 
     @property
     def exponent(self) -> float:
@@ -109,7 +109,7 @@ class LyapunovExponent(Study):
         """True if disturbances grow, False if they fade; None: the exponent lies within three standard errors of 0."""
         if math.isinf(self.exponent):
             return False
-        return None if not abs(self.exponent) > SURE * self.error else self.exponent > 0.0
+        return None if not abs(self.exponent) > SURE_ERRORS * self.error else self.exponent > 0.0
 
     @property
     def horizon(self) -> float:
@@ -119,7 +119,7 @@ class LyapunovExponent(Study):
         """
         if self.chaotic is not True:
             return math.inf
-        return math.log(LOST / self.found.known) / self.exponent
+        return math.log(LOST_SHARE / self.found.known) / self.exponent
 
     @cached_property
     def table(self) -> pd.DataFrame:

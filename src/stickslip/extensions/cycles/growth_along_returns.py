@@ -15,7 +15,7 @@ import numpy as np
 from stickslip.contact import steady_slidings
 from stickslip.engine import History, Positions
 from stickslip.engine.input import SHARE_OF_TOLERANCE
-from stickslip.extensions.cycles.exponent import Growth, along
+from stickslip.extensions.cycles.exponent import MeasuredGrowth, along
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
 from stickslip.extensions.cycles.orbit import extent_of
 from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
@@ -33,26 +33,26 @@ from stickslip.run.study import MAX_PIECES
 
 STEADY_SHARE = 1e-6
 """A run whose slip rate varies by less than this share (1) of the pull rate at its end has come to steady sliding."""
-SETTLING = 0.1
-"""The share (1) of the time after what is skipped in which a disturbance turns to where it grows fastest; it does not count."""
-LATEST = 0.5
+SETTLING_SHARE = 0.1
+"""This share (1) of the time after what is skipped does not count: a disturbance turns to where it grows fastest then."""
+LATEST_SHARE = 0.5
 """By this share (1) of the duration the contact must have passed the pull rate twice."""
-FEWEST = 4
+FEWEST_RETURNS = 4
 """The smallest number of returns (1) over which an exponent is the mean."""
-TRIES = 8
+RETURN_TRIES = 8
 """How often a run to a return may be doubled (1)."""
-RESTS = "each rest ends all disturbances, because only the load is left then (exponent minus infinity, exactly)"
+RESTS_END_ALL = "each rest ends all disturbances, because only the load is left then (exponent minus infinity, exactly)"
 GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
-def growth_of_rigid(problem: Problem, skip: float, duration: float, rtol: float, tell: TextProgress) -> Growth:
+def growth_of_rigid(problem: Problem, skip: float, duration: float, rtol: float, tell: TextProgress) -> MeasuredGrowth:
     """Return how disturbances grow along a run of a rigid body from `skip` to `duration` (s). Raises InputError."""
     check_can_be_followed(problem, "lyapunov")
     history = _begun(without_load(problem), skip, duration, rtol)
     tell(f"run of {brief(history.duration, 's')}")
     rests = len(onsets(history).time)
     if rests > 1 and not problem.friction.states:
-        return Growth(np.zeros(1), np.zeros(1), -math.inf, 0.0, history.duration, RESTS, events=rests)
+        return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, history.duration, RESTS_END_ALL, events=rests)
     if is_steady(history):
         return _steady(problem)
     return _along_returns(Section(problem, at_onset=False, rtol=rtol), history, duration, tell)
@@ -65,9 +65,9 @@ def _begun(problem: Problem, skip: float, duration: float, rtol: float) -> Histo
         run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
         if not run.status.ok:
             raise InputError(f"lyapunov: the run did not reach {brief(lasts, 's')}: {run.status}")
-        if len(passages(run.history).time) > 1 or lasts >= LATEST * duration:
+        if len(passages(run.history).time) > 1 or lasts >= LATEST_SHARE * duration:
             return run.history
-        lasts = min(2.0 * lasts, LATEST * duration)
+        lasts = min(2.0 * lasts, LATEST_SHARE * duration)
 
 
 def is_steady(history: History) -> bool:
@@ -78,14 +78,14 @@ def is_steady(history: History) -> bool:
     return bool(np.abs(rates - pull).max() <= STEADY_SHARE * pull)
 
 
-def _steady(problem: Problem) -> Growth:
+def _steady(problem: Problem) -> MeasuredGrowth:
     """Return the growth of disturbances of the steady sliding to which a run has come."""
     growth = steady_slidings(problem).slidings[-1].growth
     how = "that of the steady sliding to which the run comes"
-    return Growth(np.array([0.0, 1.0]), np.array([0.0, growth]), growth, 0.0, 1.0, how)
+    return MeasuredGrowth(np.array([0.0, 1.0]), np.array([0.0, growth]), growth, 0.0, 1.0, how)
 
 
-def _along_returns(section: Section, history: History, duration: float, tell: TextProgress) -> Growth:
+def _along_returns(section: Section, history: History, duration: float, tell: TextProgress) -> MeasuredGrowth:
     """Return how disturbances grow along the returns after a run, up to `duration` (s)."""
     met = passages(history)
     if len(met.time) < 2:
@@ -97,18 +97,18 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
     place = coordinates(values_at(history, Positions.inside(met.piece[-1:], met.place[-1:])), at_onset=False)[:, 0]
     scale = extent_of(history, False, len(history) - 1)
     time, size, rests, divergence = float(met.time[-1]), 0.0, False, 0.0
-    skip = time + SETTLING * (duration - time)
+    skip = time + SETTLING_SHARE * (duration - time)
     way = scale / math.sqrt(len(scale))
     times, sizes = [], []
     while time < duration:
         if time >= skip:
             times.append(time)
             sizes.append(size)
-        now = section.returned(place, usual, TRIES)
+        now = section.returned(place, usual, RETURN_TRIES)
         way = now.slopes(exactly=False) @ way
         grown = float(np.linalg.norm(way / scale))
         if not grown > 0.0:
-            return Growth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, RESTS)
+            return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, RESTS_END_ALL)
         if time >= skip:
             divergence, rests = divergence + _divergence(now), rests or now.sticks
         way, place, time, size = way / grown, now.end, time + now.time, size + math.log(grown)
@@ -116,10 +116,10 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
             tell(f"{brief(time, 's')} of {brief(duration, 's')}")
     times.append(time)
     sizes.append(size)
-    if len(times) <= FEWEST:
+    if len(times) <= FEWEST_RETURNS:
         raise InputError(
             f"lyapunov: the contact passes the pull rate {len(times)} times between {brief(skip, 's')} and {brief(duration, 's')}:"
-            f" more than {FEWEST} are needed: give a longer duration"
+            f" more than {FEWEST_RETURNS} are needed: give a longer duration"
         )
     counted = times[-1] - times[0]
     how = f"measured over {len(times) - 1} returns to the pull rate in {brief(counted, 's')} (rtol {section.rtol:g})"
@@ -129,7 +129,7 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
 
 
 def _divergence(one: Return) -> float:
-    """Return the logarithm (1) by which a volume of disturbances grows in a return; NaN under a law whose formula changes."""
+    """Return the logarithm (1) by which a volume of disturbances grows in a return; NaN under a law of several formulas."""
     store, count, problem = one.history.store, one.piece + 1, one.history.problem
     if len(problem.friction.pieces) > 1:
         return math.nan

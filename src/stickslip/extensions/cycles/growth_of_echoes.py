@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.exponent import Growth, along
+from stickslip.extensions.cycles.exponent import MeasuredGrowth, along
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
@@ -26,10 +26,12 @@ from stickslip.solution.observables.predictability import predictability
 GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(12)
 MOST_INTERVALS = 4096
 """The largest number of intervals (1) into which a run is divided."""
-ENDS = "nothing comes back from the driver, or from the contact: a round trip ends all disturbances (exponent minus infinity)"
+TRIP_ENDS_ALL = (
+    "nothing comes back from the driver, or from the contact: a round trip ends all disturbances (exponent minus infinity)"
+)
 
 
-def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float, tell: TextProgress) -> Growth:
+def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float, tell: TextProgress) -> MeasuredGrowth:
     """Return how disturbances grow along a run of a slab or string from `skip` to `duration` (s). Raises InputError."""
     trip = problem.body.round_trip_time
     if problem.normal_load is not None or not uninterrupted(simulate(problem, trip, rtol)).horizon_note:  # which says what is known
@@ -50,12 +52,12 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
     grown, _ = np.histogram(middle, edges, weights=each)
     at_driver = math.log(back) if back > 0.0 else -math.inf
     if not np.isfinite(grown).all() or not back > 0.0:
-        return Growth(np.zeros(1), np.zeros(1), -math.inf, 0.0, duration - skip, ENDS)
+        return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, duration - skip, TRIP_ENDS_ALL)
     growth = np.append(0.0, np.cumsum(grown + at_driver * np.diff(edges) / trip))
     start = run.events["start"].to_numpy(float)
     each_trip = brief(math.exp(float(growth[-1]) * trip / (duration - skip)), "", 4)
     trips = brief((duration - skip) / trip, "", 6)
-    how = f"the mean over phases and {trips} round trips (rtol {rtol:g}), each of which multiplies a disturbance by {each_trip}"
+    how = f"the mean over phases and {trips} round trips (rtol {rtol:g}); each multiplies a disturbance by {each_trip}"
     return along(edges, growth, how, events=int((start >= skip).sum()), known=predictability(run).error)
 
 

@@ -61,7 +61,7 @@ def joined(intervals: Sequence[Interval]) -> list[Interval]:
 
 
 def with_stable_sliding(among: Interval, values: Sequence[float], problem_at: Callable[[float], Problem]) -> list[Interval]:
-    """Return the parts of an interval in which steady sliding is stable; `values` in it tell where to look for a change."""
+    """Return the parts of an interval where steady sliding is stable; `values` in it tell where to look for a change."""
 
     def growth(value: float) -> float:
         return steady_slidings(problem_at(value)).slidings[-1].growth

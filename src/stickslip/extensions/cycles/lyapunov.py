@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from stickslip.extensions.cycles.exponent import LOST, Growth, LyapunovExponent
+from stickslip.extensions.cycles.exponent import LOST_SHARE, LyapunovExponent, MeasuredGrowth
 from stickslip.extensions.cycles.growth_along_returns import growth_of_rigid
 from stickslip.extensions.cycles.growth_of_echoes import growth_of_echoes
 from stickslip.foundation.arguments import for_users
@@ -22,12 +22,12 @@ from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, special_solver_of, telling, uninterrupted
 from stickslip.run.simulate import simulate
 
-DURATION = Quantity("s", "duration of the run along which disturbances are followed", above=0)
-SKIP = Quantity("s", "time at the start of the run that does not count", at_least=0)
-TOLERANCE = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-6)
+RUN_DURATION = Quantity("s", "duration of the run along which disturbances are followed", above=0)
+SKIPPED_TIME = Quantity("s", "time at the start of the run that does not count", at_least=0)
+RUN_TOLERANCE = Quantity("1", "relative tolerance of the runs", at_least=1e-15, at_most=1e-6)
 RTOL = 1e-10
 """Default tolerance of the runs (1)."""
-SKIPPED = 0.2
+SKIPPED_SHARE = 0.2
 """Share of the run (1) that does not count unless another is given."""
 
 
@@ -42,8 +42,8 @@ class PartedRuns(Protocol):
     events: int
 
 
-def _refused(what: str) -> Callable[..., Growth]:
-    def refuse(*_: Any) -> Growth:
+def _refused(what: str) -> Callable[..., MeasuredGrowth]:
+    def refuse(*_: Any) -> MeasuredGrowth:
         raise InputError(
             f"lyapunov: how disturbances of a {what} grow is not followed; ss.studies.compare puts two runs side by side"
         )
@@ -51,7 +51,7 @@ def _refused(what: str) -> Callable[..., Growth]:
     return refuse
 
 
-BY_STRUCTURE: dict[str, Callable[..., Growth]] = {
+BY_STRUCTURE: dict[str, Callable[..., MeasuredGrowth]] = {
     "rigid": growth_of_rigid,
     "belt": growth_of_rigid,
     "loop": growth_of_rigid,
@@ -115,8 +115,8 @@ def lyapunov(
     >>> print(found.chaotic)
     True
     """
-    TOLERANCE.check("lyapunov", "rtol", rtol)
-    given = None if duration is None else DURATION.check("lyapunov", "duration", duration)
+    RUN_TOLERANCE.check("lyapunov", "rtol", rtol)
+    given = None if duration is None else RUN_DURATION.check("lyapunov", "duration", duration)
     with telling(progress, "lyapunov") as tell:
         source: Any = problem if special_solver_of(problem) else read_source("lyapunov", problem, given, any_kind=True)
         if special_solver_of(source) is not None:
@@ -129,15 +129,15 @@ def lyapunov(
 def skipped_of(duration: float, skip: float | str | WithUnit | None) -> float:
     """Return the time (s) at the start of a run that does not count. Raises InputError."""
     if skip is None:
-        return SKIPPED * duration
-    found = float(SKIP.check("lyapunov", "skip", skip))
+        return SKIPPED_SHARE * duration
+    found = float(SKIPPED_TIME.check("lyapunov", "skip", skip))
     if found >= duration:
         raise InputError(f"lyapunov: skip must be less than the duration {brief(duration, 's')}, got {brief(found, 's')}")
     return found
 
 
-def _of_parted_runs(source: Any, duration: float | None, skip: object) -> Growth:
-    """Return how disturbances grow of what an extension solves, from disturbed runs beside the run. Raises InputError."""
+def _of_parted_runs(source: Any, duration: float | None, skip: object) -> MeasuredGrowth:
+    """Return how disturbances grow in runs of an extension, from disturbed runs beside the run. Raises InputError."""
     solved = source.to_solve if isinstance(source, Scenario) else source
     if not hasattr(getattr(solved, "run_type", None), "predictability"):
         if isinstance(source, Scenario):
@@ -148,11 +148,11 @@ def _of_parted_runs(source: Any, duration: float | None, skip: object) -> Growth
     run: Any = uninterrupted(simulate(source, duration) if duration is not None else simulate(source))
     parted: PartedRuns = run.predictability()
     parts = np.isfinite(parted.horizons).all(axis=0)
-    time, growth = parted.horizons[:, parts].mean(axis=0)[::-1], np.log(LOST / parted.sizes[parts])[::-1]
+    time, growth = parted.horizons[:, parts].mean(axis=0)[::-1], np.log(LOST_SHARE / parted.sizes[parts])[::-1]
     if np.isnan(parted.exponent):
         raise InputError("lyapunov: too few of the disturbed runs part from the run: give a longer duration")
     how = f"measured on {parted.horizons.size} disturbed runs (see ChainRun.predictability)"
     per_event = float(np.log(parted.growth_per_event))
-    return Growth(
+    return MeasuredGrowth(
         time, growth, parted.exponent, parted.exponent_error, run.duration, how, parted.events, np.nan, parted.sizes[0], per_event
     )

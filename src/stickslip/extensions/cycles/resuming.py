@@ -22,10 +22,10 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem.scenarios import ParameterPath
 
-SAME = 1e-6
+SAME_CYCLE = 1e-6
 """The first cycle of a table is that of the scenario if value and period differ by less than this share (1)."""
 BESIDE_EDGE = (-1e-11, 1e-11, -1e-9, 1e-9)
-"""Shares (1) of the value of an edge, which is found to rounding, by which a run beside it is moved if there is none at it."""
+"""If no run comes back at an edge, which is found to rounding, one beside it does, off by these shares (1) of its value."""
 
 
 def check_can_be_kept(cycle: LimitCycle, *, double: bool, resume: bool) -> None:
@@ -48,8 +48,8 @@ def points_to_go_on(
         raise InputError(f"{where}: holds a branch along {name}, not along {parameter.name}")
     if not points:
         raise InputError(f"{where}: holds no cycle: leave out resume")
-    same_value = abs(points[0].value - begin) <= SAME * max(abs(begin), abs(points[0].value))
-    if not same_value or abs(points[0].measures.period - cycle.period) > SAME * cycle.period:
+    same_value = abs(points[0].value - begin) <= SAME_CYCLE * max(abs(begin), abs(points[0].value))
+    if not same_value or abs(points[0].measures.period - cycle.period) > SAME_CYCLE * cycle.period:
         found, wanted = (
             f"{brief(value, parameter.unit)} with a period of {brief(period, 's')}"
             for value, period in ((points[0].value, points[0].measures.period), (begin, cycle.period))

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 LOST = 0.1
 """A disturbance of this share of the waves that slip sends out changes an event into another one: it ends the horizon."""
 
+TELLING = 10.0
+"""A run in which errors have grown more than so many times (1) tells their rate."""
+
 
 @dataclass(frozen=True)
 class Predictability(NamesAttributes):
@@ -68,19 +71,32 @@ class Predictability(NamesAttributes):
         return math.log(self.largest) / reached if reached > 0.0 else math.inf
 
     @property
+    def expected_horizon(self) -> float:
+        """About when (s) the horizon ends; beyond the run by the mean rate in it if errors have grown ten times, else inf."""
+        if not math.isinf(self.horizon) or not self.largest > TELLING or not 0.0 < self.error < LOST:
+            return self.horizon
+        return float(self.time[-1]) * math.log(LOST / self.error) / math.log(self.largest)
+
+    @property
     def short(self) -> str:
         """How long single events are predictable, in a few words."""
         if math.isinf(self.horizon):
             return "throughout"
-        return f"up to {f'{self.horizon / YEAR:.6g} years' if self.horizon > 0.5 * YEAR else f'{self.horizon:.6g} s'}"
+        return f"up to {_shown(self.horizon, 6)}"
 
     @property
     def text(self) -> str:
         """The result as one line of text."""
         grown = f"echoes multiply an error of the load by up to {self.largest:.3g}"
         if math.isinf(self.horizon):
-            return f"{grown}; single events are predictable throughout"
+            beyond = self.expected_horizon
+            more = "" if math.isinf(beyond) else f", and up to about {_shown(beyond, 3)} if errors go on to grow as in this run"
+            return f"{grown}; single events are predictable throughout{more}"
         return f"{grown}; predictable {self.short}, beyond it only statistics are"
+
+
+def _shown(time: float, digits: int) -> str:
+    return f"{time / YEAR:.{digits}g} years" if time > 0.5 * YEAR else f"{time:.{digits}g} s"
 
 
 def in_short(proven: str, trapped: str, predictable: str) -> str:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 NEAR = "Duration of the run at whose end the cycle is looked for: s, or with a unit. Default: long enough for some cycles."
 ALONG = "Follow the cycle along this number of the scenario, such as pull_rate or body.stiffness; with --to."
 TO = "Value at the other end of --along, a number in SI or with a unit."
-DOUBLE = "Follow cycles of twice the period, too, where the period doubles."
-RESUME = "Go on with the branch in --out, which Ctrl-C has ended, or to another --to."
+DOUBLED_TOO = "Follow cycles of twice the period, too, where the period doubles."
+GO_ON = "Go on with the branch in --out, which Ctrl-C has ended, or to another --to."
 ROWS_SHOWN = 24
 """Largest number of cycles of a branch that are printed; edges are printed beside them."""
 
@@ -34,9 +34,9 @@ def cycle(
     along: Annotated[str | None, option(ALONG)] = None,
     to: Annotated[str | None, option(TO)] = None,
     steps: Annotated[int, typer.Option(help="About how many steps cross the range of --along.")] = 40,
-    double: Annotated[bool, typer.Option("--double", help=DOUBLE)] = False,
+    double: Annotated[bool, typer.Option("--double", help=DOUBLED_TOO)] = False,
     out: Annotated[Path | None, table_of("cycle")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help=RESUME)] = False,
+    resume: Annotated[bool, typer.Option("--resume", help=GO_ON)] = False,
     figure: FigureFile = None,
     look: FigureLook,
 ) -> None:

@@ -9,16 +9,16 @@ from stickslip.cli.options import Changes, FigureFile, ScenarioName, option, tab
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_sentences, titled
 
-DURATION = "Duration of the run, in s or with a unit. Default: that of the scenario."
-SKIP = "Time at its start that does not count, in s or with a unit. Default: a fifth of the duration."
+DURATION_OF_RUN = "Duration of the run, in s or with a unit. Default: that of the scenario."
+LEFT_OUT = "Time at its start that does not count, in s or with a unit. Default: a fifth of the duration."
 
 
 def lyapunov(
     scenario: ScenarioName,
     *,
     changes: Changes = None,
-    duration: Annotated[str | None, option(DURATION)] = None,
-    skip: Annotated[str | None, option(SKIP)] = None,
+    duration: Annotated[str | None, option(DURATION_OF_RUN)] = None,
+    skip: Annotated[str | None, option(LEFT_OUT)] = None,
     out: Annotated[Path | None, table_of("growth along the run")] = None,
     figure: FigureFile = None,
     look: FigureLook,
