@@ -10,7 +10,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${1:-python3}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "ddeint==0.3.0" "scipy==1.17.1" "numpy==2.4.6"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "ddeint==0.3.0" "scipy==1.17.1" "numpy==2.4.6"
 "$folder/venv/bin/python" - <<'END'
 import math
 from importlib.metadata import version

@@ -10,8 +10,10 @@
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"${1:-python3.12}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "drake==1.58.0"
+python=${1:-python3.12}
+"$python" -c "" 2> /dev/null || export PYENV_VERSION=$(pyenv latest 3.12)
+"$python" -m venv "$folder/venv"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "drake==1.58.0"
 "$folder/venv/bin/python" - <<'END'
 from importlib.metadata import version
 

@@ -12,7 +12,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${1:-python3}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "heyoka==7.13.2" "numpy==2.4.6"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "heyoka==7.13.2" "numpy==2.4.6"
 "$folder/venv/bin/python" - <<'END'
 import math
 

@@ -10,7 +10,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${1:-python3}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "opentorsion==0.3.2" "numpy==2.4.6"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "opentorsion==0.3.2" "numpy==2.4.6"
 "$folder/venv/bin/python" -W ignore - <<'END'
 import math
 from importlib.metadata import version

@@ -9,8 +9,10 @@
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"${1:-python3.12}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "pyslammer==0.2.3" "numpy==2.5.5"
+python=${1:-python3.12}
+"$python" -c "" 2> /dev/null || export PYENV_VERSION=$(pyenv latest 3.12)
+"$python" -m venv "$folder/venv"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "pyslammer==0.2.3" "numpy==2.5.5"
 "$folder/venv/bin/python" -W ignore - <<'END'
 from importlib.metadata import version
 

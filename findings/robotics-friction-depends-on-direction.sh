@@ -13,7 +13,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${1:-python3}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "mujoco==4.0.0" "dartpy==6.20.0" "numpy==2.4.6"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "mujoco==4.0.0" "dartpy==6.20.0" "numpy==2.4.6"
 cat > "$folder/in_mujoco.py" <<'END'
 import math
 

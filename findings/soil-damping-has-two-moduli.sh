@@ -11,7 +11,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${1:-python3}" -m venv "$folder/venv"
-"$folder/venv/bin/pip" --quiet --disable-pip-version-check install "pystrata==0.5.4" "PySeismoSoil==0.7.0" "pandas==3.1.1" "numpy==2.4.6"
+"$folder/venv/bin/pip" --quiet --disable-pip-version-check install --no-compile "pystrata==0.5.4" "PySeismoSoil==0.7.0" "pandas==3.1.1" "numpy==2.4.6"
 "$folder/venv/bin/python" -W ignore - <<'END'
 from importlib.metadata import version
 

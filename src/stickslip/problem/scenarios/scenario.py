@@ -10,6 +10,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from stickslip.extension import tables as tables_of_extensions
 from stickslip.foundation.arguments import as_path, for_users, shown
 from stickslip.foundation.conversion import Number
@@ -32,8 +34,8 @@ LARGEST_TEXT = 4_000_000
 """Largest number of characters of a scenario, as in a file of results, which holds the points of data files, too."""
 MOST_TABLES = 100
 """Largest number of tables in a scenario; the laws with most parts have a fifth of it."""
-LARGE_COEFFICIENT, SMALL_STRESS = 3.0, 10.0
-"""A static coefficient above, or a normal stress (Pa) of a slab below, these values raises a question."""
+LARGE_COEFFICIENT, SMALL_STRESS, LARGE_SIZE = 3.0, 10.0, 10.0
+"""A static coefficient above, a normal stress (Pa) of a slab below, or a string or bit wider (m) than these raises a question."""
 KEYS_OF_RUN = {name: key_of(name, entry) for name, (entry, _) in fields_of(RunOptions).items()}
 """The keys of [run], by option."""
 _HEADING = re.compile(r"""^[ \t]*\[{1,2}[ \t]*[A-Za-z_"']""", re.MULTILINE)
@@ -166,7 +168,8 @@ def doubts(problem: Problem) -> list[str]:
         found.append(f"the static friction coefficient is {static:.4g}; rock has 0.1 to 1: is it a percentage?")
     if problem.load_unit == "Pa" and problem.normal < SMALL_STRESS:
         found.append(f"the normal stress is {problem.normal:.4g} Pa: mPa is a thousandth of a pascal, MPa is a million")
-    return found
+    sizes = {name: np.max(getattr(problem.body, name, None) or 0.0) for name in ("outer_diameter", "bit_radius")}
+    return found + [f"{name} is {one:.6g} m: is it in mm? write '{one:.6g} mm'" for name, one in sizes.items() if one > LARGE_SIZE]
 
 
 @for_users

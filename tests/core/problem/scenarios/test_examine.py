@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -212,6 +213,19 @@ def test_examine_warns_of_what_is_doubtful() -> None:
     block = load_scenario("fig6-block-printed")
     assert warnings(block) == ""
     assert "has no effect" in warnings(replace(block, problem=replace(block.problem, selection="maxwell")))
+
+
+@pytest.mark.parametrize("name", ["drill-string", "pipe-and-collar"])
+def test_sizes_in_millimetres_are_asked_about(name: str) -> None:
+    """Programs for shafts take mm; a number here is in m, and no string is 100 m wide."""
+    scenario = load_scenario(name)
+    body: Any = scenario.problem.body
+    assert "in mm" not in warnings(scenario)
+    outer, inner = (1e3 * np.array(one) for one in (body.outer_diameter, body.inner_diameter))
+    wide = replace(body, outer_diameter=outer, inner_diameter=inner, bit_radius=155.575)
+    said = warnings(replace(scenario, problem=replace(scenario.problem, body=wide)))
+    assert f"outer_diameter is {outer.max():.6g} m: is it in mm? write '{outer.max():.6g} mm'" in said
+    assert "bit_radius is 155.575 m: is it in mm? write '155.575 mm'" in said
 
 
 def test_healing_at_once_on_a_slab_without_mass_is_warned_of() -> None:
