@@ -21,7 +21,7 @@ from stickslip.extensions.paper.cases import Runs
 from stickslip.extensions.paper.planar import peaks
 from stickslip.extensions.paper.rate_law_faults import (
     CURVES,
-    SHOWN,
+    SHOWN_LOADS,
     STATIONS,
     STORED,
     LaggedFault,
@@ -120,7 +120,7 @@ def main() -> None:
         found, curve = measured(group, fault, duration)
         rows.append(key | found)
         shown = group == "load" and fault.law == "lag" and fault.shape == "line" and not fault.reflects
-        if shown and fault.lag == 0.2 and fault.nodes == 1024 and fault.background / 1e6 in SHOWN:
+        if shown and fault.lag == 0.2 and fault.nodes == 1024 and fault.background / 1e6 in SHOWN_LOADS:
             path = CURVES.with_stem(f"{CURVES.stem}-{fault.background / 1e6:g}")
             np.savetxt(path, curve.T[::2], fmt="%.3f", delimiter=",", header="time [s],slip rate [m/s]", comments="")
         names = list(dict.fromkeys(name for row in rows for name in row))

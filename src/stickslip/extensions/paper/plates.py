@@ -127,7 +127,7 @@ PLATES = (
         9,
         "Beyond the paper: the rate law along a fault, with a lag",
         "2D, no echo. Above: when the middle of a fault first rests, against the load outside of its nucleus; dashed, the lower "
-        "fold of the set K, and the same with (π/2)Z for Z. Below: the time in which friction falls behind the front, 12 km from "
+        "fold of the set K, and the same with (π/2)Z for Z. Below: how long friction falls behind the front, 12 km from "
         "the middle, against the lag. Right: slip rate 16 km from the middle, a pulse at 60 MPa, several at 70, a crack at 75.",
         rate_law_report.rate_law_data,
         rate_law_report.draw_rate_law,

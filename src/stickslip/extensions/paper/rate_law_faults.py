@@ -20,7 +20,6 @@ import stickslip as ss
 from stickslip.extensions.paper.cases import problem, typed
 from stickslip.extensions.paper.planar import peaks
 from stickslip.foundation.arrays import Floats
-from stickslip.friction import FlashHeating, FrictionLaw, FromExpression, HyperbolicRate, LaggedFriction
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_slab
 
@@ -42,7 +41,7 @@ Both follow from slip of the form A sqrt(c^2 t^2 - r^2), whose traction is unifo
 """
 STORED = Path(__file__).with_name("rate-law-faults.csv")
 """The study of faults under the rate law, made by docs/rate_law_faults.py."""
-SHOWN = (60.0, 70.0, 75.0)
+SHOWN_LOADS = (60.0, 70.0, 75.0)
 """Background loads (MPa) of the stored slip rates."""
 CURVES = STORED.with_name("rate-law-curves.csv")
 """Slip rates 16 km from the middle, of the runs with these loads."""
@@ -58,31 +57,32 @@ def largest_load_of_pulses(factor: float = 1.0) -> float:
         loads for which no crack exists (their tau_pulse); with `SLOWER_THAN_UNIFORM` it is that for the middle of a crack at c.
     """
     case = problem("fig6-slab")
-    law, impedance = typed(case.friction, HyperbolicRate), factor * case.body.impedance
+    law, impedance = typed(case.friction, ss.friction.HyperbolicRate), factor * case.body.impedance
     root = math.sqrt(law.alpha * case.normal * (law.static - law.dynamic) / impedance)
     return law.dynamic * case.normal + impedance / law.alpha * (2.0 * root - 1.0)
 
 
-def lag_of_time(lag: float) -> FrictionLaw:
+def lag_of_time(lag: float) -> ss.friction.FrictionLaw:
     """Return the rate law with a lag (s): friction mu(w) with lag dw/dt = v - w."""
-    return LaggedFriction(problem("fig6-slab").friction, time=lag)
+    return ss.friction.LaggedFriction(problem("fig6-slab").friction, time=lag)
 
 
-def lag_of_slip(distance: float) -> FrictionLaw:
+def lag_of_slip(distance: float) -> ss.friction.FrictionLaw:
     """Return the rate law with a state that slip renews within a distance (m): friction mu(w) with distance dw/dt = v (v - w)."""
-    law = typed(problem("fig6-slab").friction, HyperbolicRate)
+    law = typed(problem("fig6-slab").friction, ss.friction.HyperbolicRate)
     steady = f"{law.dynamic} + {law.static - law.dynamic}/(1 + alpha*w)"
     units = {"alpha": f"{law.alpha} s/m", "distance": f"{distance} m"}
-    return FromExpression(steady, units, evolution="dw/dt = v*(v - w)/distance", state_unit="m/s")
+    return ss.friction.FromExpression(steady, units, evolution="dw/dt = v*(v - w)/distance", state_unit="m/s")
 
 
-def flash(distance: float) -> FrictionLaw:
+def flash(distance: float) -> ss.friction.FrictionLaw:
     """Return flash heating of the range of the rate law, whose state slip renews within a distance (m)."""
-    law = typed(problem("fig6-slab").friction, HyperbolicRate)
-    return FlashHeating(law.static, 0.01, b=0.014, distance=distance, weakened=law.dynamic, weakening_rate=1.0 / law.alpha)
+    law = typed(problem("fig6-slab").friction, ss.friction.HyperbolicRate)
+    fast = {"weakened": law.dynamic, "weakening_rate": 1.0 / law.alpha}
+    return ss.friction.FlashHeating(law.static, 0.01, b=0.014, distance=distance, **fast)
 
 
-LAWS: dict[str, tuple[Callable[[float], FrictionLaw], float]] = {
+LAWS: dict[str, tuple[Callable[[float], ss.friction.FrictionLaw], float]] = {
     "lag": (lag_of_time, 0.0),
     "distance": (lag_of_slip, 0.0),
     "flash-heating": (flash, 0.8),
@@ -173,7 +173,7 @@ def slips_between(times: Floats, rate: Floats, resting: float = 0.0) -> tuple[fl
 
 def rate_of_rest(run: PlanarSolution) -> float:
     """Return the slip rate (m/s) of nodes at rest: 0 under a lag, and SLIPS under other states, which creep."""
-    return 0.0 if isinstance(run.slab.problem.friction, LaggedFriction) else SLIPS
+    return 0.0 if isinstance(run.slab.problem.friction, ss.friction.LaggedFriction) else SLIPS
 
 
 def mode_of(run: PlanarSolution) -> str:

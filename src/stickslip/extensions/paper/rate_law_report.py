@@ -10,7 +10,7 @@ from stickslip.extensions.paper.cases import Runs, problem
 from stickslip.extensions.paper.rate_law_faults import (
     CURVES,
     LAG,
-    SHOWN,
+    SHOWN_LOADS,
     SLOWER_THAN_UNIFORM,
     largest_load_of_pulses,
     numbers,
@@ -143,8 +143,8 @@ def fronts_table() -> list[dict[str, str]]:
 
 
 def fronts(background: str) -> tuple[Floats, Floats, Floats]:
-    """Return lags (s), times in which friction falls behind the front (s), and largest slip rates (m/s), 12 km from the middle."""
-    rows = chosen(group="front", **{"background [MPa]": background})
+    """Return lags (s), how long friction falls behind the front (s), and largest slip rates (m/s), 12 km from the middle."""
+    rows = [row for row in chosen(group="front") if row["background [MPa]"] == background]
     rows.sort(key=lambda row: float(row[LAG_OF_ROW]))
     return numbers(rows, LAG_OF_ROW), numbers(rows, "fall, 12 km [s]"), numbers(rows, "peak, 12 km [m/s]")
 
@@ -156,18 +156,19 @@ def rate_law_data(_: Runs) -> xr.Dataset:
     rows = chosen(LAG, group="load", law="lag", shape="line", driver="none")
     contents: dict[str, Any] = {
         "background": quantity("background", 1e6 * numbers(rows, "background [MPa]"), "background load", "tau0", "Pa"),
-        "rest": quantity("background", numbers(rows, "rest, 0 km [s]"), "time at which the middle rests", "t", "s"),
+        "rest": quantity("background", numbers(rows, "rest, 0 km [s]"), "time until the middle rests", "t", "s"),
         "pulses": quantity("background", np.array([most_pulses(row) for row in rows], float), "most pulses at a place", "n", "1"),
     }
-    for load in SHOWN:
+    for load in SHOWN_LOADS:
         path = CURVES.with_stem(f"{CURVES.stem}-{load:g}")
         times, rate = np.loadtxt(path, delimiter=",", skiprows=1).T
         contents[f"time_{load:g}"] = quantity(f"time_{load:g}", times, "time", "t", "s")
         contents[f"rate_{load:g}"] = quantity(f"time_{load:g}", rate, f"slip rate at {STATION}, {load:g} MPa", "v", "m s-1")
-    for load in ("60", "75"):
-        lag, fall, _ = fronts(load)
-        contents[f"lag_{load}"] = quantity(f"lag_{load}", lag, "lag", "T", "s")
-        contents[f"fall_{load}"] = quantity(f"lag_{load}", fall, f"time in which friction falls at 12 km, {load} MPa", "t", "s")
+    for background in ("60", "75"):
+        lag, fall, _largest = fronts(background)
+        contents[f"lag_{background}"] = quantity(f"lag_{background}", lag, "lag", "T", "s")
+        meaning = f"duration of the fall of friction at 12 km, {background} MPa"
+        contents[f"fall_{background}"] = quantity(f"lag_{background}", fall, meaning, "t", "s")
     limits = {"lower_fold": largest_load_of_pulses(), "limit_of_cracks": largest_load_of_pulses(SLOWER_THAN_UNIFORM["line"])}
     return xr.Dataset(contents, attrs=limits)
 
@@ -186,16 +187,16 @@ def draw_rate_law(dataset: xr.Dataset) -> Figure:
             left.axvline(value / 1e6, color=GREY, linewidth=0.9, linestyle="--")
     left.set(xlabel="background load (MPa)", ylabel="middle rests (s)", ylim=(0.0, 17.0))
     left.legend(fontsize=7, loc="upper left")
-    for panel, background, colour in zip((axes[key] for key in "BCD"), SHOWN, (INK, BLUE, VERMILLION), strict=True):
+    for panel, background, colour in zip((axes[key] for key in "BCD"), SHOWN_LOADS, (INK, BLUE, VERMILLION), strict=True):
         panel.plot(dataset[f"time_{background:g}"], dataset[f"rate_{background:g}"], color=colour, linewidth=1.0)
         panel.set(ylabel=f"{background:g} MPa\n(m/s)", xlim=(0.0, 16.0))
         panel.set_ylim(0.0, None)
-        panel.tick_params(labelbottom=background == SHOWN[-1])
+        panel.tick_params(labelbottom=background == SHOWN_LOADS[-1])
     axes["D"].set_xlabel(f"time $t$ (s); slip rate at {STATION}")
     below = axes["E"]
-    for background, colour in zip(("60", "75"), LINE_COLOURS, strict=False):
-        lag, fall = dataset[f"lag_{background}"].values, dataset[f"fall_{background}"].values
-        below.loglog(lag, fall, "o-", color=colour, markersize=4, label=f"{background} MPa")
+    for name, colour in zip(("60", "75"), LINE_COLOURS, strict=False):
+        lag, fall = dataset[f"lag_{name}"].values, dataset[f"fall_{name}"].values
+        below.loglog(lag, fall, "o-", color=colour, markersize=4, label=f"{name} MPa")
     below.set(xlabel="lag (s)", ylabel="fall at front (s)")
     below.set_xticks([0.1, 0.2, 0.4, 0.8], ["0.1", "0.2", "0.4", "0.8"], minor=False)
     below.set_yticks([0.03, 0.1, 0.3], ["0.03", "0.1", "0.3"], minor=False)
