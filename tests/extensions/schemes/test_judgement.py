@@ -164,3 +164,29 @@ def test_the_exit_code_says_whether_a_series_passes(
         main(("benchmark", "judge", str(file), "--name", NAME, "--tolerance", "0.05"))
     assert ended.value.code == code
     assert f"\n{verdict}, with a tolerance of 0.05: mine.\nSlip is off by " in capsys.readouterr().out
+
+
+TURNS, RPM = 180.0 / np.pi, 30.0 / np.pi
+OTHER_UNITS: dict[str, tuple[str, str, tuple[float, ...]]] = {
+    "in SI": ("drill-string", "time_s,slip_rad,slip_rate_rad_per_s,traction_N_m", (1.0, 1.0, 1.0, 1.0)),
+    "as drillers write": ("drill-string", "time (s),bit angle (deg),bit rpm (rpm),TOB (kN m)", (1.0, TURNS, RPM, 1e-3)),
+    "of a block": ("fig6-block-reconstructed", "time_s,slip_m,slip_rate_m_per_s,traction_N", (1.0, 1.0, 1.0, 1.0)),
+    "force with its unit": ("fig6-block-reconstructed", "t (s),slip (mm),v (mm/s),force (kN)", (1.0, 1e3, 1e3, 1e-3)),
+}
+
+
+@pytest.mark.parametrize("units", OTHER_UNITS)
+def test_series_of_strings_and_blocks_have_angles_torques_and_forces(units: str, tmp_path: Path) -> None:
+    name, header, factors = OTHER_UNITS[units]
+    scenario = replace(ss.load_scenario(name), duration=5.0)
+    run, time = ss.simulate(scenario), np.linspace(0.0, 5.0, 1001)
+    rows = np.column_stack([time, run.slip(time) - scenario.problem.initial_slip, run.slip_rate(time), run.traction(time)])
+    np.savetxt(tmp_path / "mine.csv", rows * factors, delimiter=",", header=header, comments="", fmt="%.17g")
+    study = judge_series(tmp_path / "mine.csv", scenario, tolerance=1e-6)
+    assert study.passed, study
+    assert study.columns["slip_error"][0] == scenario.problem.unit_of("slip")
+    wrong = [*factors[:3], 1e-3 * factors[3]]
+    np.savetxt(tmp_path / "small.csv", rows * wrong, delimiter=",", header=header, comments="", fmt="%.17g")
+    unit = scenario.problem.load_unit
+    with pytest.raises(ss.InputError, match=f"small: largest traction is .* {unit}, exact .* {unit}: is it in k{unit}\\?"):
+        judge_series(tmp_path / "small.csv", scenario)

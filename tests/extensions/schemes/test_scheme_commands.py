@@ -63,3 +63,12 @@ def test_a_series_of_layers_is_judged_by_both_commands(command: Command) -> None
     assert "Errors fall with the step as its power 1." in said
     refused = command("schemes", "low-velocity-zone").refusal
     assert refused.startswith("schemes: LayeredSlab has no grid: they are of an ElasticSlab")
+
+
+def test_a_series_of_a_drill_string_is_judged_in_its_units(command: Command) -> None:
+    run, time = ss.simulate("drill-string", 5.0), np.linspace(0.0, 5.0, 501)
+    rows = np.column_stack([time, run.slip(time), run.slip_rate(time), 1e-3 * run.traction(time)])
+    np.savetxt("mine.csv", rows, delimiter=",", header="t (s),slip (rad),v (rad/s),torque (kN m)", comments="")
+    said = command("schemes", "drill-string", "--series", "mine.csv", "--duration", "5", "--figure", "a.svg").out
+    assert "Passed, with a tolerance of 0.05: mine.\n" in said
+    assert "error rad" in said

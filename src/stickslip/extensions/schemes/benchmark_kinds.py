@@ -66,8 +66,8 @@ class Benchmark:
 class ConvergedBenchmark:
     """A problem without an exact solution. `converge` makes a series of its scenario that has converged, with an error band.
 
-    The series is a dataset with time, slip since t = 0, slip rate and traction along the dimension `sample` in SI units, and with
-    `slip_band`, `slip_rate_band` and `traction_band`, which say how far each sample may be off.
+    The series is a dataset with time, slip since t = 0, slip rate and traction along the dimension `sample` in SI units. Three more
+    columns say how far each sample of slip, slip rate and traction may be off: their names end in _band.
     """
 
     name: str

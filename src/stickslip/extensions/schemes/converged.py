@@ -31,7 +31,7 @@ COLUMNS_WITHIN_BAND = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SeriesWithinBand(Study):
-    """Series of another program beside one that has converged, and the largest share by which they may leave its error band."""
+    """Series of another program beside one that has converged, and the largest share that they may leave its error band by."""
 
     right: xr.Dataset
     series: tuple[Series, ...]

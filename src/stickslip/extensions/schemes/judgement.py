@@ -19,7 +19,7 @@ from stickslip.foundation.show import brief
 TOLERANCE = 0.05
 """A series may be off by this share of the exact values, if no other is given."""
 QUANTITIES_JUDGED = {"slip": "slip", "slip rate": "slip_rate", "traction": "traction"}
-"""What a series has, each with the name by which a problem knows its unit."""
+"""What a series has, each with the name that a problem knows its unit by."""
 SIDES = "of two elastic sides each slips by half, and the jump between them counts"
 ZERO = "another zero than the exact"
 CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {

@@ -30,7 +30,7 @@ def judged(
 ) -> Schemes:
     """Compare series with the exact solution of a scenario.
 
-    `tolerances` are the largest share by which a series that passes may be off, and the relative tolerance of the exact runs. Each
+    `tolerances` are the largest share that a series may be off by and pass, and the relative tolerance of the exact runs. Each
     series must last as long as the scenario; one may end earlier if the comparison goes `to_their_ends`.
     """
     tolerance, rtol = tolerances

@@ -13,9 +13,8 @@ from dataclasses import replace
 from stickslip.extensions.schemes.benchmark_kinds import Benchmark
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
 from stickslip.friction.laws.of_rate import Coulomb
-from stickslip.problem import Problem
-from stickslip.problem.bodies import ElasticSlab, TwoSlabs
-from stickslip.problem.loading import PiecewiseLinear
+from stickslip.problem import PiecewiseLinear, Problem
+from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.scenarios import Scenario, load_scenario
 
 ROCK = ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
@@ -61,8 +60,8 @@ def _soft_layer() -> Scenario:
 
 
 def _two_slabs() -> Scenario:
-    plates = TwoSlabs([0.048], [7850.0], [3200.0], [0.09], [2650.0], [3000.0], normal_stress=5e6)
-    return Scenario(Problem(plates, Coulomb(static=0.7, dynamic=0.6), pull_rate=1e-3, initial_excess=0.0), 2e-4)
+    plates = load_scenario("steel-on-granite").problem
+    return Scenario(replace(plates, friction=Coulomb(static=0.7, dynamic=0.6)), 2e-4)
 
 
 def _bow_at_a_tenth() -> Scenario:

@@ -17,28 +17,28 @@ from stickslip.foundation.show import brief
 
 EXPLAINS = 0.2
 """Name a cause if it lessens the distance from the exact series by this factor."""
-ROUNDED = 1e-6
+ROUNDED_AWAY = 1e-6
 """A distance below this share of the exact values (1) has no cause that is looked for: files have so many digits."""
-RINGS, SWINGS = 0.02, 8
+SMALLEST_SWING, FEWEST_SWINGS = 0.02, 8
 """A series rings if its slip rate swings about the exact one by more than this share of the largest, so many times in a row."""
 SHIFTS = {-1.0: "a step early", -0.5: "half a step early", 0.5: "half a step late", 1.0: "a step late"}
 """Shifts in time that are looked for, in steps."""
-OFF = 0.01
+SMALLEST_MISS = 0.01
 """Look for another echo if the load differs from what the echoes bring by more than this share of its range."""
-FEWEST = 200
+FEWEST_STEPS = 200
 """Follow waves in at least so many steps, if those of the series are as short."""
 
 
 def ringing(one: MeasuredSeries) -> Iterator[str]:
     """Yield a sentence if the slip rate swings about the exact one again and again."""
     gap, time = one.rate - one.exact_rate, one.time
-    least = RINGS * float(np.abs(one.exact_rate).max())
+    least = SMALLEST_SWING * float(np.abs(one.exact_rate).max())
     slope = np.sign(np.diff(gap))
     turns = 1 + np.flatnonzero(slope[1:] * slope[:-1] < 0.0)
     turns = turns[one.away[turns]]
     swings = np.abs(np.diff(gap[turns])) > least
     long = _longest(swings)
-    if long.stop - long.start >= SWINGS:
+    if long.stop - long.start >= FEWEST_SWINGS:
         at = turns[long.start : long.stop + 1]
         period = 2.0 * float(np.median(np.diff(time[at])))
         size = 0.5 * float(np.median(np.abs(np.diff(gap[at]))))
@@ -51,7 +51,7 @@ def ringing(one: MeasuredSeries) -> Iterator[str]:
 
 
 def _longest(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> slice:
-    """Return the longest run of what is true."""
+    """Return the longest run of values that are true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], true.astype(int), [0]])))
     starts, ends = edges[::2], edges[1::2]
     if not starts.size:
@@ -75,7 +75,7 @@ def shifted(one: MeasuredSeries) -> Iterator[str]:
         left = {shift: float(np.abs(values - there)[kept].mean()) for shift, there in moved.items()}
         off = left.pop(0.0)
         best = min(left, key=lambda shift: left[shift])
-        if off > ROUNDED * scale and left[best] < EXPLAINS * off:
+        if off > ROUNDED_AWAY * scale and left[best] < EXPLAINS * off:
             found.setdefault(SHIFTS[best], []).append(name)
     for words, names in found.items():
         listed = f"{', '.join(names[:-1])}{' and ' if len(names) > 1 else ''}{names[-1]}"
@@ -89,7 +89,7 @@ def _inside(one: MeasuredSeries) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
 
 
 class _Means(NamedTuple):
-    """Mean velocities of the contact and loads in the steps in which waves are followed."""
+    """Mean velocities of the contact, and mean loads, in each step that waves are followed through."""
 
     rates: Floats
     loads: Floats
@@ -114,7 +114,7 @@ def reflected(one: MeasuredSeries) -> Iterator[str]:
         return float(np.abs(own.loads - free - other.load(own.rates - steady)).mean()) / scale
 
     before = off(followed)
-    if before <= OFF:
+    if before <= SMALLEST_MISS:
         return
     tried = [
         (off(followed.changed(other, side, cell)), name, share, other)
@@ -133,7 +133,7 @@ def reflected(one: MeasuredSeries) -> Iterator[str]:
 def _in_steps(echoes: Echoes, one: MeasuredSeries) -> Echoes | None:
     """Return echoes in cells as fine as the series allows; None if its steps are longer than a cell, or cells are too many."""
     lasts, finest = float(one.time[-1]), int(echoes.time / one.series.step)
-    by = min(max(int(np.ceil(FEWEST * echoes.time / lasts)), 1), finest)
+    by = min(max(int(np.ceil(FEWEST_STEPS * echoes.time / lasts)), 1), finest)
     cells = sum(len(side.impedances) for side in echoes.sides) * by
     return echoes.finer(by) if by and cells * lasts / echoes.time * by <= LARGEST_WORK else None
 

@@ -101,6 +101,7 @@ def _judged(scenario: Scenario, paths: list[Path], column: list[str] | None) -> 
     from stickslip.run import progress_line
 
     columns = typed_columns(column, "schemes: --column")
-    several = [read_series(path, columns=columns) for path in paths]
+    unit = scenario.problem.body.load_unit
+    several = [read_series(path, columns=columns, load_unit=unit) for path in paths]
     with progress_line("schemes") as tell:
         return judged(scenario, several, (TOLERANCE, scenario.rtol), tell)

@@ -13,7 +13,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
 from stickslip.problem import BODY_KINDS, Problem
 
-SMALLEST = 1e-6
+SMALLEST_SHARE = 1e-6
 """A place that sends back a smaller share of stress (1) is none."""
 LARGEST_WORK = 20_000_000
 """Most cells times steps that waves are moved through."""
@@ -60,7 +60,7 @@ class Echoes:
             of = " of the other side" * k
             layer = 0
             for cell, share in enumerate(side.reflections[:-1]):
-                if abs(share) > SMALLEST:
+                if abs(share) > SMALLEST_SHARE:
                     layer += 1
                     yield f"where layer {layer} meets layer {layer + 1}{of}", share, k, cell
             yield f"the driver{of}", side.reflections[-1], k, len(side.reflections) - 1
