@@ -78,7 +78,7 @@ def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:
     """
     round_trips, steps = slab.round_trips(duration), slab.steps_per_round_trip
     modes = float(np.prod(slab.shape[:-1])) * (slab.shape[-1] // 2 + 1)
-    exponentials = 5.0 * (2.0 + np.log2(4.0 * round_trips * steps)) * 64.0 * modes
+    exponentials = (5.0 * (2.0 + np.log2(4.0 * round_trips * steps)) * 64.0 + 320.0) * modes
     echoes = 76.0 + 110.0 * (round_trips - 1) if round_trips > 1 else 0.0
     waves = (36.0 + echoes) * (steps + 1) * modes
     kept = min(frames, steps) * duration / slab.body.round_trip_time * 64.0 * float(np.prod(slab.shape))

@@ -30,7 +30,9 @@ from stickslip.run import TextProgress
 if TYPE_CHECKING:
     import xarray as xr
 
-BENCHMARKS: dict[str, Benchmark | ConvergedBenchmark] = {one.name: one for one in (*OF_ONE_CONTACT, *of_faults())}
+ALL_BENCHMARKS: tuple[Benchmark | ConvergedBenchmark, ...] = (*OF_ONE_CONTACT, *of_faults())
+"""All problems."""
+BENCHMARKS = {one.name: one for one in ALL_BENCHMARKS}
 """The problems by name."""
 
 ALL = "all"
