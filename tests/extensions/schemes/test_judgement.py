@@ -111,6 +111,23 @@ def test_a_series_too_coarse_for_its_shocks_is_told_so() -> None:
     assert fine.hints == ()
 
 
+def test_a_series_too_coarse_for_a_slip_rate_that_turns_back_is_told_so() -> None:
+    """A light machine answers the echoes of its slab within a tenth of a second."""
+    slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=3e6, driver_inertia=2e6)
+    law = ss.friction.FromExpression("0.6 - 0.1*u/(1 + u)")
+    problem = ss.Problem(slab, law, pull_rate=0.3, initial_excess=1e6)
+    run, found = ss.simulate(problem, 25.0), []
+    for steps in (1200, 30_000):
+        time = np.linspace(0.0, 25.0, steps + 1)
+        series = Series(time, run.slip(time), run.slip_rate(time), run.traction(time), "mine")
+        found.append(judge_series(series, problem).judgements[0])
+    coarse, fine = found
+    assert [hint.partition(" soon after ")[0] for hint in coarse.hints] == [
+        "mine is too coarse for its shocks: its step is 20.8333 ms, and the exact slip rate turns back"
+    ]
+    assert fine.passed
+
+
 def columns() -> Any:
     one = right()
     return np.column_stack([one.time, one.slip, one.rate, one.traction])

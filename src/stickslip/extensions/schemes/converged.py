@@ -12,6 +12,7 @@ import pandas as pd
 
 import stickslip
 from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.measures import said_of
 from stickslip.extensions.schemes.shocks import check_length
 from stickslip.foundation.arrays import Floats
 from stickslip.run import Study
@@ -65,7 +66,7 @@ class SeriesWithinBand(Study):
 
     def _about(self) -> Iterator[str]:
         yield f"stickslip {stickslip.__version__}: series beside one that has converged"
-        yield from (f"{name}: {meaning}" for name, (_, meaning) in COLUMNS_WITHIN_BAND.items())
+        yield from said_of(COLUMNS_WITHIN_BAND)
 
     def _figure(self) -> Callable[..., Any]:
         from stickslip.extensions.schemes.figure import draw_within_band

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.schemes.measures import MeasuredSeries
+from stickslip.extensions.schemes.shocks import MADE
 from stickslip.extensions.schemes.traits import EXPLAINS, traits_of
 from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
 from stickslip.foundation.arrays import Floats
@@ -105,18 +106,32 @@ class Judgement:
         shares = "; ".join(f"{name} is off by {share:.2g}" for name, share in self.shares.items())
         return "; ".join(self.faults) or shares
 
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """All that is said of the series."""
+        return (self.text, self.reasons, *self.hints, *self.traits)
+
     @cached_property
     def hints(self) -> tuple[str, ...]:
-        """The conventions that explain what is off, and a step that is too long for the shocks, one sentence each."""
-        return () if self.passed else (*self._conventions(), *self._too_coarse())
+        """The conventions that explain what is off, or a step that is too long for the shocks, one sentence each."""
+        return () if self.passed else tuple(self._conventions()) or tuple(self._too_coarse())
 
     def _too_coarse(self) -> Iterator[str]:
-        """Yield a sentence if the series misses shocks, or makes some, because exact ones are nearer to each other than that."""
+        """Yield a sentence if shocks are wrong because they are too near to each other, or too short, for the series' steps."""
         one, times = self.measured, self.measured.exact.shocks.time.to_numpy(float)
+        if not any("shock" in fault for fault in self.faults):
+            return
+        said = f"{self.name} is too coarse for its shocks: its step is {brief(one.series.step, 's')}, and"
         nearest = float(np.diff(times[times <= one.until]).min(initial=math.inf))
-        if nearest < 2.0 * one.shadow and any("shock" in fault for fault in self.faults):
-            steps = f"its step is {brief(one.series.step, 's')}, and exact shocks are as near as {brief(nearest, 's')}"
-            yield f"{self.name} is too coarse for its shocks: {steps}: write more times"
+        if nearest < 2.0 * one.shadow:
+            yield f"{said} exact shocks are as near as {brief(nearest, 's')}: write more times"
+            return
+        for shock in one.shocks:
+            if math.isnan(shock.time):
+                sides = np.clip([shock.exact_time - one.shadow, shock.exact_time + one.shadow], 0.0, one.until)
+                if abs(float(np.diff(one.exact.slip_rate(sides))[0])) < MADE * shock.jump:
+                    yield f"{said} the exact slip rate turns back soon after {brief(shock.exact_time, 's')}: write more times"
+                    return
 
     @cached_property
     def traits(self) -> tuple[str, ...]:

@@ -66,6 +66,11 @@ def in_units(columns: Mapping[str, tuple[str, str]], load_unit: str) -> dict[str
     return {name: (units.get(unit, unit), meaning) for name, (unit, meaning) in columns.items()}
 
 
+def said_of(columns: Mapping[str, tuple[str, str]]) -> list[str]:
+    """Return a line for each column of a table, with its unit and meaning."""
+    return [f"{name}{f' ({unit})' if unit else ''}: {meaning}" for name, (unit, meaning) in columns.items()]
+
+
 def pulses_in(rate: Floats, threshold: float) -> int:
     """Count the maxima of |v| above a threshold (m/s) that are separated by minima below half the lower one.
 

@@ -19,11 +19,11 @@ import pandas as pd
 import stickslip
 from stickslip.extensions.schemes.contract import Scheme, Series
 from stickslip.extensions.schemes.judgement import TOLERANCE, Judgement
-from stickslip.extensions.schemes.measures import COLUMNS_OF_SCHEMES, MeasuredSeries, in_units
+from stickslip.extensions.schemes.measures import COLUMNS_OF_SCHEMES, MeasuredSeries, in_units, said_of
 from stickslip.extensions.schemes.regularisations import LAB
 from stickslip.extensions.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
 from stickslip.extensions.schemes.shocks import SHOCK_COLUMNS
-from stickslip.extensions.schemes.traits import orders_of
+from stickslip.extensions.schemes.traits import orders_of, why_not_told
 from stickslip.extensions.schemes.verdict import NONE, SAME_PATH, UNTOLD, RulePaths, change, exact_runs, local_orders
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
@@ -81,7 +81,7 @@ class Schemes(Study):
 
     @cached_property
     def judgements(self) -> tuple[Judgement, ...]:
-        """Whether each series passes, how far it is from the exact one, and which convention would explain that."""
+        """Each series beside the exact one: whether it passes, and what explains how far it is off."""
         tolerance = TOLERANCE if self.tolerance is None else self.tolerance
         return tuple(Judgement(one, self.paths, tolerance) for one in self.measured)
 
@@ -112,7 +112,7 @@ class Schemes(Study):
     @property
     def told(self) -> tuple[str, ...]:
         """What is said of series of another program: whether each passes, what is off, what explains it, and how errors fall."""
-        texts = [text for one in self.judgements for text in (one.text, one.reasons, *one.hints, *one.traits)]
+        texts = [text for one in self.judgements for text in one.texts]
         return tuple(text for text in (*texts, orders_of(self.measured)) if text)
 
     @property
@@ -120,13 +120,7 @@ class Schemes(Study):
         """Why the problem cannot tell selection rules apart, and which benchmarks can; "" if it can."""
         from stickslip.extensions.schemes.problems import OF_ONE_CONTACT  # here, because those are made of this
 
-        if len(self.paths.groups()) > 1:
-            return ""
-        *some, last = [one.name for one in OF_ONE_CONTACT if one.tells_rules]
-        can = f"the benchmarks {', '.join(some)} and {last} can tell rules apart"
-        if len(self.exact) < len(self.problem.rules):
-            return f"under a normal load that varies like this only {self.problem.rule} is followed: {can}"
-        return f"all selection rules have the same solution here: {can}"
+        return why_not_told(self.paths, self.problem, [one.name for one in OF_ONE_CONTACT if one.tells_rules])
 
     @property
     def columns(self) -> dict[str, tuple[str, str]]:
@@ -180,14 +174,11 @@ class Schemes(Study):
 
     def shocks_to_csv(self, path: str | Path) -> Path:
         """Write the table of shocks as CSV, with the meaning of its columns in comment lines (#), and return its path."""
-        columns = in_units(SHOCK_COLUMNS, self.problem.body.load_unit)
-        about = [f"{name}{f' ({unit})' if unit else ''}: {meaning}" for name, (unit, meaning) in columns.items()]
-        return write_table(Path(path), self.shocks, about)
+        return write_table(Path(path), self.shocks, said_of(in_units(SHOCK_COLUMNS, self.problem.body.load_unit)))
 
     def _about(self) -> Iterator[str]:
         yield f"stickslip {stickslip.__version__}: numerical schemes beside the exact solution"
-        for name, (unit, meaning) in self.columns.items():
-            yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
+        yield from said_of(self.columns)
 
     def _figure(self) -> Callable[..., Any]:
         from stickslip.extensions.schemes.figure import draw_schemes
@@ -198,9 +189,8 @@ class Schemes(Study):
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"
         if self.interrupted:
             yield "interrupted: these are the runs that were finished"
-        if self.not_told:
-            yield self.not_told
-        else:
+        yield self.not_told
+        if not self.not_told:
             yield from (f"{scheme} follows {rule}" for scheme, rule in self.verdicts.items())
         if self.tolerance is not None:
             yield from self.told

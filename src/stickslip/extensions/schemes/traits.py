@@ -12,8 +12,10 @@ import numpy as np
 
 from stickslip.extensions.schemes.echoes.asked import LARGEST_WORK, Echoes, echoes_of
 from stickslip.extensions.schemes.measures import MeasuredSeries
+from stickslip.extensions.schemes.verdict import RulePaths
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
+from stickslip.problem import Problem
 
 EXPLAINS = 0.2
 """Name a cause if it lessens the distance from the exact series by this factor."""
@@ -171,3 +173,14 @@ def orders_of(several: Sequence[MeasuredSeries]) -> str:
 def traits_of(one: MeasuredSeries) -> tuple[str, ...]:
     """Return what a series shows, one sentence each."""
     return (*ringing(one), *shifted(one), *reflected(one))
+
+
+def why_not_told(paths: RulePaths, problem: Problem, others: Sequence[str]) -> str:
+    """Return why a problem cannot tell selection rules apart, and the `others` that can; "" if it can."""
+    if len(paths.groups()) > 1:
+        return ""
+    *some, last = others
+    can = f"the benchmarks {', '.join(some)} and {last} can tell rules apart"
+    if len(paths.exact) < len(problem.rules):
+        return f"under a normal load that varies like this only {problem.rule} is followed: {can}"
+    return f"all selection rules have the same solution here: {can}"
