@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ def found(pull: float) -> LimitCycle:
 @cache
 def slab_that_never_rests() -> LimitCycle:
     law = ss.friction.RateAndState(reference=REFERENCE, a=A, b=B, distance=DISTANCE, rate=1e-6)
-    start = {"initial_load": 6.2e7, "initial_state": "steady", "initial_rate": 0.024}
+    start: dict[str, Any] = {"initial_load": 6.2e7, "initial_state": "steady", "initial_rate": 0.024}
     return ss.studies.cycle(ss.Problem(SLAB, law, pull_rate=0.02, **start), near=30.0)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stickslip.contact import steady_slidings
+from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import least_rate
-from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -44,7 +44,7 @@ class CycleEdge(NamedTuple):
 
     name: str
     value: float
-    orbit: Orbit
+    orbit: FoundCycle
 
 
 def _fold(place: PlaceOnBranch) -> float:

@@ -281,8 +281,9 @@ class _Following:
         self, path: Path, now: PlaceOnBranch, values: list[float], amplitudes: list[float]
     ) -> tuple[Path, PlaceOnBranch] | None:
         """Say why a part of the branch ends, and return where the next one begins; None if none does."""
-        if path.at_onset and not path.joins:
-            self._edge(path.end_beyond(now))
+        end = path.end_beyond(now)
+        if end is not None:
+            self._edge(end)
             return None
         if path.at_onset:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span

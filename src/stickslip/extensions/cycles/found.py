@@ -7,16 +7,9 @@ from typing import Any, Protocol
 from numpy.typing import NDArray
 
 from stickslip.engine import History
+from stickslip.foundation.arrays import Floats
 from stickslip.problem import Problem
 from stickslip.solution import Solution
-
-
-class CutOfCycle(Protocol):
-    """A problem that is cut at one kind of place."""
-
-    @property
-    def problem(self) -> Problem:
-        """The problem."""
 
 
 class ClosedRun(Protocol):
@@ -47,12 +40,20 @@ class FoundCycle(Protocol):
     """A cycle: a run from a section that comes back to where it started."""
 
     @property
-    def closed(self) -> ClosedRun:
-        """The run."""
+    def closed(self) -> Any:
+        """The run, a `ClosedRun` with what else a kind of body keeps of it."""
 
     @property
-    def section(self) -> CutOfCycle:
-        """The section."""
+    def section(self) -> Any:
+        """The section, with its problem and tolerance."""
+
+    @property
+    def place(self) -> Floats:
+        """Where it meets the section."""
+
+    @property
+    def extent(self) -> Floats:
+        """How far what may vary on the section goes in a period."""
 
     @property
     def period(self) -> float:

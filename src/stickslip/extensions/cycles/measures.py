@@ -41,7 +41,8 @@ class Measures(NamedTuple):
 
 def measures_of(orbit: FoundCycle) -> Measures:
     """Return the numbers of a cycle, from its run."""
-    end, history = orbit.closed, orbit.closed.history
+    end: ClosedRun = orbit.closed
+    history = end.history
     rates, tractions = _extremes(end)
     rested = end.first + np.flatnonzero(history.rests[end.first : end.piece + 1]) + 1
     if len(rested):  # the load when a rest ends that was not recorded

@@ -6,10 +6,11 @@ Source: Keller 1977, in Applications of Bifurcation Theory (ed. Rabinowitz), 359
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.orbit import Orbit, extent_of
 from stickslip.extensions.cycles.section import Return, Section
 from stickslip.foundation.arrays import Floats
@@ -35,7 +36,7 @@ class PlaceOnBranch:
     """A cycle on a branch: the value (SI) of the parameter, the cycle, and the direction of the branch."""
 
     value: float
-    orbit: Orbit
+    orbit: FoundCycle
     way: Floats
     """Unit vector along the branch: coordinates of the start over `Path.scales`, and the parameter over the range, at the end."""
 
@@ -50,8 +51,8 @@ class Path:
     rtol: float
     scales: Floats
     """Sizes of the coordinates of the start; the last is the range of the parameter."""
-    joins: bool = True
-    """True: cycles with and without rest are parts of one branch."""
+    joins: ClassVar[bool] = True
+    """True: cycles with and without rest that meet are parts of one branch."""
     same_step: float = 1e-13
     """An edge within a step is found to this share of the step (1)."""
 
@@ -146,6 +147,10 @@ class Path:
         """Return the longest step that moves the start by no more than a share (1) of the extent of the cycle."""
         moves = np.abs(begin.way[:-1]) * self.scales[:-1]
         return float(np.min(share * begin.orbit.extent / np.maximum(moves, 1e-300), initial=np.inf))
+
+    def end_beyond(self, last: PlaceOnBranch) -> Any:
+        """Return None: where cycles with rest end is found by bisection (`edges.loss_of_stick`)."""
+        return None
 
 
 def path_of(orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: float) -> Path:

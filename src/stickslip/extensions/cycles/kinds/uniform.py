@@ -7,7 +7,7 @@ from stickslip.extensions.cycles.asked import CycleKind, not_steady
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit, near_end
 from stickslip.extensions.cycles.waves.path import WavePath, path_of
 from stickslip.problem import Problem
-from stickslip.problem.bodies import BodyOnCharacteristics
+from stickslip.problem.bodies import as_waves
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
 OF_DRIVERS = {
@@ -26,7 +26,7 @@ class CyclesOfUniform(CycleKind):
 
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle is looked for."""
-        body, law = problem.body, problem.friction
+        body, law = as_waves(problem.body), problem.friction
         if why := not_steady(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
             return why
         if problem.far_stress_rate != 0.0:
@@ -39,14 +39,11 @@ class CyclesOfUniform(CycleKind):
         if body.front_reflection == 1.0:
             return "a dead load holds the body nowhere"
         if body.has_inertia and abs(body.front_reflection) >= 1.0:
-            return self._never_fades(body)
+            return (
+                f"the driver sends sharp waves back whole, and so does the {body.what_is_heavy}: they never fade, and no run comes"
+                " to a cycle; give the driver a finite impedance"
+            )
         return ""
-
-    def _never_fades(self, body: BodyOnCharacteristics) -> str:
-        return (
-            f"the driver sends sharp waves back whole, and so does the {body.what_is_heavy}: they never fade, and no run comes to a"
-            " cycle; give the driver a finite impedance"
-        )
 
     def near_end(self, history: History, problem: Problem, rtol: float) -> WaveOrbit:
         """Return the cycle near the end of a run. Raises InputError if there is none."""

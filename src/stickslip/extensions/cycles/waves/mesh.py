@@ -95,7 +95,8 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
             kept.append(one)
     edges = np.sort(np.array(kept))
     parts = np.ceil(np.diff(edges) / (COARSE * trip)).astype(int)
-    divided = [np.linspace(*ends, n, endpoint=False) for *ends, n in zip(edges[:-1], edges[1:], parts, strict=True)]
+    ends = zip(edges[:-1], edges[1:], parts.tolist(), strict=True)
+    divided = [np.linspace(low, high, n, endpoint=False) for low, high, n in ends]
     edges = np.append(np.concatenate(divided), trip)
     while True:
         mesh = WaveMesh(edges)

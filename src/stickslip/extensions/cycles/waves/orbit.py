@@ -26,6 +26,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
+from stickslip.problem.bodies import as_waves
 from stickslip.solution import Solution
 
 NUDGE, FINE_NUDGE = 1e-6, 5e-6
@@ -102,6 +103,12 @@ class WaveOrbit:
         """Where the cycle meets the section: the states, and the wave at points that are evenly spread over a round trip."""
         return coordinates(self.closed.start)
 
+    @property
+    def extent(self) -> Floats:
+        """Sizes of the states, and how far the wave goes, for each of these."""
+        place, count = self.place, len(self.closed.start.states)
+        return np.append(np.abs(place[:count]) + 1e-300, np.full(len(place) - count, np.ptp(place[count:])))
+
     @cached_property
     def sharp_waves(self) -> float:
         """What a period multiplies the sharpest waves by (1): all that is not among the multipliers fades at least so fast."""
@@ -125,7 +132,7 @@ def sharp_factor(history: History, begin: float, end: float) -> float:
     whole.
     """
     problem, trip = history.problem, history.round_trip_time
-    body, law = problem.body, problem.friction
+    body, law = as_waves(problem.body), problem.friction
     back = (end - begin) / trip * math.log(max(abs(body.front_reflection), 1e-300))
     if body.has_inertia:
         return math.exp(back)
@@ -189,7 +196,7 @@ def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
 
 def fitted_mesh(met: WaveReturn) -> WaveMesh:
     """Return the mesh for the wave at a return."""
-    history, body = met.history, met.history.problem.body
+    history, body = met.history, as_waves(met.history.problem.body)
     return mesh_of(met.source, kinks(history, met.end, met.time, abs(body.front_reflection)))
 
 
@@ -284,7 +291,7 @@ def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
         )
     every = _meetings(history, met.time)
     end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
-    mesh = mesh_of(WaveSource(history, end), kinks(history, end, period, abs(problem.body.front_reflection)))
+    mesh = mesh_of(WaveSource(history, end), kinks(history, end, period, abs(as_waves(problem.body).front_reflection)))
     return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, CycleEdge
+from stickslip.engine import Positions
+from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, NOT_FOUND, CycleEdge
+from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import measures_of
-from stickslip.extensions.cycles.path import NoCycleError, PlaceOnBranch
+from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.krylov import solved
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
@@ -39,40 +41,25 @@ DIRECTION_SHARE = 1e-3
 
 FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
 """First step towards an end (1), the number of steps, halved without a cycle, and by what share (1) a period may change there."""
-SHORT_REST = 1e-2
-"""A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch."""
+SHORT_REST, TOUCHES = 1e-2, 1e-3
+"""A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch; slip rate and load touch rest and
+strength where they come as near (1, of their extent) as the second."""
 
 
 @dataclass(frozen=True)
-class WavePath:
+class WavePath(Path):
     """Cycles of one scenario, cut at one kind of section, with one number of the problem as a parameter."""
 
-    scenario: Scenario
-    parameter: ParameterPath
-    at_onset: bool
-    rtol: float
-    scales: Floats
-    """Sizes of the coordinates of the start; the last is the range of the parameter."""
-    level: float
-    """The slip rate on a section without rest, as a share of the pull rate (1)."""
-    joins: bool = False
-    """False: cycles with and without rest are not joined to one branch."""
+    joins: ClassVar[bool] = False
     same_step: float = 1e-7
     """An edge within a step is found to this share of the step (1), which is what multipliers are known to."""
+    level: float = 1.0
+    """The slip rate on a section without rest, as a share of the pull rate (1)."""
 
-    def section(self, value: float) -> WaveSection:
+    def section(self, value: float) -> Any:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
         problem = self.scenario.problem.parameters[self.parameter.name].put(value)
         return WaveSection(problem, self.at_onset, self.rtol, self.level)
-
-    @property
-    def range(self) -> float:
-        """The range of the parameter, SI."""
-        return float(self.scales[-1])
-
-    def together(self, place: Floats, value: float) -> Floats:
-        """Return start and parameter over their scales."""
-        return np.append(place, value) / self.scales
 
     def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.
@@ -139,13 +126,6 @@ class WavePath:
 
         return along
 
-    def at_value(self, value: float, place: Floats, guess: float, way: Floats | None = None) -> PlaceOnBranch:
-        """Return the cycle near a start at a value (SI) of the parameter. Raises NoCycleError."""
-        along = np.zeros(len(self.scales))
-        along[-1] = 1.0
-        found = self.at(self.together(place, value), along, guess)
-        return found if way is None or found.way @ way >= 0.0 else replace(found, way=-found.way)
-
     def step(self, begin: PlaceOnBranch, length: float) -> PlaceOnBranch:
         """Return the cycle a step further along the branch. Raises NoCycleError."""
         orbit: Any = begin.orbit
@@ -159,8 +139,10 @@ class WavePath:
             raise NoCycleError(str(error)) from None
         return self.at(target, begin.way, orbit.period, moved.over(trip))
 
-    def end_beyond(self, last: PlaceOnBranch) -> CycleEdge:
+    def end_beyond(self, last: PlaceOnBranch) -> CycleEdge | None:
         """Return the edge where cycles with rest end, beyond the last place of a branch, by steps that become shorter."""
+        if not self.at_onset:
+            return None
         length = FIRST_SHORT
         for _ in range(MOST_SHORT):
             try:
@@ -170,8 +152,7 @@ class WavePath:
                 last = new if new.way @ last.way >= 0.0 else replace(new, way=-new.way)
             except NoCycleError:
                 length *= 0.5
-        rests = measures_of(last.orbit).stick_share > SHORT_REST
-        return CycleEdge(GRAZING if rests else LOSS_OF_STICK, last.value, last.orbit)
+        return CycleEdge(_name_of_end(last.orbit), last.value, last.orbit)
 
     def longest_step(self, begin: PlaceOnBranch, share: float) -> float:
         """Return the longest step that moves the start by no more than a share (1) of the extent of the cycle."""
@@ -179,10 +160,23 @@ class WavePath:
         return float(np.min(share / np.maximum(moves, 1e-300), initial=np.inf))
 
 
+def _name_of_end(orbit: FoundCycle) -> str:
+    """Return what happens next to the end of a branch of cycles with rest."""
+    if measures_of(orbit).stick_share < SHORT_REST:
+        return LOSS_OF_STICK
+    end = orbit.closed
+    pieces = np.arange(end.first, end.piece)
+    at = Positions.inside(np.repeat(pieces, 9), np.tile(np.linspace(0.0, 1.0, 9), len(pieces)))
+    rests, rate, load = end.history.mode(at) == 0, end.history.rate(at), end.history.excess(at)
+    inside = (rests[1:-1] == rests[:-2]) & (rests[1:-1] == rests[2:])
+    low = ~rests[1:-1] & (rate[1:-1] <= rate[:-2]) & (rate[1:-1] <= rate[2:]) & (rate[1:-1] < TOUCHES * rate.max())
+    high = rests[1:-1] & (load[1:-1] >= load[:-2]) & (load[1:-1] >= load[2:]) & (load[1:-1] > -TOUCHES * np.ptp(load))
+    moves = (np.diff(load)[:-1] != 0.0) & (np.diff(load)[1:] != 0.0)  # two pieces share a place
+    return GRAZING if np.any(inside & moves & (low | high)) else NOT_FOUND
+
+
 def path_of(orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
     """Return the path of a cycle, with its extent as the scale of its start: the root of the mean square is what counts."""
-    place, count = orbit.place, len(orbit.closed.start.states)
-    extent = np.append(np.abs(place[:count]) + 1e-300, np.full(len(place) - count, np.ptp(place[count:])))
-    scales: Any = np.append(extent * np.sqrt(len(place)), span)
+    scales: Any = np.append(orbit.extent * np.sqrt(len(orbit.place)), span)
     section = orbit.section
-    return WavePath(scenario, parameter, section.at_onset, section.rtol, scales, section.level)
+    return WavePath(scenario, parameter, section.at_onset, section.rtol, scales, level=section.level)
