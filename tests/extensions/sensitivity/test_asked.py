@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.sensitivity.changes import changes_of
 from stickslip.extensions.sensitivity.stencil import SIDES, slope_of
 from stickslip.figures.style import image
 from stickslip.foundation.errors import InputError
@@ -63,6 +64,23 @@ def test_a_kink_in_the_middle_is_no_derivative() -> None:
     assert found.error[0] > 0.5
 
 
+def test_the_difference_of_two_orders_covers_what_the_noise_does_not_see() -> None:
+    found = slope_of(np.array(SIDES["both"], float)[:, None] ** 7, "both", 1.0)  # odd: its sixth difference is 0
+    assert found.slope[0] == pytest.approx(36.0)
+    assert found.noise[0] < 1e-9
+    assert found.error[0] > 36.0
+
+
+def test_a_rest_that_is_not_recorded_is_a_change_of_the_contact() -> None:
+    slab = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=10e3, normal_stress=1e8)
+    run = ss.simulate(ss.Problem(slab, ss.friction.Coulomb(0.6, 0.5), pull_rate=0.1, initial_excess=0.0), 2000.0)
+    found = changes_of(run.history)
+    assert run.history.rests.any()
+    assert found.mode.tolist() == [1.0, 0.0] * (len(found) // 2) + [1.0] * (len(found) % 2)
+    assert np.all(np.diff(found.time) >= 0.0)
+    assert len(found) > 4
+
+
 def test_a_number_at_its_limit_is_varied_to_one_side(block: Path) -> None:
     found = ss.studies.sensitivity(block, "damping", at=[0.1, 0.3], duration=0.3)
     beside = [ss.simulate(ss.load_scenario(block).with_values({"damping": c}), 0.3, 1e-13).slip([0.1, 0.3]) for c in (1e-3, 0.0)]
@@ -98,6 +116,7 @@ def test_a_time_that_an_event_moves_across_has_no_derivative_of_the_slip_rate() 
         ({"of": "end", "at": 1.0}, "at: 'end' is a number of a slip event, which event= chooses: leave at out"),
         ({"of": "end", "event": 9}, "event: the run of 0.5 s has no slip event 9: it has 3, 0 to 2"),
         ({"of": "end", "event": -1}, "event 2 of the run has no 'end': an event that is not over has none"),
+        ({"of": "slip", "event": -1}, "event 2 of the run has no 'slip': an event that is not over has none"),
         ({"of": "recurrence", "event": 0}, "event 0 of the run has no 'recurrence': the first has none"),
         ({"at": "3 s"}, "at: times must lie between 0 s and the end of the run, 0.5 s"),
         ({"at": 0.0}, "at: give a time after the start of the run"),
