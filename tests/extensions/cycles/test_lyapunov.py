@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.signal import lfilter
 import stickslip as ss
 from stickslip.extensions.cycles.exponent import error_of_mean
 from stickslip.extensions.cycles.growth_of_echoes import growth_on_pieces
+from tests.command_line import Command
 from tests.extensions.cycles.problems import coulomb, rate_and_state, stribeck
 
 IMPEDANCE, NORMAL, STATIC, DYNAMIC, ALPHA, BACK, FAR, TRIP = 9.8e6, 1e8, 0.8, 0.3, 0.3, -0.9, 2.46e8, 2e4 / 3500.0
@@ -166,3 +168,27 @@ def test_a_block_under_two_state_friction_is_chaotic_as_an_own_integration_has_i
     assert abs(found.exponent - own) < 3.0 * math.hypot(found.error, error)
     assert found.error < 0.4 * found.exponent
     assert found.sum_of_all < -10.0
+
+
+def test_the_command_says_how_fast_disturbances_grow(tmp_path: Path, command: Command) -> None:
+    table, figure = tmp_path / "a.csv", tmp_path / "a.png"
+    given = "fig6-slab", "--set", "loading.pull_rate=0.1", "--duration", "1000 s"
+    done = command("lyapunov", *given, "--out", str(table), "--figure", str(figure))
+    assert done.code == 0
+    assert "the largest Lyapunov exponent is" in done.out
+    assert table.read_text(encoding="utf-8").splitlines()[-1].startswith("1000.0,")
+    assert figure.stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (("drill-string",), "lyapunov: of slabs and strings only those without masses"),
+        (("fig6-slab",), "lyapunov: duration must be longer than skip by two round trips of 5.71429 s"),
+        (("fig6-slab", "--duration", "100 s", "--skip", "100 s"), "lyapunov: skip must be less than the duration 100 s, got 100 s"),
+        (("block", "--duration", "5 s"), "lyapunov: in the first 2.5 s the contact passes the pull rate fewer than two times"),
+        (("block", "--duration", "5 m"), "lyapunov: duration"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused_in_one_line(given: tuple[str, ...], said: str, command: Command) -> None:
+    assert command("lyapunov", *given).refusal.startswith(said)

@@ -129,7 +129,7 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
 
 
 def _divergence(one: Return) -> float:
-    """Return the logarithm (1) by which a volume of disturbances grows in a return; NaN under a law of several formulas."""
+    """Return the logarithm (1) of the growth of a volume of disturbances in a return; NaN under a law of several formulas."""
     store, count, problem = one.history.store, one.piece + 1, one.history.problem
     if len(problem.friction.pieces) > 1:
         return math.nan

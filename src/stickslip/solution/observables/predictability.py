@@ -31,7 +31,7 @@ LOST = 0.1
 """A disturbance of this share of the waves that slip sends out changes an event into another one: it ends the horizon."""
 
 TELLING = 10.0
-"""A run in which errors have grown more than so many times (1) tells their rate."""
+"""A run whose errors have grown more than so many times (1) tells their rate."""
 
 
 @dataclass(frozen=True)

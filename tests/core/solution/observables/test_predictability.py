@@ -92,3 +92,19 @@ def test_files_hold_the_predictability(tmp_path: Path) -> None:
             assert file.attrs["predictability"] == found.text
             assert file.attrs["horizon"] == math.inf
             assert file.attrs["lyapunov_exponent"] == found.exponent > 0.0
+
+
+def test_a_run_that_ends_before_its_horizon_says_about_where_that_is() -> None:
+    """By the formula to 1e-12, and beside a run that reaches its horizon to a factor of 2."""
+    critical = ss.load_scenario("fig7-slab-critical").problem
+    early, late = (predictability(ss.simulate(critical, trips * TRIP)) for trips in (20_000, 24_700))
+    assert math.isinf(early.horizon)
+    assert early.expected_horizon == pytest.approx(
+        early.time[-1] * math.log(0.1 / early.error) / math.log(early.largest), rel=1e-12
+    )
+    assert 0.5 < early.expected_horizon / late.horizon < 2.0
+    assert early.text.endswith("up to about 2.06e+05 s if errors go on to grow as in this run")
+    assert late.expected_horizon == late.horizon
+    alone = predictability(ss.simulate("fig6-slab"))
+    assert alone.expected_horizon == math.inf, "a single event tells no rate"
+    assert alone.text.endswith("single events are predictable throughout")

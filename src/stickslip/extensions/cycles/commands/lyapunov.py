@@ -19,7 +19,7 @@ def lyapunov(
     changes: Changes = None,
     duration: Annotated[str | None, option(DURATION_OF_RUN)] = None,
     skip: Annotated[str | None, option(LEFT_OUT)] = None,
-    out: Annotated[Path | None, table_of("growth along the run")] = None,
+    out: Annotated[Path | None, table_of("interval of the run, with the growth")] = None,
     figure: FigureFile = None,
     look: FigureLook,
 ) -> None:
