@@ -60,7 +60,7 @@ def test_the_largest_load_of_pulses_touches_the_steady_friction_from_below(facto
 
 def small(background: float, scale: float = 1.0) -> ss.PlanarSolution:
     """Return the run of a fault of 60 km in 2D with a lag of 0.4 s, for 7 s; all lengths and times are larger by a scale."""
-    fault = LaggedFault(background, 0.4 * scale, 320, 60e3 * scale, 5e3 * scale)
+    fault = LaggedFault(background, 0.4 * scale, 240, 60e3 * scale, 5e3 * scale)
     return ss.simulate(fault.slab, 7.0 * scale, frames=200)
 
 
@@ -176,11 +176,11 @@ class LagAtNodes:
 
 
 def test_the_volume_method_sees_the_same_pulse() -> None:
-    """A fault of 20 km under a driver at 10 km, until the echo has come back: slip to 0.2 % on average, and 1 % anywhere."""
-    nodes, lag, until = 256, 0.5, 6.0
+    """A fault of 20 km under a driver at 10 km, until the echo has come back: slip to 0.3 % on average, and 2 % anywhere."""
+    nodes, lag, until = 192, 0.5, 6.0
     fault = LaggedFault(60e6, lag, nodes, 20e3, 3e3, reflects=True)
     run = ss.simulate(fault.slab, until, frames=100)
-    steps = 300  # of a two-way time, so that c dt is 0.85 of the distance of nodes
+    steps = 226  # of a two-way time, so that c dt is 0.85 of the distance of nodes
     friction = LagAtNodes(nodes, lag, 2e4 / SPEED / steps)
     case = PlanarCase(2800.0, SPEED, 1e4, (20e3,), fault.slab.values.load, friction)
     volume = FrictionalVolume(case, steps, until)
@@ -191,8 +191,8 @@ def test_the_volume_method_sees_the_same_pulse() -> None:
     seen = np.array([np.interp(volume.time, run.times, one) for one in run.slip.T])
     assert 4.0 < seen.min() < seen.max() < 10.0
     missed = np.abs(volume.slip - seen) / seen.max()
-    assert missed.mean() < 0.002
-    assert missed.max() < 0.01
+    assert missed.mean() < 0.003
+    assert missed.max() < 0.02
 
 
 def test_a_front_that_runs_steadily_leaves_kostrovs_slip_rate() -> None:

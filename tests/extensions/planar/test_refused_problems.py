@@ -53,3 +53,14 @@ def test_the_problem_that_these_differ_from_is_taken() -> None:
 def test_a_fault_whose_a_crosses_the_limit_is_refused_by_name() -> None:
     with pytest.raises(ss.InputError, match="the formula of friction would differ from node to node"):
         ss.PlanarSlab(ROUGH, nodes=8, length=1e4, along={"friction.a": np.full(8, 1e-4)})
+
+
+def test_a_rate_law_with_folds_is_refused_with_the_cure_and_taken_with_it() -> None:
+    ill = ss.load_scenario("fig6-slab").problem
+    with pytest.raises(
+        ss.InputError, match=r"HyperbolicRate is irregular.*with a lag \(the law 'lagged', see docs/rate-law-on-a-fault"
+    ) as refused:
+        ss.PlanarSlab(ill, nodes=16, length=9e3)
+    assert "\n" not in str(refused.value)
+    lagged = ss.Problem(ill.body, ss.friction.LaggedFriction(ill.friction, time=0.1), initial_load=7e7)
+    assert ss.PlanarSlab(lagged, nodes=16, length=9e3).nodes == 16
