@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.compiled.places import Body, write_extremes
+from stickslip.extensions.cycles.compiled.places import DampedMass, write_extremes
 from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.foundation.arrays import Floats
 
@@ -80,6 +80,6 @@ def _slip_time(history: History, ends: Floats) -> float:
 def _extremes(history: History, ends: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the least and the greatest slip rate (m/s), and traction less the reference strength (N), in the first pieces."""
     body, found = history.problem.body, np.empty((2, 2))
-    write_extremes(history.store.pieces, Body(body.total_damping, body.inertia), 0, ends, found)
+    write_extremes(history.store.pieces, DampedMass(body.total_damping, body.inertia), 0, ends, found)
     rates, tractions = ((low, high) for low, high in found.tolist())
     return rates, tractions
