@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -136,3 +137,16 @@ def test_wrong_arguments_of_follow_are_told() -> None:
         ss.studies.follow(coulomb(), to=1.0)  # type: ignore[arg-type]
     with pytest.raises(ss.InputError, match="steps must be 1 or more"):
         ss.studies.follow(found, to=1.0, steps=0)
+
+
+@pytest.mark.parametrize(
+    "problem", [ss.Problem(DAMPED, LAGGED, pull_rate=0.1, initial_load=0.0, initial_state=0.0), rate_and_state()]
+)
+def test_the_cycle_next_to_a_run_that_settles_is_that_at_the_end_of_a_long_run(problem: ss.Problem) -> None:
+    """Period to 1e-9, multipliers to 1e-6; the long run takes 40 periods."""
+    early = ss.studies.cycle(problem)
+    long = ss.studies.cycle(
+        replace(early.problem, initial_load=1.001 * float(early.problem.initial_load or 0.0)), 40.0 * early.period
+    )
+    assert early.period == pytest.approx(long.period, rel=1e-9)
+    assert early.multipliers == pytest.approx(long.multipliers, rel=1e-6, abs=1e-6)

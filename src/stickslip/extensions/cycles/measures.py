@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine import Positions
-from stickslip.extensions.cycles.compiled.places import Body, write_extremes
+from stickslip.extensions.cycles.compiled.places import DampedMass, write_extremes
 from stickslip.extensions.cycles.found import ClosedRun, FoundCycle
 from stickslip.foundation.arrays import Floats, Integers1
 
@@ -85,6 +85,6 @@ def _extremes(run: ClosedRun) -> tuple[tuple[float, float], tuple[float, float]]
     """Return the least and the greatest slip rate (m/s) of a cycle, and traction less the reference strength."""
     history, (_, ends), found = run.history, _pieces(run), np.empty((2, 2))
     body = history.problem.body
-    write_extremes(history.store.pieces, Body(body.total_damping, body.inertia), run.first, ends, found)
+    write_extremes(history.store.pieces, DampedMass(body.total_damping, body.inertia), run.first, ends, found)
     rates, tractions = ((low, high) for low, high in found.tolist())
     return rates, tractions

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from stickslip.engine import TERMS, HistoryPiece
-from stickslip.engine.series.polynomial import evaluate
 from stickslip.foundation.arrays import Floats, Floats1, Floats3, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import entry, inlined, kernel
 from stickslip.foundation.kernels.memory.addresses import call_state_value, call_value, floats, room_for
@@ -55,6 +54,16 @@ class RunNumbers(NamedTuple):
 
 
 @inlined
+def value_and_slope(series: Floats, place: float) -> tuple[float, float]:
+    """Return a polynomial and its derivative at a place (1), by Horner's rule."""
+    value, slope = 0.0, 0.0
+    for k in range(TERMS - 1, -1, -1):
+        slope = slope * place + value
+        value = value * place + series[k]
+    return value, slope
+
+
+@inlined
 def sign_of_state(run: RunNumbers, n: int, direction: int) -> float:
     """Return -1 for a state that the formulas see with another sign in this direction."""
     return -1.0 if direction < 0 and run.reverses[n] != 0.0 else 1.0
@@ -64,7 +73,7 @@ def sign_of_state(run: RunNumbers, n: int, direction: int) -> float:
 def look(run: RunNumbers, piece: int, place: float, answer: Floats) -> float:
     """Write what the law says at a place (1) in a piece; return the slip rate (m/s) there."""
     one = pieces_of(run.pieces)[piece]
-    rate = evaluate(one.rate, place)
+    rate = value_and_slope(one.rate, place)[0]
     look_at_rate(run, (piece, one.law_piece, one.mode), place, abs(rate), answer)
     return rate
 
@@ -81,7 +90,7 @@ def look_at_rate(run: RunNumbers, where: tuple[int, int, int], place: float, rat
         return
     states = room_for(MOST_OF_FORMULA)
     for n in range(len(run.reverses)):
-        states[n] = sign_of_state(run, n, direction) * evaluate(run.states[piece, n], place)
+        states[n] = sign_of_state(run, n, direction) * value_and_slope(run.states[piece, n], place)[0]
     call_state_value(run.calls[law], floats(run.constants[law]), 0.0, rate, states, answer)
 
 
@@ -94,9 +103,7 @@ def write_pace(run: RunNumbers, piece: int, place: float, pace: Floats) -> None:
     one, answer = pieces_of(run.pieces)[piece], room_for(ROOM_OF_ANSWER)
     rate, grows = look(run, piece, place, answer), 0.0
     if one.mode != 0:
-        for k in range(TERMS - 1, 0, -1):
-            grows = grows * place + k * one.rate[k]
-        grows /= one.speed + 2.0 * one.bend * place
+        grows = value_and_slope(one.rate, place)[1] / (one.speed + 2.0 * one.bend * place)
     pace[LOAD_ROW], pace[RATE_ROW] = run.stiffness * (run.pull - rate), grows
     for n in range(len(run.reverses)):
         pace[FIRST_STATE_ROW + n] = sign_of_state(run, n, one.mode) * answer[CHANGE + n]

@@ -40,7 +40,7 @@ ROOM_OF_EQUATIONS = 3 * MOST_STAGES * (3 * MOST_STAGES + 4)
 """Room for the equations of a part, with a right-hand side for each disturbance at its start (numbers)."""
 
 
-class Part(NamedTuple):
+class PartOfPiece(NamedTuple):
     """A part of a piece."""
 
     piece: int
@@ -51,7 +51,7 @@ class Part(NamedTuple):
 
 
 @kernel
-def write_slopes(run: RunNumbers, part: Part, method: int, pace: Floats, slopes: Floats) -> None:
+def write_slopes(run: RunNumbers, part: PartOfPiece, method: int, pace: Floats, slopes: Floats) -> None:
     """Write d time/d place (s) at the points of a part, and the derivatives of slip rate and states by these, times that.
 
     The rows and columns of slip rate and states have MOST_STAGES numbers each.
@@ -76,7 +76,7 @@ def write_slopes(run: RunNumbers, part: Part, method: int, pace: Floats, slopes:
 
 
 @kernel
-def assemble(run: RunNumbers, part: Part, method: int, before: Floats, equations: Floats) -> None:
+def assemble(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, equations: Floats) -> None:
     """Write the equations of slip rate and states at the points of a part, for each disturbance in `before`, a matrix."""
     pace, slopes = room_for(MOST_STAGES), room_for(ROOM_OF_SLOPES)
     write_slopes(run, part, method, pace, slopes)
@@ -133,7 +133,7 @@ def eliminate(equations: Floats, size: int, width: int) -> None:
 
 
 @kernel
-def pass_part(run: RunNumbers, part: Part, method: int, before: Floats, after: Floats) -> None:
+def pass_part(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, after: Floats) -> None:
     """Write what disturbances at the start of a part have become at its end."""
     equations, one = room_for(ROOM_OF_EQUATIONS), pieces_of(run.pieces)[part.piece]
     assemble(run, part, method, before, equations)
@@ -207,7 +207,7 @@ def pass_piece(run: RunNumbers, span: tuple[int, float], exactly: bool, now: Flo
     size = (FIRST_STATE_ROW + len(run.reverses)) ** 2
     begin, length = 0.0, 1.0  # shares of what is passed; as powers of 2 they are exact
     for _ in range(4 * MOST_PARTS):
-        part = Part(piece, whole * begin, whole * length)
+        part = PartOfPiece(piece, whole * begin, whole * length)
         pass_part(run, part, USED, now, used)
         if exactly and length * MOST_PARTS > 1.0:
             pass_part(run, part, COMPARED, now, compared)

@@ -7,9 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.engine import TERMS
-from stickslip.engine.series.polynomial import evaluate
-from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, LOAD_ROW, RATE_ROW, pieces_of
+from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, LOAD_ROW, RATE_ROW, pieces_of, value_and_slope
 from stickslip.foundation.arrays import Floats, Floats1, Floats2, Floats3, Integers1, Integers2
 from stickslip.foundation.kernels.kernels import entry, kernel
 
@@ -32,9 +30,10 @@ def write_values(table: Integers2, states: Floats3, pieces: Integers1, places: F
     """Write load (minus the reference strength), slip rate and states at places (1) in pieces, each in a row."""
     for i in range(len(pieces)):
         one = pieces_of(table)[pieces[i]]
-        found[LOAD_ROW, i], found[RATE_ROW, i] = evaluate(one.load, places[i]), evaluate(one.rate, places[i])
+        found[LOAD_ROW, i] = value_and_slope(one.load, places[i])[0]
+        found[RATE_ROW, i] = value_and_slope(one.rate, places[i])[0]
         for n in range(len(found) - FIRST_STATE_ROW):
-            found[FIRST_STATE_ROW + n, i] = evaluate(states[pieces[i], n], places[i])
+            found[FIRST_STATE_ROW + n, i] = value_and_slope(states[pieces[i], n], places[i])[0]
 
 
 @kernel
@@ -42,10 +41,7 @@ def passage(series: Floats, value: float, low: float, high: float) -> float:
     """Return the place, between two others, where a polynomial passes a value upwards, to rounding."""
     place = 0.5 * (low + high)
     for _ in range(MOST_HALVINGS):
-        found, slope = 0.0, 0.0
-        for k in range(TERMS - 1, -1, -1):
-            slope = slope * place + found
-            found = found * place + series[k]
+        found, slope = value_and_slope(series, place)
         found -= value
         if found >= 0.0:
             high = place
@@ -72,7 +68,7 @@ def find_passages(table: Integers2, value: float, pieces: Integers1, places: Flo
     for n in range(len(table)):
         series = pieces_of(table)[n].rate
         for i in range(len(SAMPLES)):
-            stays = evaluate(series, SAMPLES[i]) < value
+            stays = value_and_slope(series, SAMPLES[i])[0] < value
             if below and not stays:
                 pieces[count], places[count] = n, passage(series, value, SAMPLES[i - 1], SAMPLES[i]) if i > 0 else 0.0
                 count += 1
@@ -80,7 +76,7 @@ def find_passages(table: Integers2, value: float, pieces: Integers1, places: Flo
     return count
 
 
-class Body(NamedTuple):
+class DampedMass(NamedTuple):
     """What turns a load into a traction: the damping (N s/m), and the mass (kg)."""
 
     damping: float
@@ -88,23 +84,20 @@ class Body(NamedTuple):
 
 
 @kernel
-def seen(table: Integers2, body: Body, what: int, piece: int, place: float) -> float:
+def seen(table: Integers2, body: DampedMass, what: int, piece: int, place: float) -> float:
     """Return the slip rate (m/s), or the traction less the reference strength (N): load less damping and inertia."""
     one = pieces_of(table)[piece]
-    rate = evaluate(one.rate, place)
+    rate, slope = value_and_slope(one.rate, place)
     if what == OF_RATE:
         return rate
-    load = evaluate(one.load, place) - body.damping * rate
+    load = value_and_slope(one.load, place)[0] - body.damping * rate
     if one.mode == 0 or body.inertia == 0.0:
         return load
-    grows = 0.0
-    for k in range(TERMS - 1, 0, -1):
-        grows = grows * place + k * one.rate[k]
-    return load - body.inertia * grows / (one.speed + 2.0 * one.bend * place)
+    return load - body.inertia * slope / (one.speed + 2.0 * one.bend * place)
 
 
 @kernel
-def refined(table: Integers2, body: Body, what: int, best: tuple[int, float, float], span: tuple[float, float]) -> float:
+def refined(table: Integers2, body: DampedMass, what: int, best: tuple[int, float, float], span: tuple[float, float]) -> float:
     """Return the largest value of `seen`, times a sign, near a place where it is large.
 
     `best` has the piece, the place in it (1) and the value; `span` the end of the piece (1) and the sign.
@@ -124,7 +117,7 @@ def refined(table: Integers2, body: Body, what: int, best: tuple[int, float, flo
 
 
 @entry
-def write_extremes(table: Integers2, body: Body, first: int, ends: Floats1, found: Floats2) -> None:
+def write_extremes(table: Integers2, body: DampedMass, first: int, ends: Floats1, found: Floats2) -> None:
     """Write the least and the greatest slip rate, and the same of the traction, in pieces from one on up to their `ends`."""
     for what in range(len(found)):
         for side in range(2):
