@@ -22,7 +22,7 @@ ROUNDING_OF_PLACE, NARROWEST = 1e-16, 4e-16
 INTERVALS, CLOSER = 32, 6
 """A largest value is looked for between so many parts of each piece (1), and so often again next to the largest."""
 OF_RATE, OF_TRACTION = range(2)
-"""What has a largest value: rows of what `write_extremes` writes."""
+"""Slip rate and traction: rows that `write_extremes` writes."""
 
 
 @entry
