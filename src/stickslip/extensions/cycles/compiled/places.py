@@ -93,7 +93,8 @@ def seen(table: Integers2, body: DampedMass, what: int, piece: int, place: float
     load = value_and_slope(one.load, place)[0] - body.damping * rate
     if one.mode == 0 or body.inertia == 0.0:
         return load
-    return load - body.inertia * slope / (one.speed + 2.0 * one.bend * place)
+    traction: float = load - body.inertia * slope / (one.speed + 2.0 * one.bend * place)
+    return traction
 
 
 @kernel
