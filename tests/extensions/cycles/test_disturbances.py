@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine import Positions
-from stickslip.extensions.cycles.compiled.radau import COEFFICIENTS, PLACES, STAGES
+from stickslip.extensions.cycles.compiled.radau import COEFFICIENTS, RADAU_PLACES, STAGES
 from stickslip.extensions.cycles.section import passages
 from stickslip.extensions.cycles.tangent import Tangent, pace_at, values_at
 from tests.extensions.cycles import by_numpy
@@ -83,7 +83,7 @@ def test_a_free_oscillation_turns_disturbances_by_its_phase_and_a_rest_ends_that
 def test_two_tables_of_radau_integrate_polynomials_exactly() -> None:
     """Coefficients give the integrals of powers up to the number of points, to 1e-14; weights up to twice as many."""
     for method, stages in enumerate(STAGES):
-        places, coefficients = PLACES[method, :stages], COEFFICIENTS[method, :stages, :stages]
+        places, coefficients = RADAU_PLACES[method, :stages], COEFFICIENTS[method, :stages, :stages]
         for power in range(stages):
             assert coefficients @ places**power == pytest.approx(places ** (power + 1) / (power + 1), rel=0.0, abs=1e-14)
         for power in range(2 * stages - 1):

@@ -20,7 +20,7 @@ PARTS = 4
 """Largest number of parts of the run (1); each lasts twice as long as the one before it."""
 NEARLY_CLOSES = 0.03
 """From this close (1, share of its extent) Newton's iteration is tried."""
-SETTLED = 0.25
+NEAR_THE_RUN = 0.25
 """A cycle is that to which a run settles if it is no farther (1, share of its extent) from the end of the run."""
 
 
@@ -60,4 +60,4 @@ def _closed(section: Section, history: History, met: Crossings) -> Orbit | None:
         found = closed(section, places[:, -1], float(met.time[-1] - met.time[-1 - every]))
     except InputError:
         return None
-    return found if np.all(np.abs(found.place - places[:, -1]) <= SETTLED * found.extent) else None
+    return found if np.all(np.abs(found.place - places[:, -1]) <= NEAR_THE_RUN * found.extent) else None

@@ -14,7 +14,7 @@ LOAD_ROW, RATE_ROW, FIRST_STATE_ROW = range(3)
 """Places of load, slip rate and the first state in a disturbance."""
 MOST_OF_FORMULA = 4
 """Number of states for which a formula's answer has room (1)."""
-BY_RATE, BY_STATE, CHANGE, CHANGE_BY_RATE = 1, 3, 3 + MOST_OF_FORMULA, 3 + 2 * MOST_OF_FORMULA
+BY_RATE, BY_STATE, CHANGE_OF_STATE, CHANGE_BY_RATE = 1, 3, 3 + MOST_OF_FORMULA, 3 + 2 * MOST_OF_FORMULA
 """Places in a formula's answer: derivatives of mu by slip rate and states, the states' rates of change, and those by slip rate."""
 CHANGE_BY_STATE = 3 + 4 * MOST_OF_FORMULA
 """Place in a formula's answer of the derivatives of the states' rates of change by the states, in a row for each."""
@@ -106,7 +106,7 @@ def write_pace(run: RunNumbers, piece: int, place: float, pace: Floats) -> None:
         grows = value_and_slope(one.rate, place)[1] / (one.speed + 2.0 * one.bend * place)
     pace[LOAD_ROW], pace[RATE_ROW] = run.stiffness * (run.pull - rate), grows
     for n in range(len(run.reverses)):
-        pace[FIRST_STATE_ROW + n] = sign_of_state(run, n, one.mode) * answer[CHANGE + n]
+        pace[FIRST_STATE_ROW + n] = sign_of_state(run, n, one.mode) * answer[CHANGE_OF_STATE + n]
 
 
 @entry

@@ -25,7 +25,7 @@ from stickslip.extensions.cycles.compiled.along_run import (
     sign_of_state,
     write_pace,
 )
-from stickslip.extensions.cycles.compiled.radau import COEFFICIENTS, COMPARED, MOST_STAGES, PLACES, STAGES, USED
+from stickslip.extensions.cycles.compiled.radau import COEFFICIENTS, COMPARED, MOST_STAGES, RADAU_PLACES, STAGES, USED
 from stickslip.foundation.arrays import Floats, Floats2
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead, room_for
@@ -60,7 +60,7 @@ def write_slopes(run: RunNumbers, part: PartOfPiece, method: int, pace: Floats, 
     many, mode = len(run.reverses), one.mode
     width = 1 + many
     for i in range(stages):
-        place = part.begin + part.length * PLACES[method, i]
+        place = part.begin + part.length * RADAU_PLACES[method, i]
         pace[i] = part.length * (one.speed + 2.0 * one.bend * place)
         look(run, part.piece, place, answer)
         by_force = pace[i] / run.inertia if mode != 0 else 0.0
@@ -147,7 +147,7 @@ def pass_part(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, a
             after[(RATE_ROW + r) * count + c] = equations[((r + 1) * stages - 1) * width + size + c]
     if one.mode != 0:
         for k in range(stages):
-            place = part.begin + part.length * PLACES[method, k]
+            place = part.begin + part.length * RADAU_PLACES[method, k]
             pace = part.length * (one.speed + 2.0 * one.bend * place)
             factor = run.stiffness * COEFFICIENTS[method, stages - 1, k] * pace
             for c in range(count):
@@ -205,7 +205,7 @@ def pass_piece(run: RunNumbers, span: tuple[int, float], exactly: bool, now: Flo
     used, compared = room_for(ROOM_OF_MATRIX), room_for(ROOM_OF_MATRIX)
     piece, whole = span
     size = (FIRST_STATE_ROW + len(run.reverses)) ** 2
-    begin, length = 0.0, 1.0  # shares of what is passed; as powers of 2 they are exact
+    begin, length = 0.0, 1.0  # shares of the piece; powers of 2 are exact
     for _ in range(4 * MOST_PARTS):
         part = PartOfPiece(piece, whole * begin, whole * length)
         pass_part(run, part, USED, now, used)

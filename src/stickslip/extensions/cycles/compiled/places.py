@@ -22,7 +22,7 @@ ROUNDING_OF_PLACE, NARROWEST = 1e-16, 4e-16
 INTERVALS, CLOSER = 32, 6
 """A largest value is looked for between so many parts of each piece (1), and so often again next to the largest."""
 OF_RATE, OF_TRACTION = range(2)
-"""What has a largest value: rows of what `write_extremes` writes."""
+"""Slip rate and traction: rows that `write_extremes` writes."""
 
 
 @entry
@@ -93,7 +93,8 @@ def seen(table: Integers2, body: DampedMass, what: int, piece: int, place: float
     load = value_and_slope(one.load, place)[0] - body.damping * rate
     if one.mode == 0 or body.inertia == 0.0:
         return load
-    return load - body.inertia * slope / (one.speed + 2.0 * one.bend * place)
+    traction: float = load - body.inertia * slope / (one.speed + 2.0 * one.bend * place)
+    return traction
 
 
 @kernel

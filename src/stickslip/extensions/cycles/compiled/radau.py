@@ -1,4 +1,4 @@
-"""Two of Radau's methods for a linear equation: places and coefficients, of which one tells the error of the other."""
+"""Two of Radau's methods for a linear equation: places and coefficients. One tells the error of the other."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_STAGES = max(STAGES)
 
 
 def _places(stages: int) -> Floats:
-    """Return the zeros of P_s - P_(s-1) on (0, 1], the last of which is 1; P is a Legendre polynomial."""
+    """Return the zeros of P_s - P_(s-1) on (0, 1], up to 1; P is a Legendre polynomial."""
     series = np.zeros(stages + 1)
     series[-2:] = -1.0, 1.0
     zeros = np.sort(legendre.legroots(series).real)
@@ -37,10 +37,10 @@ def _coefficients(places: Floats) -> Floats:
     return np.asarray(np.linalg.solve(known[:, :count].T, integrals.T).T)
 
 
-PLACES = np.zeros((len(STAGES), MOST_STAGES))
+RADAU_PLACES = np.zeros((len(STAGES), MOST_STAGES))
 """Places (1) of the points in a step, for each method."""
 COEFFICIENTS = np.zeros((len(STAGES), MOST_STAGES, MOST_STAGES))
 """Coefficients (1) of each method; the last row has the weights of a whole step."""
 for _method, _stages in enumerate(STAGES):
-    PLACES[_method, :_stages] = _places(_stages)
-    COEFFICIENTS[_method, :_stages, :_stages] = _coefficients(PLACES[_method, :_stages])
+    RADAU_PLACES[_method, :_stages] = _places(_stages)
+    COEFFICIENTS[_method, :_stages, :_stages] = _coefficients(RADAU_PLACES[_method, :_stages])
