@@ -17,14 +17,14 @@ from stickslip.foundation.arrays import Floats
 
 NODES = 10
 """Points of Gauss and Legendre on each piece of the mesh (1): none is at a kink, which a disturbance moves."""
-PLACES = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
-POWERS = np.linalg.inv(PLACES[:, None] ** np.arange(NODES))
+MESH_PLACES = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
+POWERS = np.linalg.inv(MESH_PLACES[:, None] ** np.arange(NODES))
 """From values at the points to coefficients of powers of the place (1)."""
-LAST_TERMS = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * PLACES - 1.0, NODES - 1))[-2:]
+LAST_TERMS = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * MESH_PLACES - 1.0, NODES - 1))[-2:]
 """From these values to the last two coefficients of a series of Legendre's polynomials."""
 FADED, MOST_ECHOES = 1e-9, 160
 """A kink is kept until its echo is this share of itself (1), and for no more round trips than this."""
-SHORTEST, COARSE = 2e-3, 1.0 / 6.0
+SHORTEST_PIECE, COARSE = 2e-3, 1.0 / 6.0
 """Shortest and longest piece of a mesh before it is divided (1, shares of a round trip)."""
 RESOLVED, MOST_PIECES, FINEST = 1e-9, 240, 1e-3
 """Pieces are halved until the last terms are below this share (1) of the wave's extent, up to a number, down to a length (1)."""
@@ -40,7 +40,7 @@ class WaveMesh:
     @cached_property
     def phases(self) -> Floats:
         """The phases (s) of all points."""
-        return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * PLACES).ravel())
+        return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * MESH_PLACES).ravel())
 
     def series(self, values: Floats) -> Floats:
         """Return the polynomials of a wave with these values at the points, one for each piece."""
@@ -70,7 +70,7 @@ class WaveSource:
 
 
 def kinks(history: History, end: float, period: float, share: float) -> Floats:
-    """Return the phases (s) at which the wave up to a time (s) has kinks, the sharpest first.
+    """Return the phases (s) of kinks of the wave up to a time (s), the sharpest first.
 
     Each event of the last period leaves one, whose echo is smaller by a `share` (1) after each round trip, in a motion that repeats
     itself after a period (s).
@@ -91,7 +91,7 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
     trip = source.history.round_trip_time
     kept = [0.0, trip]
     for one in sharp.tolist():
-        if min(abs(one - other) for other in kept) > SHORTEST * trip:
+        if min(abs(one - other) for other in kept) > SHORTEST_PIECE * trip:
             kept.append(one)
     edges = np.sort(np.array(kept))
     parts = np.ceil(np.diff(edges) / (COARSE * trip)).astype(int)
