@@ -29,7 +29,7 @@ class ClosedRun(Protocol):
 
     @property
     def piece(self) -> int:
-        """The piece in which the cycle ends."""
+        """The piece where the cycle ends."""
 
     @property
     def place(self) -> float:

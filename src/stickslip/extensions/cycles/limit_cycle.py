@@ -76,7 +76,7 @@ class LimitCycle(Study):
     @property
     def begin(self) -> float:
         """When the period begins in `run` (s): 0, or after a round trip at rest that holds the waves in the body."""
-        return self.orbit.closed.begin
+        return float(self.orbit.closed.begin)
 
     @cached_property
     def measures(self) -> Measures:

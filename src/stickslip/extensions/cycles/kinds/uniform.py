@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
-from stickslip.extensions.cycles.waves.orbit import WaveOrbit, near_end
+from stickslip.extensions.cycles.waves.near import near_end
+from stickslip.extensions.cycles.waves.orbit import WaveOrbit
 from stickslip.extensions.cycles.waves.path import WavePath, path_of
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_waves

@@ -16,10 +16,10 @@ from stickslip.foundation.arrays import Floats
 Operator = Callable[[Floats], Floats]
 """A linear operator."""
 EXHAUSTED = 1e-14
-"""A new direction of this share (1) of what it was before is rounding: the space is whole."""
+"""A new direction is rounding where so small a share (1) is left: the space is whole."""
 FIRST_LOOK, EVERY = 16, 4
 """Eigenvalues are looked at in a space of so many directions (1), and each time so many more."""
-EXACT, KNOWN, ROUGH = 1e-7, 1e-5, 0.03
+EXACT, KNOWN, ROUGHLY_KNOWN = 1e-7, 1e-5, 0.03
 """Errors (1) of eigenvalues: what is wanted of large ones, what is called known, and what is called roughly known."""
 
 
@@ -74,7 +74,7 @@ def leading(operator: Operator, start: Floats, many: int, large: float, most: in
         order = np.argsort(-np.abs(values), kind="stable")
         values, missed = values[order], np.abs(matrix[-1, -1] * vectors[-1])[order]
         big = np.abs(values) > large
-        if missed[big].max(initial=0.0) <= EXACT and (big.any() or missed[0] <= ROUGH):
+        if missed[big].max(initial=0.0) <= EXACT and (big.any() or missed[0] <= ROUGHLY_KNOWN):
             break
     known = np.minimum.accumulate(missed <= KNOWN)
     found = values[known] if known.any() else values[: 2 if values[0].imag else 1]

@@ -17,14 +17,18 @@ from stickslip.foundation.arrays import Floats
 
 NODES = 10
 """Points of Gauss and Legendre on each piece of the mesh (1): none is at a kink, which a disturbance moves."""
-PLACES = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
-POWERS = np.linalg.inv(PLACES[:, None] ** np.arange(NODES))
-"""From values at the points to coefficients of powers of the place (1)."""
-LAST_TERMS = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * PLACES - 1.0, NODES - 1))[-2:]
-"""From these values to the last two coefficients of a series of Legendre's polynomials."""
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(NODES)
+MESH_PLACES = 0.5 * (_POINTS + 1.0)
+"""The points as places (1) on a piece."""
+TERMS_OF_VALUES = (np.arange(NODES) + 0.5)[:, None] * (np.polynomial.legendre.legvander(_POINTS, NODES - 1) * _WEIGHTS[:, None]).T
+"""From values at the points to the coefficients of a series of Legendre's polynomials, by the rule of Gauss and Legendre."""
+POWERS_OF_TERMS = np.array(
+    [[(-1.0) ** (n + k) * math.comb(n, k) * math.comb(n + k, k) for n in range(NODES)] for k in range(NODES)]
+)
+"""From these to coefficients of powers of the place (1)."""
 FADED, MOST_ECHOES = 1e-9, 160
 """A kink is kept until its echo is this share of itself (1), and for no more round trips than this."""
-SHORTEST, COARSE = 2e-3, 1.0 / 6.0
+SHORTEST_PIECE, COARSE = 2e-3, 1.0 / 6.0
 """Shortest and longest piece of a mesh before it is divided (1, shares of a round trip)."""
 RESOLVED, MOST_PIECES, FINEST = 1e-9, 240, 1e-3
 """Pieces are halved until the last terms are below this share (1) of the wave's extent, up to a number, down to a length (1)."""
@@ -40,12 +44,12 @@ class WaveMesh:
     @cached_property
     def phases(self) -> Floats:
         """The phases (s) of all points."""
-        return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * PLACES).ravel())
+        return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * MESH_PLACES).ravel())
 
     def series(self, values: Floats) -> Floats:
         """Return the polynomials of a wave with these values at the points, one for each piece."""
         found = np.zeros((len(self.edges) - 1, TERMS))
-        found[:, :NODES] = values.reshape(-1, NODES) @ POWERS.T
+        found[:, :NODES] = values.reshape(-1, NODES) @ TERMS_OF_VALUES.T @ POWERS_OF_TERMS.T
         return found
 
     def at(self, values: Floats, phases: Floats) -> Floats:
@@ -70,7 +74,7 @@ class WaveSource:
 
 
 def kinks(history: History, end: float, period: float, share: float) -> Floats:
-    """Return the phases (s) at which the wave up to a time (s) has kinks, the sharpest first.
+    """Return the phases (s) of kinks of the wave up to a time (s), the sharpest first.
 
     Each event of the last period leaves one, whose echo is smaller by a `share` (1) after each round trip, in a motion that repeats
     itself after a period (s).
@@ -91,7 +95,7 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
     trip = source.history.round_trip_time
     kept = [0.0, trip]
     for one in sharp.tolist():
-        if min(abs(one - other) for other in kept) > SHORTEST * trip:
+        if min(abs(one - other) for other in kept) > SHORTEST_PIECE * trip:
             kept.append(one)
     edges = np.sort(np.array(kept))
     parts = np.ceil(np.diff(edges) / (COARSE * trip)).astype(int)
@@ -101,7 +105,7 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
     while True:
         mesh = WaveMesh(edges)
         values = source.at(mesh.phases).reshape(-1, NODES)
-        rough = np.abs(values @ LAST_TERMS.T).max(axis=1) > RESOLVED * np.ptp(values)
+        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=1) > RESOLVED * np.ptp(values)
         rough &= np.diff(edges) > FINEST * trip
         if not rough.any() or len(edges) + rough.sum() > MOST_PIECES:
             return mesh

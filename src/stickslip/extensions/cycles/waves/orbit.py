@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
-from stickslip.extensions.cycles.section import onsets
 from stickslip.extensions.cycles.waves.krylov import Operator, leading, solved
-from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource, kinks, mesh_of
-from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection, place_in
+from stickslip.extensions.cycles.waves.mesh import WaveMesh, kinks, mesh_of
+from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
@@ -29,9 +28,9 @@ from stickslip.problem import Problem
 from stickslip.problem.bodies import as_waves
 from stickslip.solution import Solution
 
-NUDGE, FINE_NUDGE = 1e-6, 5e-6
+SMALL_NUDGE, FINE_NUDGE = 1e-6, 5e-6
 """Sizes of disturbances (1, shares of the extent): to one side for Newton's iteration, to both for multipliers."""
-GRID = 24
+EVEN_PIECES = 24
 """Number of pieces of the mesh on which waves of a branch are compared (1)."""
 MOST_ITERATIONS, MOST_HALVINGS = 14, 5
 """Newton's iterations (1), and how often a step is shortened that leads away."""
@@ -41,10 +40,8 @@ SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
-MOST_MEETINGS, CLOSES = 16, 3e-2
-"""A run is compared with itself so many meetings with the section ago (1); it closes where it comes as close (1) as this."""
 MANY_MULTIPLIERS, LEAST_LARGE = 6, 0.5
-"""Most multipliers (1), and the size (1) from which on a multiplier is always exact."""
+"""Most multipliers (1), and the least size (1) of multipliers that are always exact."""
 
 
 @dataclass(frozen=True)
@@ -184,10 +181,10 @@ def grown(image: Image, section: WaveSection) -> Operator:
 
 
 def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
-    """Return the derivative of what a return misses, by differences from what it misses at the place itself."""
+    """Return the derivative of the miss of a return, by differences from the miss at the place itself."""
 
     def along(way: Floats) -> Floats:
-        step = NUDGE / np.abs(way).max()
+        step = SMALL_NUDGE / np.abs(way).max()
         at = image.start + step * way
         return np.asarray((image.of(at, section)[0] - at - missed) / step)
 
@@ -219,7 +216,7 @@ def with_sharp_kinks(section: WaveSection, now: WaveReturn, share: float) -> Wav
 
 def even_mesh(trip: float) -> WaveMesh:
     """Return the mesh of a round trip (s) on which waves are compared, whatever their kinks."""
-    return WaveMesh(np.linspace(0.0, trip, GRID + 1))
+    return WaveMesh(np.linspace(0.0, trip, EVEN_PIECES + 1))
 
 
 def coordinates(place: WavePlace) -> Floats:
@@ -278,35 +275,3 @@ def checked(orbit: WaveOrbit) -> WaveOrbit:
     if np.ptp(rates) <= STEADY_SHARE * now.history.problem.first_pull_rate:
         raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
     return orbit
-
-
-def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
-    """Return the cycle near the end of a run. Raises InputError if there is none."""
-    section = WaveSection(problem, len(onsets(history).time) > 2, rtol, _mean_rate(history) / problem.first_pull_rate)
-    met = section.met(history)
-    if len(met.time) < 2 or met.time[-1] < 2.0 * problem.round_trip_time:
-        raise InputError(
-            "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes its mean slip rate twice:"
-            " give a longer run (near), or another start"
-        )
-    every = _meetings(history, met.time)
-    end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
-    mesh = mesh_of(WaveSource(history, end), kinks(history, end, period, abs(as_waves(problem.body).front_reflection)))
-    return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
-
-
-def _mean_rate(history: History) -> float:
-    """Return the mean slip rate (m/s) in the last half of a run."""
-    begin, end = history.find(np.array([0.5, 1.0]) * history.duration, "left"), history.duration
-    slips = history.slipped(begin)
-    return float((slips[1] - slips[0]) / (0.5 * end))
-
-
-def _meetings(history: History, times: Floats) -> int:
-    """Return after how many meetings with the section the run comes back best, judged by its wave."""
-    phases = np.linspace(0.0, history.round_trip_time, 129, endpoint=False)
-    last = WaveSource(history, float(times[-1])).at(phases)
-    most = min(MOST_MEETINGS, int(np.sum(times > 1.001 * history.round_trip_time)) - 1)
-    missed = [np.abs(WaveSource(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
-    close = np.flatnonzero(np.array(missed) <= CLOSES * np.ptp(last))
-    return 1 + int(close[0] if len(close) else np.argmin(missed))

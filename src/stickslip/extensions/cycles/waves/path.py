@@ -17,7 +17,7 @@ from stickslip.extensions.cycles.waves.krylov import solved
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
     MOST_DIRECTIONS,
-    NUDGE,
+    SMALL_NUDGE,
     Image,
     WaveOrbit,
     checked,
@@ -113,11 +113,11 @@ class WavePath(Path):
         return float((self.together(place, value) - target) @ way)
 
     def _derivative(self, image: Image, value: float, way: Floats) -> Callable[[Floats], Floats]:
-        """Return the derivative of what a return misses, and of the distance from the plane, by start and parameter."""
+        """Return the derivative of the miss of a return, and of the distance from the plane, by start and parameter."""
         section = self.section(value)
         missed = image.of(image.start, section)[0] - image.start
-        ends = [image.of(image.start, self.section(value + sign * NUDGE * self.range))[0] for sign in (1.0, -1.0)]
-        by_value, grown = (ends[0] - ends[1]) / (2.0 * NUDGE), difference(image, section, missed)
+        ends = [image.of(image.start, self.section(value + sign * SMALL_NUDGE * self.range))[0] for sign in (1.0, -1.0)]
+        by_value, grown = (ends[0] - ends[1]) / (2.0 * SMALL_NUDGE), difference(image, section, missed)
 
         def along(change: Floats) -> Floats:
             here = grown(change[:-1]) if change[:-1].any() else np.zeros(len(missed))

@@ -18,7 +18,7 @@ from stickslip.problem.scenarios import Scenario
 from stickslip.run import CallOptions, ExactRun
 from stickslip.solution import Solution
 
-LONGER = 1.25
+LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
 PASSES = 20_000
 """Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
@@ -133,7 +133,7 @@ class WaveSection:
             if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
                 return run, code
 
-    def returned(self, place: WavePlace, guess: float, *, longer: float = LONGER) -> WaveReturn:
+    def returned(self, place: WavePlace, guess: float, *, longer: float = LONGER_THAN_GUESS) -> WaveReturn:
         """Return the run from a place to its return next to a `guess` of the time (s) that it takes.
 
         Raises InputError if the run meets no return within `longer` (1) times the guess.

@@ -1,0 +1,50 @@
+"""The cycle of a body with waves near the end of a run: where it is cut, and after how many meetings with the cut it closes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.engine import History
+from stickslip.extensions.cycles.section import onsets
+from stickslip.extensions.cycles.waves.mesh import WaveSource, kinks, mesh_of
+from stickslip.extensions.cycles.waves.orbit import WaveOrbit, closed
+from stickslip.extensions.cycles.waves.section import WaveSection, place_in
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem
+from stickslip.problem.bodies import as_waves
+
+MOST_MEETINGS, CLOSES = 16, 3e-2
+"""A run is compared with itself so many meetings with the section ago (1); it closes where it comes as close (1) as this."""
+
+
+def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
+    """Return the cycle near the end of a run. Raises InputError if there is none."""
+    section = WaveSection(problem, len(onsets(history).time) > 2, rtol, _mean_rate(history) / problem.first_pull_rate)
+    met = section.met(history)
+    if len(met.time) < 2 or met.time[-1] < 2.0 * problem.round_trip_time:
+        raise InputError(
+            "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes its mean slip rate twice:"
+            " give a longer run (near), or another start"
+        )
+    every = _meetings(history, met.time)
+    end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
+    mesh = mesh_of(WaveSource(history, end), kinks(history, end, period, abs(as_waves(problem.body).front_reflection)))
+    return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
+
+
+def _mean_rate(history: History) -> float:
+    """Return the mean slip rate (m/s) in the last half of a run."""
+    begin, end = history.find(np.array([0.5, 1.0]) * history.duration, "left"), history.duration
+    slips = history.slipped(begin)
+    return float((slips[1] - slips[0]) / (0.5 * end))
+
+
+def _meetings(history: History, times: Floats) -> int:
+    """Return after how many meetings with the section the run comes back best, judged by its wave."""
+    phases = np.linspace(0.0, history.round_trip_time, 129, endpoint=False)
+    last = WaveSource(history, float(times[-1])).at(phases)
+    most = min(MOST_MEETINGS, int(np.sum(times > 1.001 * history.round_trip_time)) - 1)
+    missed = [np.abs(WaveSource(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
+    close = np.flatnonzero(np.array(missed) <= CLOSES * np.ptp(last))
+    return 1 + int(close[0] if len(close) else np.argmin(missed))
