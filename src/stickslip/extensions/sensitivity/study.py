@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from stickslip.engine import SlipEvents
 from stickslip.extensions.sensitivity.differences import Differences, member_run
 from stickslip.extensions.sensitivity.outputs import (
-    WITHOUT_SLOPE,
     EVENT_NUMBERS,
+    WITHOUT_SLOPE,
     CurveAtTimes,
     NumberOfEvent,
     Output,
