@@ -1,4 +1,4 @@
-"""Sensitivities: derivatives of what a run gives with respect to the numbers of its problem, with their errors."""
+"""Sensitivities: derivatives of any output of a run with respect to the numbers of its problem, with their errors."""
 
 from __future__ import annotations
 

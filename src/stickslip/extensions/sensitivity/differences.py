@@ -128,7 +128,7 @@ class Differences:
     def _cuts_anew(self, parameter: Parameter[Problem], size: float) -> bool:
         """Return True if layers fit their cells differently with a value next to that of a number, of this size.
 
-        The derivative of what runs with these cells give is not that of the layers.
+        Runs follow the cells: a derivative by them is not that of the layers.
         """
         cells: Any = getattr(self.problem.body, "cells", None)
         for sign in (1.0, -1.0) if cells else ():

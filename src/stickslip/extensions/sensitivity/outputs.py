@@ -22,11 +22,11 @@ DRIVE_CURVES = ("drive_rate", "drive_traction")
 """What is measured at the driver of any body."""
 EVENT_ENERGIES = ("released", "work", "damped", "trapped", "heat")
 """Energies of a slip event."""
-COUNTED = ("pulses", "phase", "amplification", "start_row", "start_offset", "balance")
+WITHOUT_SLOPE = ("pulses", "phase", "amplification", "start_row", "start_offset", "balance")
 """Columns of events that have no derivative: whole numbers, rests of a division, and what is zero or follows another rule."""
 AT_BEGIN = ("start", "recurrence", "traction_before")
 """Columns of events that are known when an event begins, and do not change with what follows."""
-EVENT_NUMBERS = tuple(name for name in (*EVENT_COLUMNS, *EVENT_ENERGIES) if name not in COUNTED)
+EVENT_NUMBERS = tuple(name for name in (*EVENT_COLUMNS, *EVENT_ENERGIES) if name not in WITHOUT_SLOPE)
 """The numbers of an event."""
 
 

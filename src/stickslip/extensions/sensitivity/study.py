@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from stickslip.engine import SlipEvents
 from stickslip.extensions.sensitivity.differences import Differences, member_run
 from stickslip.extensions.sensitivity.outputs import (
-    COUNTED,
     EVENT_NUMBERS,
+    WITHOUT_SLOPE,
     CurveAtTimes,
     NumberOfEvent,
     Output,
@@ -165,7 +165,7 @@ def _output(run: Solution, of: str, at: ArrayLike | None, event: int | None, las
         return _number(run, of, event, lasts)
     if of in curves:
         raise InputError(f"sensitivity: of: '{of}' is no number of a slip event; {nearest(of, EVENT_NUMBERS)}, or leave event out")
-    if of in COUNTED:
+    if of in WITHOUT_SLOPE:
         raise InputError(f"sensitivity: of: '{of}' has no derivative, because it counts, or is what a division leaves")
     if of in (*STATE_NAMES, "surface_torque"):
         getattr(run, of)()  # which says why this run has none
