@@ -162,8 +162,7 @@ class _Following:
         start = path.at_value(self.ends[0], orbit.place, orbit.period)
         if start.way[-1] * (self.ends[1] - self.ends[0]) < 0.0:
             start = replace(start, way=-start.way)
-        if earlier:
-            path, start = self._gone_on(path, start, earlier)
+        path, start = self._gone_on(path, start, earlier) if earlier else (path, start)
         part: tuple[Path, PlaceOnBranch] | None = (path, start)
         for _ in range(MOST_PARTS):
             if part is None or self.doubled:
@@ -175,10 +174,9 @@ class _Following:
         """Take over earlier cycles but the last one, and return that with the way on."""
         *self.points, last = earlier
         self.number, self.doubled = last.part, last.doubled
-        for one in self.points:
-            if one.edge:
-                self.edges.append(edge_of(one, self.cycle, self.parameter))
-                self._note(path, self.edges[-1], one.doubled)
+        for one in [one for one in self.points if one.edge]:
+            self.edges.append(edge_of(one, self.cycle, self.parameter))
+            self._note(path, self.edges[-1], one.doubled)
         if last.at_onset != path.at_onset:
             extent = orbit_of(last, self.cycle, self.parameter).extent
             path = replace(path, at_onset=last.at_onset, scales=np.append(extent, self.span))
@@ -205,14 +203,8 @@ class _Following:
             raise InputError(f"follow: the branch has more than {MOST_POINTS} cycles: give fewer steps, or a nearer end (to)")
         orbit = place.orbit
         start = orbit.place if len(orbit.place) <= MOST_COORDINATES else np.zeros(0)
-        self.points.append(
-            PointOnBranch(
-                *(place.value, measures_of(orbit), orbit.multipliers, orbit.sticks, edge),
-                self.number,
-                self.doubled,
-                np.array(start),
-            )
-        )
+        numbers = place.value, measures_of(orbit), orbit.multipliers, orbit.sticks, edge
+        self.points.append(PointOnBranch(*numbers, self.number, self.doubled, np.array(start)))
         at = brief(place.value, self.parameter.unit)
         self.tell(f"{self.parameter.name} = {at}: period {brief(orbit.period, 's')}")
 
