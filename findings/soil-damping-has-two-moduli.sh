@@ -2,7 +2,7 @@
 # A damping ratio D means two things in programs for the response of soil. pyStrata 0.5.4 takes the modulus G (sqrt(1 - 4 D^2) + 2 i D), whose
 # size is G; PySeismoSoil 0.7.0 takes G (1 + 2 i D), whose size is G sqrt(1 + 4 D^2). At D = 0.1 a layer of 20 m with waves of 200 m/s on rigid
 # rock has its first peak at 2.485 Hz and 6.308 times the motion of the rock in the one, at 2.510 Hz and 6.435 times in the other, and both
-# agree with 1/|cos(w h/c)| for their own modulus; between the peaks they differ more. pyStrata's constant COMP_MODULUS_MODEL = "seed" makes it
+# agree with 1/|cos(w h/c)| for their own modulus; up to 10 Hz they differ by up to 6.7 %. pyStrata's constant COMP_MODULUS_MODEL = "seed" makes it
 # the other. Damping that does not depend on frequency is no differential equation: programs in time damp by mass and stiffness, and a damping
 # ratio is right there at one or two frequencies.
 #
@@ -20,7 +20,7 @@ import pystrata
 from PySeismoSoil.helper_site_response import linear_tf
 
 THICKNESS, SPEED, DENSITY, RATIO = 20.0, 200.0, 2000.0, 0.1
-frequency = 0.005 * np.arange(1, 2001)
+frequency = 0.005 * np.arange(1, 2000)
 
 
 def closed(factor: complex) -> np.ndarray:
@@ -54,7 +54,9 @@ other = found[6]
 assert np.allclose(found[0], frequency)
 for name, curve in (("pyStrata", default), ("PySeismoSoil", other)):
     print(f"{name}: first peak at {peak(curve)[0]} Hz, {peak(curve)[1]} times the rock")
-print(f"largest difference up to 10 Hz: {100 * np.max(np.abs(other / default - 1.0)):.1f} %")
+apart = 100.0 * np.max(np.abs(other / default - 1.0))
+print(f"largest difference up to 10 Hz: {apart:.1f} %")
+assert abs(apart - 6.7) < 0.1
 assert np.allclose(default, closed(np.sqrt(1.0 - 4.0 * RATIO**2) + 2j * RATIO), rtol=1e-6)
 assert np.allclose(other, closed(1.0 + 2j * RATIO), rtol=1e-6)
 assert np.allclose(by_pystrata("seed"), other, rtol=1e-6)
