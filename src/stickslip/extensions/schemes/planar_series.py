@@ -155,9 +155,9 @@ def station_series(station: str, scenario: Scenario) -> xr.Dataset:
 
 
 ASKS = {
-    "0km": "a fault in 2D: the middle of the nucleus, which slips at once; when it rests",
-    "8km": "a fault in 2D, off the nucleus: when the front arrives, its peak, how long slip lasts",
-    "16km": "a fault in 2D, close to a barrier: a fast front, and waves that the barrier sends back",
+    "0km": "a fault in 2D: slip in its nucleus, and its arrest",
+    "8km": "a fault in 2D: when a front comes, its peak, and the arrest",
+    "16km": "a fault in 2D, close to a barrier: a fast front",
 }
 """What each station asks of a program."""
 
