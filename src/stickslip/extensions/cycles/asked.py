@@ -30,6 +30,13 @@ class CycleKind(ABC):
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle of a problem is looked for, in words; empty if there is no reason."""
 
+    def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> FoundCycle | None:
+        """Return the cycle to which a run settles early; None if it takes long.
+
+        `times` (s) are that before the motion begins, and that of the first part of the run behind it.
+        """
+        return None
+
     @abstractmethod
     def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:
         """Return the cycle near the end of a run. Raises InputError if there is none."""
@@ -49,13 +56,6 @@ class WithoutCycles(CycleKind):
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle of a problem is looked for."""
         return f"cycles are found of rigid bodies on a spring, slabs and strings, and this is a {self.what}"
-
-    def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> FoundCycle | None:
-        """Return the cycle to which a run settles early; None if it takes long.
-
-        `times` (s) are that before the motion begins, and that of the first part of the run behind it.
-        """
-        return None
 
     def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:
         """Refuse. Raises InputError."""
