@@ -17,10 +17,12 @@ from stickslip.foundation.arrays import Floats
 
 NODES = 10
 """Points of Gauss and Legendre on each piece of the mesh (1): none is at a kink, which a disturbance moves."""
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(NODES)
-MESH_PLACES = 0.5 * (_POINTS + 1.0)
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(NODES)
+MESH_PLACES = 0.5 * (_GAUSS_POINTS + 1.0)
 """The points as places (1) on a piece."""
-TERMS_OF_VALUES = (np.arange(NODES) + 0.5)[:, None] * (np.polynomial.legendre.legvander(_POINTS, NODES - 1) * _WEIGHTS[:, None]).T
+TERMS_OF_VALUES = (np.arange(NODES) + 0.5)[:, None] * (
+    np.polynomial.legendre.legvander(_GAUSS_POINTS, NODES - 1) * _GAUSS_WEIGHTS[:, None]
+).T
 """From values at the points to the coefficients of a series of Legendre's polynomials, by the rule of Gauss and Legendre."""
 POWERS_OF_TERMS = np.array(
     [[(-1.0) ** (n + k) * math.comb(n, k) * math.comb(n + k, k) for n in range(NODES)] for k in range(NODES)]
