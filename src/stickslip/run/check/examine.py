@@ -241,7 +241,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""
     intervals = regimes_along_slip(problem)
-    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} {problem.unit_of('slip')}" for one in intervals]
+    unit = problem.unit_of("slip")
+    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} {unit}" for one in intervals]
     return f"{', '.join(texts)} of slip: the folds move as it slips"
 
 
@@ -256,12 +257,13 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     found += CHECK_KINDS[problem.body.structure].warnings(scenario, contact)
     found += warnings_of_ground(scenario)
+    rule = problem.rule
     if why := problem.why_not_run or folds_not_followed(problem):
         found.append(f"it cannot be run: {why}")
     moving = problem.friction.depends_on_slip and problem.friction.depends_on_rate
     moving = moving or (contact.resistance is not None and regime_when_pressed(problem) != "regular")
-    if contact.regime == "regular" and problem.rule != "perfect-delay" and not (moving and contact.resistance):
-        found.append(f"the selection rule {problem.rule} has no effect: the slip rate is unique")
+    if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):
+        found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
     return found
 
 
@@ -269,4 +271,5 @@ def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
     """Return a warning for a law, or a part of one, that joins noisy points exactly."""
     parts = law.parts.values() if isinstance(law, LawOfParts) else (law,)
     noises = [noise_in(*part.points) for part in parts if isinstance(part, PiecewiseLaw)]
-    return [noise.warning(f"they make {len(contact.folds)} folds" * bool(contact.folds)) for noise in noises if noise is not None]
+    folds = f"they make {len(contact.folds)} folds" if contact.folds else ""
+    return [noise.warning(folds) for noise in noises if noise is not None]
