@@ -41,3 +41,43 @@ def test_hysteresis_does_not_reach_over_an_edge_in_steady_sliding_however_its_gr
     assert with_stable_sliding(Interval(2.0, edge), [], problem_at) == []
     assert with_stable_sliding(Interval(edge, 8.5), [], problem_at) == [pytest.approx((hopf, 8.5), rel=1e-9)]
     assert with_stable_sliding(Interval(-20.0, -10.0), [], problem_at) == [], "a problem that is refused has no steady sliding"
+
+
+@pytest.mark.parametrize(("along", "to"), [("body.damping", 0.0), ("pull_rate", 1e-6)])
+def test_a_branch_ends_at_the_end_of_its_range_if_no_problem_is_beyond(along: str, to: float) -> None:
+    """No edge is there, and the last cycle is the one found alone, to 1e-9."""
+    start = ss.studies.cycle(brake(0.1))
+    branch = ss.studies.follow(start, along, to=to, steps=4)
+    alone = ss.studies.cycle(brake(0.1, 0.0) if to == 0.0 else brake(to))
+    assert branch.edges == ()
+    last = branch.points[-1]
+    assert last.value == to
+    assert last.measures.period == pytest.approx(alone.period, rel=1e-9)
+    assert last.measures.stick_share == pytest.approx(alone.stick_share, rel=1e-7)
+    assert last.stable is True
+
+
+def test_a_branch_without_rest_ends_at_the_end_of_its_range_if_no_problem_is_beyond() -> None:
+    """Under a law that falls and rises again a block swings around its pull rate; without damping it does so, too, to 1e-9."""
+    law = ss.friction.FromExpression("0.5 - 0.05*(v/v0 - 1) + 0.2*(v/v0 - 1)**3", {"v0": "1 m/s"})
+
+    def swinging(damping: float) -> ss.Problem:
+        block = ss.SpringBlock(1.0, 1e3, 10.0, damping=damping)
+        return ss.Problem(block, law, pull_rate=1.0, initial_rate=1.0, initial_load=5.0 + damping + 10.0)
+
+    branch = ss.studies.follow(ss.studies.cycle(swinging(0.1)), "body.damping", to=0.0, steps=2)
+    assert branch.edges == ()
+    assert branch.points[-1].value == 0.0
+    assert branch.points[-1].measures.period == pytest.approx(ss.studies.cycle(swinging(0.0)).period, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("along", "to", "said"),
+    [
+        ("pull_rate", 0.0, "follow: to: pull_rate must be above 0, got 0 m/s"),
+        ("pull_rate", -0.1, "follow: to: pull_rate must be above 0, got -0.1 m/s"),
+    ],
+)
+def test_a_branch_refuses_an_end_where_there_are_no_cycles(along: str, to: float, said: str) -> None:
+    with pytest.raises(ss.InputError, match=said):
+        ss.studies.follow(ss.studies.cycle(brake(0.1)), along, to=to)
