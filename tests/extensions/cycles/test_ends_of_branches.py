@@ -81,3 +81,45 @@ def test_a_branch_without_rest_ends_at_the_end_of_its_range_if_no_problem_is_bey
 def test_a_branch_refuses_an_end_where_there_are_no_cycles(along: str, to: float, said: str) -> None:
     with pytest.raises(ss.InputError, match=said):
         ss.studies.follow(ss.studies.cycle(brake(0.1)), along, to=to)
+
+
+def heavy(pull: float) -> ss.Problem:
+    """Return a block of 4 kg under a power law, whose unstable cycles have multipliers from 3 on."""
+    block = ss.SpringBlock(4.073857629496691, 412.93489030193155, 18.74944175372767, damping=5.728820567164297)
+    law = ss.friction.PowerStribeck(0.5857404140264425, 0.2469319223872843, 0.04079406780257858, 2.0)
+    return ss.Problem(block, law, pull_rate=pull, initial_load=0.0)
+
+
+def test_a_branch_goes_on_without_rest_from_the_loss_of_stick_to_the_hopf_point() -> None:
+    """The Hopf point is 0.05 ln(40/3) in closed form, to 1e-9; values and multipliers fall all the way from the loss of stick."""
+    branch = ss.studies.follow(ss.studies.cycle(brake(0.02, 3.0)), to=0.5, steps=5)
+    assert [edge.name for edge in branch.edges] == ["loss of stick", "steady sliding"]
+    assert branch.edges[1].value == pytest.approx(0.05 * math.log(40.0 / 3.0), rel=1e-9)
+    back = [one for one in branch.points if not one.sticks and not one.edge]
+    assert len(back) > 5
+    for numbers in ([one.value for one in back], [one.multipliers[0].real for one in back]):
+        assert numbers == sorted(numbers, reverse=True)
+
+
+@pytest.mark.parametrize("pull", [0.3, 0.33])
+def test_no_edge_is_told_where_runs_beside_a_cycle_rest(pull: float) -> None:
+    """Beyond the loss of stick the branch comes back to where it began, and its multipliers are far from +1."""
+    branch = ss.studies.follow(ss.studies.cycle(heavy(pull)), to=pull + 0.5963, steps=10)
+    assert [edge.name for edge in branch.edges] == ["loss of stick"]
+    back = [one for one in branch.points if not one.sticks]
+    assert back[-1].value == pytest.approx(pull, rel=1e-12)
+    assert min(one.multipliers[0].real for one in back) > 3.0
+
+
+def test_every_cycle_of_a_branch_has_one_rest_however_its_period_falls() -> None:
+    """Each period is that of one stick-slip, as found alone, to 1e-9, where steps make it three times shorter."""
+    block = ss.SpringBlock(4.0, 400.0, 20.0, damping=6.0)
+    law = ss.friction.ExponentialStribeck(0.6, 0.25, 0.04)
+
+    def at(pull: float) -> ss.Problem:
+        return ss.Problem(block, law, pull_rate=pull, initial_load=0.0)
+
+    branch = ss.studies.follow(ss.studies.cycle(at(0.02)), to=0.3, steps=3)
+    assert branch.edges == ()
+    for one in branch.points[1::3]:
+        assert one.measures.period == pytest.approx(ss.studies.cycle(at(one.value)).period, rel=1e-9)
