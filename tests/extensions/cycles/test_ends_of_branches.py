@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip.contact import steady_slidings
+from stickslip.extensions.cycles.edges import edges_between
 from stickslip.extensions.cycles.hysteresis import Interval, with_stable_sliding
+from stickslip.extensions.cycles.path import PlaceOnBranch
 
 
 def brake(pull: float, damping: float = 2.0) -> ss.Problem:
@@ -109,6 +113,31 @@ def test_no_edge_is_told_where_runs_beside_a_cycle_rest(pull: float) -> None:
     back = [one for one in branch.points if not one.sticks]
     assert back[-1].value == pytest.approx(pull, rel=1e-12)
     assert min(one.multipliers[0].real for one in back) > 3.0
+
+
+class Turning:
+    """Stands for a path that turns at a third of a step: through a fold or, if it jumps, at once."""
+
+    same_step = 1e-13
+
+    def __init__(self, cycle: ss.studies.LimitCycle, *, jumps: bool) -> None:
+        self.cycle, self.jumps = cycle, jumps
+
+    def step(self, begin: Any, length: float) -> PlaceOnBranch:
+        way = math.copysign(0.5, 1.0 / 3.0 - length) if self.jumps else 1.0 / 3.0 - length
+        return PlaceOnBranch(length, self.cycle.orbit, np.array([0.8, way]))
+
+
+def test_a_direction_that_jumps_is_no_fold() -> None:
+    """A fold is found at a third of the step to rounding; a jump there is none."""
+    law = ss.friction.FromExpression("0.5 - 0.05*(v/v0 - 1) + 0.2*(v/v0 - 1)**3", {"v0": "1 m/s"})
+    block = ss.SpringBlock(1.0, 1e3, 10.0)
+    cycle = ss.studies.cycle(ss.Problem(block, law, pull_rate=1.0, initial_rate=1.0, initial_load=15.0))
+    for jumps in (False, True):
+        path: Any = Turning(cycle, jumps=jumps)
+        found = edges_between(path, path.step(None, 0.0), path.step(None, 1.0), 1.0)
+        assert [edge.name for edge in found] == ([] if jumps else ["fold of cycles"])
+        assert [edge.value for edge in found] == pytest.approx([] if jumps else [1.0 / 3.0], rel=1e-12)
 
 
 def test_every_cycle_of_a_branch_has_one_rest_however_its_period_falls() -> None:
