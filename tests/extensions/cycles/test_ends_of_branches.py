@@ -152,3 +152,14 @@ def test_every_cycle_of_a_branch_has_one_rest_however_its_period_falls() -> None
     assert branch.edges == ()
     for one in branch.points[1::3]:
         assert one.measures.period == pytest.approx(ss.studies.cycle(at(one.value)).period, rel=1e-9)
+
+
+def test_a_cycle_is_found_once_though_a_run_comes_to_it_from_two_sides_in_turn() -> None:
+    """The multiplier is -0.83: the cycle is that at the end of a long run, to 1e-9, and not twice its period."""
+    law = ss.friction.TwoStateRateAndState(
+        reference=0.6, a=0.01, b=0.01, distance=1e-5, second_b=0.0084, second_distance=1e-5 / 0.048, evolution="slip"
+    )
+    problem = ss.Problem(ss.SpringBlock(100.0, 0.87 * 802.799465, 10.0), law, pull_rate=1e-6)
+    early, late = ss.studies.cycle(problem), ss.studies.cycle(problem, near=15000.0)
+    assert early.period == pytest.approx(late.period, rel=1e-9)
+    assert early.multipliers[0].real == pytest.approx(-0.8318, abs=1e-3)
