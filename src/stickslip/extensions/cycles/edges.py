@@ -38,6 +38,9 @@ SMALLEST_BISECTED = 1e-12
 WIDER, MOST_WIDER = 4.0, 12
 """By what factor, and how often, the surroundings of an end in steady sliding are widened (1)."""
 
+JUMPS = 1e-2
+"""Where the sign of a test changes with more than this share (1) of its size at the ends of the step, it is no edge."""
+
 
 class CycleEdge(NamedTuple):
     """An edge of a branch of cycles: its name, the value (SI) of the parameter there, and the cycle next to it."""
@@ -83,6 +86,8 @@ def edges_between(path: Path, begin: PlaceOnBranch, end: PlaceOnBranch, length: 
         except NoCycleError:
             continue
         at = seen.get(where) or path.step(begin, where)
+        if abs(test(at)) > JUMPS * max(abs(test(begin)), abs(test(end))):  # its sign jumps, and nothing is 0
+            continue
         found.append((where, CycleEdge(name, at.value, at.orbit)))
     return [edge for _, edge in sorted(found, key=lambda one: one[0])]
 

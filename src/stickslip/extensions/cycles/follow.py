@@ -24,13 +24,13 @@ from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.meeting import with_rest, without_rest
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
+from stickslip.extensions.cycles.reaching import STRAIGHT, at_end_of_range, between, past_end, range_of
 from stickslip.extensions.cycles.resuming import check_can_be_kept, edge_of, orbit_of, place_to_go_on, points_to_go_on
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
-from stickslip.problem.scenarios import ParameterPath, find_parameter
+from stickslip.problem.scenarios import ParameterPath
 from stickslip.run import TextProgress, telling
 
 STEPS, MOST_POINTS = 40, 200
@@ -39,8 +39,8 @@ LONGER, SHORTER, SHORTEST = 1.5, 0.5, 1e-4
 """By what factors steps grow and shrink, and the shortest (1, of the range and of the extent of the first cycle)."""
 SHARE_OF_EXTENT = 0.25
 """A step moves the start of a cycle by no more than this share (1) of its extent."""
-STRAIGHT, SAME_PERIOD = 0.8, 0.3
-"""A step is too long if the branch turns by more than this cosine (1), or the period changes by more than this share."""
+SAME_PERIOD = 0.3
+"""A step is too long if the period changes by more than this share (1)."""
 VANISHING = 2e-3
 """A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding."""
 MOST_COORDINATES = 8
@@ -110,13 +110,7 @@ def follow(
     """
     if not isinstance(cycle, LimitCycle):
         raise InputError(f"follow: needs a cycle, as ss.studies.cycle finds it, got {type(cycle).__name__}")
-    parameter = find_parameter(cycle.scenario, along, "follow")
-    if not isinstance(parameter.declared, Quantity) or parameter.name.startswith(("initial.", "run.")):
-        raise InputError(f"follow: {parameter.name} is no number on which a cycle depends: give one of the body, law or loading")
-    begin = float(cycle.scenario.problem.parameters[parameter.name].value)
-    end = float(parameter.declared.check("follow", "to", to))
-    if end == begin:
-        raise InputError(f"follow: to: {parameter.name} is {brief(begin, parameter.unit)} already: give another value")
+    parameter, begin, end = range_of(cycle, along, to)
     if steps < 1:
         raise InputError(f"follow: steps must be 1 or more, got {steps}")
     check_can_be_kept(cycle, double=double, resume=resume is not None)
@@ -216,21 +210,28 @@ class _Following:
         """Follow a part of the branch; return where the next one begins, or None at its end."""
         self._add(now)
         length, amplitudes = 1.0 / self.steps, [self.points[-1].measures.amplitude]
-        values, low, high = [now.value], min(self.ends), max(self.ends)
+        values = [now.value]
         while True:
             step = min(length, path.longest_step(now, SHARE_OF_EXTENT))
-            new = self._stepped(path, now, step)
+            shortest = SHORTER * step < SHORTEST * min(1.0, path.longest_step(now, 1.0))
+            new = self._stepped(path, now, step, shortest=shortest)
             if new is None:
+                last = at_end_of_range(path, now, step, self.ends)
+                if last is not None:
+                    self._add_last(path, now, last)
+                    return None
+                if shortest:
+                    return self._at_end(path, now, values, amplitudes)
                 length = SHORTER * step
-                if length >= SHORTEST * min(1.0, path.longest_step(now, 1.0)):
-                    continue
-                return self._at_end(path, now, values, amplitudes)
+                continue
             halves = end_of_doubling(path, now, new)
-            if halves is not None and low <= halves.value <= high:
+            if halves is not None and past_end(halves.value, self.ends) is None:
                 self._edge(halves)
                 return None
-            if not low <= new.value <= high:
-                self._to_the_end(path, now, new)
+            if past_end(new.value, self.ends) is not None:
+                last = between(path, now, new, self.ends)
+                if last is not None:
+                    self._add_last(path, now, last)
                 return None
             for edge in edges_between(path, now, new, step):
                 self._edge(edge)
@@ -242,28 +243,21 @@ class _Following:
             if amplitudes[-1] < VANISHING * now.orbit.section.problem.first_pull_rate and amplitudes[-1] < amplitudes[-2]:
                 return self._at_end(path, now, values, amplitudes)
 
-    def _stepped(self, path: Path, now: PlaceOnBranch, step: float) -> PlaceOnBranch | None:
-        """Return the next cycle; None if the step is too long."""
+    def _stepped(self, path: Path, now: PlaceOnBranch, step: float, *, shortest: bool) -> PlaceOnBranch | None:
+        """Return the next cycle; None if the step is too long. The shortest may change the period of a cycle that rests."""
         try:
             new = path.step(now, step)
         except NoCycleError:
             return None
-        same = abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
+        same = (shortest and path.at_onset) or abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
         straight = abs(float(new.way @ now.way)) >= STRAIGHT
         if not (same and straight) or new.orbit.sticks != now.orbit.sticks:
             return None
         return new if new.way @ now.way > 0.0 else replace(new, way=-new.way)
 
-    def _to_the_end(self, path: Path, now: PlaceOnBranch, new: PlaceOnBranch) -> None:
-        """Add the cycle at the end of the range that a step has passed, and the edges before it."""
-        value = min(max(new.value, min(self.ends)), max(self.ends))
-        share = (value - now.value) / (new.value - now.value)
-        guess = now.orbit.place + share * (new.orbit.place - now.orbit.place)
-        try:
-            last = path.at_value(value, guess, now.orbit.period, now.way)
-        except NoCycleError:
-            return
-        length = float(np.linalg.norm(path.together(last.orbit.place, value) - path.together(now.orbit.place, now.value)))
+    def _add_last(self, path: Path, now: PlaceOnBranch, last: PlaceOnBranch) -> None:
+        """Add the cycle at the end of the range, and the edges before it."""
+        length = float(np.linalg.norm(path.together(last.orbit.place, last.value) - path.together(now.orbit.place, now.value)))
         for edge in edges_between(path, now, last, length):
             self._edge(edge)
             self._note(path, edge, self.doubled)
@@ -279,7 +273,8 @@ class _Following:
             return None
         if path.at_onset:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span
-            edge, last = loss_of_stick(path, now, float(beyond))
+            end = past_end(float(beyond), self.ends)
+            edge, last = loss_of_stick(path, now, float(beyond) if end is None else end)
             self._edge(edge)
             return without_rest(path, edge, last)
         small = amplitudes[-1] < 0.05 * now.orbit.section.problem.first_pull_rate

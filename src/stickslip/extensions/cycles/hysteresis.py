@@ -12,6 +12,13 @@ from stickslip.contact import steady_slidings
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
 
+BETWEEN = (0.2, 0.5, 0.8)
+"""Where (1, shares of the distance) between two cycles of a branch the stability of steady sliding is asked."""
+SLIVER = 1e-9
+"""A part of an interval that is narrower than this share (1) of its value is rounding beside an edge."""
+UNSTABLE = 1.0
+"""What counts as the growth (1/s) where there is no steady sliding."""
+
 
 class Placed(Protocol):
     """A cycle on a branch."""
@@ -64,14 +71,20 @@ def with_stable_sliding(among: Interval, values: Sequence[float], problem_at: Ca
     """Return the parts of an interval where steady sliding is stable; `values` in it tell where to look for a change."""
 
     def growth(value: float) -> float:
-        return steady_slidings(problem_at(value)).slidings[-1].growth
+        try:
+            return steady_slidings(problem_at(value)).slidings[-1].growth
+        except (InputError, IndexError):  # no steady sliding there
+            return UNSTABLE
 
-    try:
-        places = sorted({among.low, among.high, *(one for one in values if among.low < one < among.high)})
-        grown = [growth(one) for one in places]
-        changes = [ends for ends, sizes in zip(pairwise(places), pairwise(grown), strict=True) if sizes[0] * sizes[1] < 0.0]
-        borders = [among.low, *(float(brentq(growth, *ends, xtol=1e-14 * abs(ends[1]), rtol=1e-14)) for ends in changes)]
-        borders.append(among.high)
-        return [Interval(*one) for one in pairwise(borders) if one[0] < one[1] and growth(0.5 * (one[0] + one[1])) < 0.0]
-    except (InputError, IndexError):  # no steady sliding there
-        return []
+    # At an edge in steady sliding, which is among the values, the growth is 0 or rounding: its signs are asked between them.
+    places = sorted({among.low, among.high, *(one for one in values if among.low < one < among.high)})
+    between = [low + share * (high - low) for low, high in pairwise(places) for share in BETWEEN]
+    seen = [(one, grown) for one in [among.low, *between, among.high] if (grown := growth(one)) != 0.0]
+    borders, stable = [among.low], [grown < 0.0 for _, grown in seen[:1]]
+    for (low, before), (high, after) in pairwise(seen):
+        if before * after < 0.0:
+            borders.append(float(brentq(growth, low, high, xtol=1e-14 * max(abs(low), abs(high)), rtol=1e-14)))
+            stable.append(after < 0.0)
+    borders.append(among.high)
+    parts = [Interval(*one) for one, kept in zip(pairwise(borders), stable, strict=False) if kept]
+    return joined([one for one in parts if one.high - one.low > SLIVER * max(abs(one.low), abs(one.high))])

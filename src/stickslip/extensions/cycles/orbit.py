@@ -30,6 +30,8 @@ MOST_MEETINGS = 16
 """Largest number of meetings with the section in one period (1) that is looked for."""
 CLOSES = 1e-2
 """A run that comes back this close (1, share of its extent) is taken to close there."""
+SAME_PLACE = 1e-6
+"""A cycle is back where it began if it misses that by no more than this share (1) of its extent."""
 INSTANT = 1e-6
 """A rest shorter than this share (1) of the period is an instant."""
 STEADY_SHARE = 1e-9
@@ -132,9 +134,22 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
         new = _share(tried, extent)
         if new <= CLOSED_SHARE or (share <= GOOD_ENOUGH and new >= 0.5 * share):
             best = tried if new < share else now
-            return _checked(Orbit(best, extent_of(best.history, section.at_onset, best.piece), n + 2, change))
+            found = _checked(Orbit(best, extent_of(best.history, section.at_onset, best.piece), n + 2, change))
+            once = _first_time_round(found)
+            return found if once is None else closed(section, found.place, once)
         now, share = tried, new
     raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
+
+
+def _first_time_round(orbit: Orbit) -> float | None:
+    """Return the period (s) of a cycle that has been found as several of its periods; None if it is found as one.
+
+    A run that comes to a cycle from two sides in turn is closer to itself after two periods than after one.
+    """
+    met = crossings(orbit.closed.history, orbit.section.at_onset)
+    away = np.abs(places_of(orbit.closed.history, met) - orbit.place[:, None]) / orbit.extent[:, None]
+    earlier = met.time[(away.max(axis=0) <= SAME_PLACE) & (met.time < (1.0 - CLOSES) * orbit.period)]
+    return float(earlier[0]) if len(earlier) else None
 
 
 def _step(now: Return) -> Floats:

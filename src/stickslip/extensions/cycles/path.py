@@ -10,11 +10,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from stickslip.extensions.cycles.find_cycle import check_can_be_followed, time_of_cycle
 from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.orbit import Orbit, extent_of
 from stickslip.extensions.cycles.section import Return, Section
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem import Problem
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
 NEWTON_ROUNDS = 12
@@ -23,6 +25,8 @@ CLOSED, STILL_CLOSED = 1e-11, 1e-8
 """A cycle closes to this share of its extent (1); where rounding forbids that, to the second."""
 NUDGE = 1e-6
 """The parameter is moved by this share (1) of its range to see how the return changes."""
+NUDGES, NUDGE_SHORTER = 3, 0.05
+"""How often it is moved less if the runs on both sides are of another kind, each time by this factor (1)."""
 TRIES = 2
 """How often a run to a return may be doubled (1)."""
 
@@ -56,10 +60,15 @@ class Path:
     same_step: float = 1e-13
     """An edge within a step is found to this share of the step (1)."""
 
+    def problem_at(self, value: float) -> Problem:
+        """Return the problem with a value (SI) of the parameter. Raises InputError if there are no cycles of it."""
+        problem = self.scenario.problem.parameters[self.parameter.name].put(value)
+        check_can_be_followed(problem, "follow")
+        return problem
+
     def section(self, value: float) -> Section:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
-        problem = self.scenario.problem.parameters[self.parameter.name].put(value)
-        return Section(problem, self.at_onset, self.rtol)
+        return Section(self.problem_at(value), self.at_onset, self.rtol)
 
     @property
     def range(self) -> float:
@@ -104,7 +113,10 @@ class Path:
         value, place = float(at[-1] * self.range), at[:-1] * self.scales[:-1]
         try:
             with np.errstate(over="ignore"):  # far from a cycle a state may overflow, which the problem refuses
-                now = self.section(value).returned(place, guess, TRIES)
+                section = self.section(value)
+                # The first return to an onset is the period, however much longer than that of the cycle before.
+                lasts = max(guess, time_of_cycle(section.problem)) if self.at_onset else guess
+                now = section.returned(place, lasts, TRIES)
         except InputError as error:
             raise NoCycleError(str(error)) from None
         if not len(place):
@@ -114,16 +126,31 @@ class Path:
         by_place = (now.slopes(exactly=False) - np.eye(len(place))) * self.scales[:-1] / self.scales[:-1, None]
         if known.size:
             return now, np.column_stack([by_place, known[:, -1]])
-        return now, np.column_stack([by_place, self._by_value(place, value, now.time)])
+        return now, np.column_stack([by_place, self._by_value(now, place, value)])
 
-    def _by_value(self, place: Floats, value: float, guess: float) -> Floats:
-        """Return how what a return misses changes with the parameter, over the scales, by a central difference."""
-        step = NUDGE * self.range
+    def _by_value(self, now: Return, place: Floats, value: float) -> Floats:
+        """Return how what a return misses changes with the parameter, over the scales, by a difference of runs of one kind.
+
+        Next to where stick is lost the run on one side rests, and beyond the end of a range the problem refuses its value: the
+        difference is then one of the other side alone. Raises NoCycleError if there is none.
+        """
+        nudge = NUDGE
+        for _ in range(NUDGES):
+            ends = [self._nudged(now, place, value + sign * nudge * self.range) for sign in (1.0, -1.0)]
+            after, before = (now.end if one is None else one for one in ends)
+            if any(one is not None for one in ends):
+                width = nudge * sum(one is not None for one in ends)
+                return np.asarray((after - before) / width / self.scales[:-1])
+            nudge *= NUDGE_SHORTER
+        raise NoCycleError("follow: no run beside this one is of its kind")
+
+    def _nudged(self, now: Return, place: Floats, value: float) -> Floats | None:
+        """Return the end of a run at a value next to another; None if it does not return, or rests as that does not."""
         try:
-            ends = [self.section(value + sign * step).returned(place, guess, TRIES).end for sign in (1.0, -1.0)]
-        except InputError as error:
-            raise NoCycleError(str(error)) from None
-        return np.asarray((ends[0] - ends[1]) / (2.0 * NUDGE) / self.scales[:-1])
+            found = self.section(value).returned(place, now.time, TRIES)
+        except InputError:
+            return None
+        return found.end if found.sticks == now.sticks else None
 
     def at(self, target: Floats, way: Floats, guess: float) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError."""

@@ -105,8 +105,10 @@ class Section:
         for _ in range(tries):
             run = uninterrupted(simulate(problem, lasts, self.rtol))
             met = crossings(run.history, self.at_onset)
-            nearest = int(np.abs(met.time - guess).argmin()) if len(met.time) else 0
-            if len(met.time) and abs(met.time[nearest] - guess) <= lasts - guess:  # what lies beyond the run is farther away
+            # At an onset all is as at the start, so that the first return is the period. Elsewhere it is the one next to the guess,
+            # if none beyond the run may be nearer.
+            nearest = int(np.abs(met.time - guess).argmin()) if len(met.time) and not self.at_onset else 0
+            if len(met.time) and (self.at_onset or abs(met.time[nearest] - guess) <= lasts - guess):
                 piece, xi, time = int(met.piece[nearest]), float(met.place[nearest]), float(met.time[nearest])
                 end = coordinates(values_at(run.history, Positions.inside(piece, xi)), self.at_onset)[:, 0]
                 return Return(place, end, time, run.history, piece, xi, self)

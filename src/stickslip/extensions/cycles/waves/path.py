@@ -58,8 +58,7 @@ class WavePath(Path):
 
     def section(self, value: float) -> Any:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
-        problem = self.scenario.problem.parameters[self.parameter.name].put(value)
-        return WaveSection(problem, self.at_onset, self.rtol, self.level)
+        return WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
 
     def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.

@@ -1,0 +1,69 @@
+"""The end of the range of a branch: which values cycles are followed to, and the cycle at the last one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from stickslip.extensions.cycles.find_cycle import check_can_be_followed
+from stickslip.extensions.cycles.limit_cycle import LimitCycle
+from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
+from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.show import brief
+from stickslip.problem.scenarios import ParameterPath, find_parameter
+
+STRAIGHT = 0.8
+"""A step is too long if the branch turns by more than this cosine (1)."""
+
+
+def range_of(cycle: LimitCycle, along: str, to: float | str | WithUnit) -> tuple[ParameterPath, float, float]:
+    """Return a parameter of the problem of a cycle, its value (SI) there, and the value to go to.
+
+    Raises InputError if it is none on which a cycle depends, or if cycles are not found of the problem at the end.
+    """
+    parameter = find_parameter(cycle.scenario, along, "follow")
+    if not isinstance(parameter.declared, Quantity) or parameter.name.startswith(("initial.", "run.")):
+        raise InputError(f"follow: {parameter.name} is no number on which a cycle depends: give one of the body, law or loading")
+    begin = float(cycle.scenario.problem.parameters[parameter.name].value)
+    end = float(parameter.declared.check("follow", "to", to))
+    if end == begin:
+        raise InputError(f"follow: to: {parameter.name} is {brief(begin, parameter.unit)} already: give another value")
+    try:
+        at_end = cycle.scenario.problem.parameters[parameter.name].put(end)
+    except InputError as error:
+        raise InputError(f"follow: to: {error}") from None
+    check_can_be_followed(at_end, "follow: to")
+    return parameter, begin, end
+
+
+def past_end(value: float, ends: Sequence[float]) -> float | None:
+    """Return the end of a range that a value (SI) lies beyond; None if it lies inside."""
+    inside = min(max(value, min(ends)), max(ends))
+    return None if inside == value else inside
+
+
+def at_end_of_range(path: Path, now: PlaceOnBranch, step: float, ends: Sequence[float]) -> PlaceOnBranch | None:
+    """Return the cycle at the end of the range if a step leads beyond it, where a problem may refuse its values; None: no cycle."""
+    length = step * now.way[-1] * path.range
+    end = past_end(now.value + length, ends)
+    if end is None or end == now.value:
+        return None
+    share = (end - now.value) / length
+    guess = now.orbit.place + share * step * now.way[:-1] * path.scales[:-1]
+    try:
+        last = path.at_value(end, guess, now.orbit.period, now.way)
+    except NoCycleError:
+        return None
+    return last if last.orbit.sticks == now.orbit.sticks and last.way @ now.way >= STRAIGHT else None
+
+
+def between(path: Path, now: PlaceOnBranch, new: PlaceOnBranch, ends: Sequence[float]) -> PlaceOnBranch | None:
+    """Return the cycle at the end of the range that a step has passed; None if none is found."""
+    value = min(max(new.value, min(ends)), max(ends))
+    share = (value - now.value) / (new.value - now.value)
+    guess = now.orbit.place + share * (new.orbit.place - now.orbit.place)
+    try:
+        return path.at_value(value, guess, now.orbit.period, now.way)
+    except NoCycleError:
+        return None
