@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.exponent import MeasuredGrowth, along
+from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, along
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
@@ -58,7 +58,17 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
     each_trip = brief(math.exp(float(growth[-1]) * trip / (duration - skip)), "", 4)
     trips = brief((duration - skip) / trip, "", 6)
     how = f"the mean over phases and {trips} round trips (rtol {rtol:g}); each multiplies a disturbance by {each_trip}"
-    return along(edges, growth, how, events=int((start >= skip).sum()), known=predictability(run).error)
+    sizes = ranges_of_rate(history, skip, duration)
+    return along(edges, growth, sizes, how, events=int((start >= skip).sum()), known=predictability(run).error)
+
+
+def ranges_of_rate(history: History, begin: float, end: float) -> Floats:
+    """Return how far the slip rate goes (m/s) in each of ERROR_BATCHES equal parts of a run, without those where it is steady."""
+    count = len(history)
+    rates = history.rate(Positions.inside(np.repeat(np.arange(count), 3), np.tile([0.0, 0.5, 1.0], count))).reshape(count, 3)
+    part = np.floor((history.start - begin) / (end - begin) * ERROR_BATCHES).astype(np.int64)
+    found = np.array([np.ptp(rates[part == n]) if (part == n).any() else 0.0 for n in range(ERROR_BATCHES)])
+    return found[found > 0.0]
 
 
 def growth_on_pieces(history: History) -> Floats:
