@@ -13,6 +13,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.signal import lfilter
 
 import stickslip as ss
+from stickslip.extensions.cycles import exponent
 from stickslip.extensions.cycles.exponent import drift_of, error_of_mean
 from stickslip.extensions.cycles.growth_of_echoes import growth_on_pieces
 from tests.command_line import Command
@@ -110,8 +111,23 @@ def test_a_motion_that_still_grows_towards_its_cycle_is_not_called_chaotic() -> 
     assert late.exponent == pytest.approx(fades, rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("problem", "cure"),
+    [
+        (slab(7e7, pull_rate=2.0), "a shorter duration, or several such runs from other initial loads, and their mean"),
+        (rate_and_state(), "to leave out less at the start (a shorter skip), or a shorter duration"),
+    ],
+)
+def test_a_full_history_is_refused_with_what_helps_here(problem: ss.Problem, cure: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exponent, "MAX_PIECES", 100)
+    with pytest.raises(ss.InputError) as refused:
+        ss.studies.lyapunov(problem, "1 hour")
+    assert "its history reached the limit of 100 pieces at" in str(refused.value)
+    assert str(refused.value).endswith(f"what helps: {cure}")
+
+
 def test_a_drift_is_told_from_chance() -> None:
-    """Sizes that grow e times in all, with noise of a tenth and none; and noise without a drift, which passes for one once in 100."""
+    """Sizes that grow e times in all, with noise of a tenth and none; and noise without a drift, taken for one once in 100."""
     draws = np.random.default_rng(5)
     for count in (8, 400):
         rise = np.linspace(-0.5, 0.5, count)

@@ -12,8 +12,13 @@ import numpy as np
 import pandas as pd
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, number
-from stickslip.run import Study
+from stickslip.problem import TOO_MANY, Problem
+from stickslip.run import Study, uninterrupted
+from stickslip.run.simulate import simulate
+from stickslip.run.study import MAX_PIECES
+from stickslip.solution import Solution
 
 LOST_SHARE = 0.1
 """A disturbance of this share (1) of the motion changes an event into another one: it ends the horizon."""
@@ -82,6 +87,17 @@ def drift_of(sizes: Floats) -> float:
     left = left - drift * place
     error = math.sqrt(float(left @ left / (place @ place)) / (len(means) - 2.0))
     return drift if abs(drift) > max(math.log1p(DRIFTED), DRIFT_ERRORS * error) else 0.0
+
+
+def whole_run(problem: Problem, lasts: float, rtol: float, cures: str) -> Solution:
+    """Return a run of a problem that has lasted so long (s); `cures` say what helps if its history is full. Raises InputError."""
+    run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
+    if run.status.ok:
+        return run
+    why = str(run.status)
+    if run.status.name == TOO_MANY:
+        why = f"its history reached the limit of {MAX_PIECES} pieces at {brief(run.duration, 's', 4)}; what helps: {cures}"
+    raise InputError(f"lyapunov: the run did not reach {brief(lasts, 's')}: {why}")
 
 
 def error_of_mean(growth: Floats, lasts: Floats, rate: float) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 from stickslip.contact import steady_slidings
 from stickslip.engine import History, Positions
 from stickslip.engine.input import SHARE_OF_TOLERANCE
-from stickslip.extensions.cycles.exponent import MeasuredGrowth, along
+from stickslip.extensions.cycles.exponent import MeasuredGrowth, along, whole_run
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
 from stickslip.extensions.cycles.orbit import extent_of
 from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
@@ -27,9 +27,7 @@ from stickslip.friction.contract import one_argument
 from stickslip.friction.formula import value_and_slopes
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_on_spring
-from stickslip.run import TextProgress, uninterrupted
-from stickslip.run.simulate import simulate
-from stickslip.run.study import MAX_PIECES
+from stickslip.run import TextProgress
 
 STEADY_SHARE = 1e-6
 """A run whose slip rate varies by less than this share (1) of the pull rate at its end has come to steady sliding."""
@@ -62,9 +60,7 @@ def _begun(problem: Problem, skip: float, duration: float, rtol: float) -> Histo
     """Return a run up to `skip` (s), or longer if the contact passes the pull rate fewer than two times by then."""
     lasts = max(skip, 1e-3 * duration)
     while True:
-        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
-        if not run.status.ok:
-            raise InputError(f"lyapunov: the run did not reach {brief(lasts, 's')}: {run.status}")
+        run = whole_run(problem, lasts, rtol, "to leave out less at the start (a shorter skip), or a shorter duration")
         if len(passages(run.history).time) > 1 or lasts >= LATEST_SHARE * duration:
             return run.history
         lasts = min(2.0 * lasts, LATEST_SHARE * duration)

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, along
+from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, along, whole_run
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
@@ -20,7 +20,6 @@ from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem
 from stickslip.run import TextProgress, uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import MAX_PIECES
 from stickslip.solution.observables.predictability import predictability
 
 GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(12)
@@ -41,10 +40,8 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
         )
     if not duration - skip > 2.0 * trip:
         raise InputError(f"lyapunov: duration must be longer than skip by two round trips of {brief(trip, 's')} or more")
-    run = uninterrupted(simulate(problem, duration, rtol, max_pieces=MAX_PIECES))
+    run = whole_run(problem, duration, rtol, "a shorter duration, or several such runs from other initial loads, and their mean")
     tell(f"run of {brief(duration, 's')}")
-    if not run.status.ok:
-        raise InputError(f"lyapunov: the run did not reach {brief(duration, 's')}: {run.status}")
     history, back = run.history, abs(problem.body.reflection)
     edges = np.linspace(skip, duration, 1 + min(MOST_INTERVALS, int((duration - skip) / trip)))
     each = growth_on_pieces(history)
