@@ -126,6 +126,20 @@ def test_a_full_history_is_refused_with_what_helps_here(problem: ss.Problem, cur
     assert str(refused.value).endswith(f"what helps: {cure}")
 
 
+def test_where_nothing_slips_disturbances_stay_as_they_are_but_for_the_driver() -> None:
+    law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+    held, giving = (
+        ss.studies.lyapunov(ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, **far), law, initial_load=1e6), 40.0 * TRIP)
+        for far in ({}, {"driver_impedance": 1e8})
+    )
+    assert held.chaotic is None
+    assert held.text.startswith("disturbances stay as they are: the largest Lyapunov exponent is 0 1/s")
+    assert "longer run" not in held.text
+    assert giving.exponent == pytest.approx(math.log((1e8 - IMPEDANCE) / (1e8 + IMPEDANCE)) / TRIP, rel=1e-12)
+    for one in (held, giving):
+        assert one.text.endswith("nothing slips from 45.7143 s on, and a contact at rest sends disturbances back as they are")
+
+
 def test_a_drift_is_told_from_chance() -> None:
     """Sizes that grow e times in all, with noise of a tenth and none; and noise without a drift, taken for one once in 100."""
     draws = np.random.default_rng(5)

@@ -151,7 +151,7 @@ class LyapunovExponent(Study):
     def chaotic(self) -> bool | None:
         """True if disturbances grow, False if they fade.
 
-        None: the exponent lies within three standard errors of 0, or the motion itself still grows or shrinks along the run.
+        None: the exponent lies within three standard errors of 0, or is 0, or the motion itself still grows or shrinks.
         """
         if math.isinf(self.exponent):
             return False
@@ -190,6 +190,8 @@ class LyapunovExponent(Study):
             None: "neither growth nor decay of disturbances can be told",
         }[self.chaotic]
         hint = "; a longer run (duration) tells more" if self.chaotic is None else ""
+        if self.exponent == 0.0 and self.error == 0.0:
+            what, hint = "disturbances stay as they are", ""
         if self.found.drift:
             turns, times = "grows" if self.found.drift > 0.0 else "shrinks", brief(math.exp(abs(self.found.drift)), "", 3)
             what = f"the motion still drifts, the range of its slip rate {turns} by a factor {times} along the run"

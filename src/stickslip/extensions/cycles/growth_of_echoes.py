@@ -55,6 +55,8 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
     each_trip = brief(math.exp(float(growth[-1]) * trip / (duration - skip)), "", 4)
     trips = brief((duration - skip) / trip, "", 6)
     how = f"the mean over phases and {trips} round trips (rtol {rtol:g}); each multiplies a disturbance by {each_trip}"
+    if not (history.store.mode[middle > skip] != 0).any():
+        how += f"; nothing slips from {brief(skip, 's')} on, and a contact at rest sends disturbances back as they are"
     sizes = ranges_of_rate(history, skip, duration)
     return along(edges, growth, sizes, how, events=int((start >= skip).sum()), known=predictability(run).error)
 
@@ -73,6 +75,8 @@ def growth_on_pieces(history: History) -> Floats:
     store, problem, body = history.store, history.problem, history.problem.body
     slips = np.flatnonzero(store.mode != 0)
     found = np.zeros(len(history))
+    if not len(slips):
+        return found
     if np.isnan(store.gain[slips]).any():
         raise InputError("lyapunov: the run leaps over creep, where the growth of disturbances is not followed")
     at = Positions.inside(np.repeat(slips, len(GAUSS_PLACES)), np.tile(0.5 * (GAUSS_PLACES + 1.0), len(slips)))
