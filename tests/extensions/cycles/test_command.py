@@ -25,6 +25,7 @@ def test_the_figure_of_a_cycle_has_one_period_and_the_phase_plane() -> None:
         assert len(plane.lines[0].get_xdata()) == len(rate.lines[0].get_xdata())
 
 
+@pytest.mark.slow
 def test_the_figure_of_a_branch_is_dashed_where_it_is_unstable_and_marks_edges() -> None:
     branch = ss.studies.follow(ss.studies.cycle(stribeck(0.28, initial_load=0.0)), "pull_rate", to=0.35, steps=4)
     unstable = ss.studies.follow(ss.studies.cycle(stribeck(0.25, initial_load=0.0)), "pull_rate", to=0.35, steps=4)

@@ -59,6 +59,30 @@ def test_the_mean_torque_is_what_the_drive_gives_at_the_mean_rate() -> None:
     assert mean == pytest.approx(drive * (8.7 - cycle.slip / cycle.period), rel=2e-6)
 
 
+def test_the_drive_works_for_the_heat_and_for_what_it_radiates_itself() -> None:
+    """In a period all that is stored comes back, to 1e-9 of the heat; sums of the torque at the drive, which has jumps, to 2e-6."""
+    cycle = found(8.7)
+    first, last = cycle.run.energy(np.array([cycle.begin, cycle.begin + cycle.period])).to_array().T.to_numpy()
+    gained = dict(zip(cycle.run.energy(cycle.begin).data_vars, last - first, strict=True))
+    heat = gained["heat"]
+    times = cycle.begin + np.linspace(0.0, cycle.period, 100_001)
+    torque = cycle.run.drive_traction(times)
+    drive = 4.0 * cycle.problem.body.impedance
+    work, radiated = (float(np.trapezoid(power, times)) for power in (8.7 * torque, torque**2 / drive))
+    assert heat > 0.1 * work
+    assert radiated > 0.1 * work
+    assert work == pytest.approx(heat + radiated, rel=2e-6)
+    for name in ("stored", "elastic", "kinetic"):
+        assert abs(gained[name]) < 1e-9 * heat
+    assert gained["work"] == pytest.approx(heat, rel=1e-9)
+
+
+@pytest.mark.parametrize("asked", [{"double": True}, {"resume": "branch.csv"}])
+def test_branches_of_waves_refuse_what_needs_a_start_in_a_few_numbers(asked: dict[str, Any]) -> None:
+    with pytest.raises(ss.InputError, match="for rigid bodies only, and this is a body of waves: leave it out"):
+        ss.studies.follow(found(8.7), "pull_rate", to=9.0, **asked)
+
+
 def test_an_own_method_of_steps_closes_after_the_period_where_slip_is_smooth() -> None:
     """Runge and Kutta's method with 600 steps in a round trip, from the wave of the cycle: slip rate and state to 1e-7."""
     cycle, per_trip = slab_that_never_rests(), 600
@@ -90,6 +114,7 @@ def test_an_own_method_of_steps_closes_after_the_period_where_slip_is_smooth() -
     assert now == pytest.approx([float(run.slip_rate(at)[0]), float(run.state(at)[0])], rel=1e-7)
 
 
+@pytest.mark.slow
 def test_a_branch_doubles_its_period_where_a_multiplier_is_minus_one() -> None:
     """Runs on both sides of the edge show it: one period in between them, then two."""
     branch = ss.studies.follow(found(9.0), "pull_rate", to=9.03, steps=1)

@@ -50,6 +50,7 @@ def test_the_two_cycles_at_one_value_are_those_that_runs_come_to_and_part_at() -
     assert ends == [False, True]
 
 
+@pytest.mark.slow
 def test_a_branch_under_rate_and_state_friction_ends_at_the_critical_stiffness() -> None:
     """K = S (b - a) / D (1 + m V^2 / (S a D)) (Gu et al. 1984, with inertia), to 1e-9; the amplitude falls as a square root."""
     critical = NORMAL * (B - A) / DISTANCE * (1.0 + HEAVY * SLOW**2 / (NORMAL * A * DISTANCE))
@@ -158,6 +159,7 @@ def own_monodromy(zeta: float, start: Any, period: float) -> Any:
     return end[:4], end[4:].reshape(4, 4)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("coupled", [0.0, COUPLED])
 def test_a_pair_of_multipliers_leaves_the_unit_circle_at_an_edge(coupled: float) -> None:
     """Without coupling exp(-(zeta -+ i root(4 - zeta^2)) omega T / 2), and the edge at 0 to 1e-12; with it |.| = 1 to 1e-8."""

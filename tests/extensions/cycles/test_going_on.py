@@ -57,6 +57,7 @@ class Stop:
             raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: Path) -> None:
     """While the contact rests, from the table, and while it does not, from the branch: the same edges, to 1e-9."""
     start = ss.studies.cycle(stribeck(0.1, initial_load=0.0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,27 +13,28 @@ from scipy.integrate import quad, solve_ivp
 from scipy.signal import lfilter
 
 import stickslip as ss
-from stickslip.extensions.cycles.exponent import error_of_mean
+from stickslip.extensions.cycles import exponent
+from stickslip.extensions.cycles.exponent import drift_of, error_of_mean
 from stickslip.extensions.cycles.growth_of_echoes import growth_on_pieces
 from tests.command_line import Command
-from tests.extensions.cycles.problems import coulomb, rate_and_state, stribeck
+from tests.extensions.cycles.problems import DISTANCE, NORMAL, REFERENCE, SLOW, coulomb, rate_and_state, stribeck
 
-IMPEDANCE, NORMAL, STATIC, DYNAMIC, ALPHA, BACK, FAR, TRIP = 9.8e6, 1e8, 0.8, 0.3, 0.3, -0.9, 2.46e8, 2e4 / 3500.0
+IMPEDANCE, STRESS, STATIC, DYNAMIC, ALPHA, BACK, FAR, TRIP = 9.8e6, 1e8, 0.8, 0.3, 0.3, -0.9, 2.46e8, 2e4 / 3500.0
 
 
 def slab(load: float, **changes: Any) -> ss.Problem:
     """Return a slab whose far end gives way under a steady stress, so that its load is constant in each half of a round trip."""
     far_end = IMPEDANCE * (1.0 - BACK) / (1.0 + BACK)
-    body = ss.ElasticSlab(2800.0, 3500.0, 1e4, NORMAL, driver_impedance=far_end)
+    body = ss.ElasticSlab(2800.0, 3500.0, 1e4, STRESS, driver_impedance=far_end)
     law = ss.friction.HyperbolicRate(STATIC, DYNAMIC, ALPHA)
     return ss.Problem(body, law, **{"pull_rate": 0.0, "initial_load": load, "far_stress": FAR} | changes)
 
 
 def own_map(load: float, trips: int) -> np.ndarray:
     """Return ln|factor| in both halves of each round trip, by the map of the load that an own iteration goes through."""
-    root = math.sqrt(ALPHA * NORMAL * (STATIC - DYNAMIC) / IMPEDANCE)
-    fold = NORMAL * DYNAMIC + IMPEDANCE / ALPHA * (2.0 * root - 1.0)
-    falls, inflow = NORMAL * (STATIC - DYNAMIC), (1.0 + BACK) * FAR
+    root = math.sqrt(ALPHA * STRESS * (STATIC - DYNAMIC) / IMPEDANCE)
+    fold = STRESS * DYNAMIC + IMPEDANCE / ALPHA * (2.0 * root - 1.0)
+    falls, inflow = STRESS * (STATIC - DYNAMIC), (1.0 + BACK) * FAR
     loads, rates, slips, found = [load, 0.0], [0.0, 0.0], False, []
     for trip in range(trips):
         for half in (0, 1):
@@ -40,11 +42,11 @@ def own_map(load: float, trips: int) -> np.ndarray:
                 loads[half] = BACK * (2.0 * IMPEDANCE * rates[half] - loads[half]) + inflow
             elif half:
                 loads[1] = inflow - BACK * load
-            slips = loads[half] >= fold if slips else loads[half] > NORMAL * STATIC
+            slips = loads[half] >= fold if slips else loads[half] > STRESS * STATIC
             rates[half], slope = 0.0, math.inf
             if slips:
-                linear = IMPEDANCE + ALPHA * (NORMAL * DYNAMIC - loads[half])
-                rest = NORMAL * DYNAMIC - loads[half] + falls
+                linear = IMPEDANCE + ALPHA * (STRESS * DYNAMIC - loads[half])
+                rest = STRESS * DYNAMIC - loads[half] + falls
                 rates[half] = (math.sqrt(linear**2 - 4.0 * IMPEDANCE * ALPHA * rest) - linear) / (2.0 * IMPEDANCE * ALPHA)
                 slope = IMPEDANCE - falls * ALPHA / (1.0 + ALPHA * rates[half]) ** 2
             found.append(math.log(abs(BACK * (1.0 - 2.0 * IMPEDANCE / slope))))
@@ -70,7 +72,7 @@ def test_where_the_slip_rate_changes_the_mean_over_phases_is_an_integral() -> No
 
     def integrand(time: float) -> float:
         rate = float(run.slip_rate(time))
-        slope = IMPEDANCE - NORMAL * (STATIC - DYNAMIC) * ALPHA / (1.0 + ALPHA * rate) ** 2
+        slope = IMPEDANCE - STRESS * (STATIC - DYNAMIC) * ALPHA / (1.0 + ALPHA * rate) ** 2
         return math.log(abs(1.0 - 2.0 * IMPEDANCE / slope)) / TRIP
 
     slips = np.flatnonzero((history.store.mode != 0) & (np.ptp(history.store.rate, axis=1) > 1e-3))
@@ -92,6 +94,62 @@ def test_the_exponent_of_a_cycle_is_its_multiplier_over_its_period() -> None:
     assert math.isinf(found.horizon)
     assert found.per_event == pytest.approx(math.log(abs(cycle.multipliers[0])), rel=1e-6)
     assert found.sum_of_all == pytest.approx(np.log(np.abs(cycle.multipliers)).sum() / cycle.period, rel=1e-6)
+
+
+def test_a_motion_that_still_grows_towards_its_cycle_is_not_called_chaotic() -> None:
+    """Next to unstable steady sliding a disturbance grows as the motion does, until this comes to a cycle of which it fades."""
+    cycle = ss.studies.cycle(rate_and_state())
+    started = replace(cycle.problem, initial_rate=1.05 * SLOW, initial_load=REFERENCE * NORMAL, initial_state=DISTANCE / SLOW)
+    fades = math.log(abs(cycle.multipliers[0])) / cycle.period
+    early = ss.studies.lyapunov(started, 3000.0, rtol=1e-7)
+    assert early.chaotic is None
+    assert "the motion still drifts, the range of its slip rate grows by a factor 2." in early.text
+    assert "give a longer run" in early.text
+    assert abs(early.exponent - fades) < 4.0 * early.error
+    late = ss.studies.lyapunov(started, 12_000.0, skip=8000.0, rtol=1e-7)
+    assert late.chaotic is False
+    assert late.exponent == pytest.approx(fades, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("problem", "cure"),
+    [
+        (slab(7e7, pull_rate=2.0), "a shorter duration, or several such runs from other initial loads, and their mean"),
+        (rate_and_state(), "to leave out less at the start (a shorter skip), or a shorter duration"),
+    ],
+)
+def test_a_full_history_is_refused_with_what_helps_here(problem: ss.Problem, cure: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exponent, "MAX_PIECES", 100)
+    with pytest.raises(ss.InputError) as refused:
+        ss.studies.lyapunov(problem, "1 hour")
+    assert "its history reached the limit of 100 pieces at" in str(refused.value)
+    assert str(refused.value).endswith(f"what helps: {cure}")
+
+
+def test_where_nothing_slips_disturbances_stay_as_they_are_but_for_the_driver() -> None:
+    law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+    held, giving = (
+        ss.studies.lyapunov(ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, **far), law, initial_load=1e6), 40.0 * TRIP)
+        for far in ({}, {"driver_impedance": 1e8})
+    )
+    assert held.chaotic is None
+    assert held.text.startswith("disturbances stay as they are: the largest Lyapunov exponent is 0 1/s")
+    assert "longer run" not in held.text
+    assert giving.exponent == pytest.approx(math.log((1e8 - IMPEDANCE) / (1e8 + IMPEDANCE)) / TRIP, rel=1e-12)
+    for one in (held, giving):
+        assert one.text.endswith("nothing slips from 45.7143 s on, and a contact at rest sends disturbances back as they are")
+
+
+def test_a_drift_is_told_from_chance() -> None:
+    """Sizes that grow e times in all, with noise of a tenth and none; and noise without a drift, taken for one once in 100."""
+    draws = np.random.default_rng(5)
+    for count in (8, 400):
+        rise = np.linspace(-0.5, 0.5, count)
+        assert drift_of(np.exp(rise)) == pytest.approx(1.0, abs=0.1)
+        assert drift_of(np.exp(-rise + 0.1 * draws.standard_normal(count))) == pytest.approx(-1.0, abs=0.3)
+        noise = np.exp(0.5 * draws.standard_normal((200, count)))
+        assert sum(drift_of(one) != 0.0 for one in noise) <= 2
+        assert drift_of(np.exp(0.05 * rise)) == 0.0
 
 
 def test_a_contact_that_rests_ends_all_disturbances_and_steady_sliding_has_its_own_growth() -> None:
@@ -165,6 +223,7 @@ def test_a_block_under_two_state_friction_is_chaotic_as_an_own_integration_has_i
     found = ss.studies.lyapunov(problem, 30_000.0)
     own, error = own_exponent(675.0, 30_000.0, 400.0)
     assert found.exponent > 0.0
+    assert not found.found.drift
     assert abs(found.exponent - own) < 3.0 * math.hypot(found.error, error)
     assert found.error < 0.4 * found.exponent
     assert found.sum_of_all < -10.0

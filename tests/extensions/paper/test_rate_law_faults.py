@@ -175,6 +175,7 @@ class LagAtNodes:
         return DYNAMIC + (STATIC - DYNAMIC) / lower, np.zeros(len(slip)), by_rate
 
 
+@pytest.mark.slow
 def test_the_volume_method_sees_the_same_pulse() -> None:
     """A fault of 20 km under a driver at 10 km, until the echo has come back: slip to 0.3 % on average, and 2 % anywhere."""
     nodes, lag, until = 192, 0.5, 6.0
@@ -195,6 +196,7 @@ def test_the_volume_method_sees_the_same_pulse() -> None:
     assert missed.max() < 0.02
 
 
+@pytest.mark.slow
 def test_a_front_that_runs_steadily_leaves_kostrovs_slip_rate() -> None:
     """A lag in proportion to the distance leaves no length: the speed V of the front is constant, and it need not be told.
 

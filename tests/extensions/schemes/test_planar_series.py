@@ -73,6 +73,7 @@ def _judged(time: Floats, fields: Floats, name: str, tolerance: float) -> Statio
     return found
 
 
+@pytest.mark.slow
 def test_a_finer_mesh_lies_within_the_band() -> None:
     """The band is that of three meshes up to 320 nodes, and what is right the extrapolation of 320 and 640."""
     for n, station in enumerate(STATIONS):

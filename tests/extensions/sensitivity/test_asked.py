@@ -14,6 +14,7 @@ from stickslip.extensions.sensitivity.changes import changes_of
 from stickslip.extensions.sensitivity.stencil import SIDES, slope_of
 from stickslip.figures.style import image
 from stickslip.foundation.errors import InputError
+from stickslip.problem import default_event_rate
 from tests.command_line import Command
 
 pytestmark = pytest.mark.usefixtures("closed_figures")
@@ -46,6 +47,21 @@ def block(tmp_path: Path) -> Path:
     path = tmp_path / "block.toml"
     path.write_text(BLOCK)
     return path
+
+
+def test_all_runs_of_a_derivative_keep_the_slip_rate_that_defines_an_event() -> None:
+    """The default one goes with mass^-1/2, and would halve the derivative: the creep before a slip, beside plain differences."""
+    law = ss.friction.LuGre(static=0.6, dynamic=0.4, rate="10 mm/s", stiffness=1e4, damping=10.0)
+
+    def run(mass: float) -> ss.Solution:
+        return ss.simulate(ss.Problem(ss.SpringBlock(mass, 1e3, 10.0), law, pull_rate=0.1, initial_load=0.0), 0.002, 1e-14)
+
+    middle, below, above = run(1.0), run(0.999), run(1.001)
+    slope = ss.studies.sensitivity(middle, "mass", "start").derivatives[0, 0]
+    rate = default_event_rate(middle.problem)
+    kept, own = ((above.catalogue(r).start[0] - below.catalogue(r).start[0]) / 0.002 for r in (rate, None))
+    assert slope == pytest.approx(kept, rel=1e-5)
+    assert own == pytest.approx(0.5 * slope, rel=0.01)
 
 
 @pytest.mark.parametrize("side", SIDES)

@@ -12,8 +12,13 @@ import numpy as np
 import pandas as pd
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief, number
-from stickslip.run import Study
+from stickslip.problem import TOO_MANY, Problem
+from stickslip.run import Study, uninterrupted
+from stickslip.run.simulate import simulate
+from stickslip.run.study import MAX_PIECES
+from stickslip.solution import Solution
 
 LOST_SHARE = 0.1
 """A disturbance of this share (1) of the motion changes an event into another one: it ends the horizon."""
@@ -21,6 +26,10 @@ SURE_ERRORS = 3.0
 """An exponent that differs from 0 by more standard errors than this (1) is said to have its sign."""
 ERROR_BATCHES = 16
 """A standard error is taken from so many parts of a run (1)."""
+DRIFTED = 0.1
+"""A motion whose size changes along the run by more than this share (1), steadily, has not come to the one that stays."""
+DRIFT_ERRORS = 5.0
+"""A drift is told from chance if it is larger than so many of its standard errors (1), which few parts of a run tell roughly."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +56,48 @@ class MeasuredGrowth:
     """The first disturbance, as a share (1) of the motion: what tolerance and rounding make."""
     per_event: float = math.nan
     """The growth (1) in an event, where it is not the exponent times the time of one."""
+    drift: float = 0.0
+    """The change of the logarithm of the motion's own size (1) along the run, if it drifts."""
 
 
-def along(time: Floats, growth: Floats, how: str, **more: float) -> MeasuredGrowth:
-    """Return the growth along a run, with the mean of its rate and the error of that; `time` and `growth` begin with a start."""
+def along(time: Floats, growth: Floats, sizes: Floats, how: str, **more: float) -> MeasuredGrowth:
+    """Return the growth along a run, with the mean of its rate and the error of that; `time` and `growth` begin with a start.
+
+    `sizes` are those of the motion itself in each interval. Where they drift, the error has the drift in it: what a disturbance
+    grows with the motion itself is not what it does when the motion has settled.
+    """
     counted = float(time[-1] - time[0])
     exponent = float(growth[-1] - growth[0]) / counted
-    error = error_of_mean(np.diff(growth), np.diff(time), exponent)
-    return MeasuredGrowth(time, growth - growth[0], exponent, error, counted, how, **more)
+    error, drift = error_of_mean(np.diff(growth), np.diff(time), exponent), drift_of(sizes)
+    error = math.hypot(error, drift / counted)
+    return MeasuredGrowth(time, growth - growth[0], exponent, error, counted, how, drift=drift, **more)
+
+
+def drift_of(sizes: Floats) -> float:
+    """Return the change of the logarithm of sizes (1) along a run; 0 if it is small, or no larger than chance makes it.
+
+    It is that of the line through the means of ERROR_BATCHES parts of the run, or through the sizes if these are few.
+    """
+    logs = np.log(np.maximum(sizes, np.finfo(float).tiny))
+    means = np.array([part.mean() for part in np.array_split(logs, ERROR_BATCHES)]) if len(logs) >= 2 * ERROR_BATCHES else logs
+    if len(means) < 3:
+        return 0.0
+    left, place = means - means.mean(), np.linspace(-0.5, 0.5, len(means))
+    drift = float(place @ left / (place @ place))
+    left = left - drift * place
+    error = math.sqrt(float(left @ left / (place @ place)) / (len(means) - 2.0))
+    return drift if abs(drift) > max(math.log1p(DRIFTED), DRIFT_ERRORS * error) else 0.0
+
+
+def whole_run(problem: Problem, lasts: float, rtol: float, cures: str) -> Solution:
+    """Return a run of a problem that has lasted so long (s); `cures` say what helps if its history is full. Raises InputError."""
+    run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
+    if run.status.ok:
+        return run
+    why = str(run.status)
+    if run.status.name == TOO_MANY:
+        why = f"its history reached the limit of {MAX_PIECES} pieces at {brief(run.duration, 's', 4)}; what helps: {cures}"
+    raise InputError(f"lyapunov: the run did not reach {brief(lasts, 's')}: {why}")
 
 
 def error_of_mean(growth: Floats, lasts: Floats, rate: float) -> float:
@@ -106,9 +149,14 @@ class LyapunovExponent(Study):
 
     @property
     def chaotic(self) -> bool | None:
-        """True if disturbances grow, False if they fade; None: the exponent lies within three standard errors of 0."""
+        """True if disturbances grow, False if they fade.
+
+        None: the exponent lies within three standard errors of 0, or is 0, or the motion itself still grows or shrinks.
+        """
         if math.isinf(self.exponent):
             return False
+        if self.found.drift:
+            return None
         return None if not abs(self.exponent) > SURE_ERRORS * self.error else self.exponent > 0.0
 
     @property
@@ -142,6 +190,12 @@ class LyapunovExponent(Study):
             None: "neither growth nor decay of disturbances can be told",
         }[self.chaotic]
         hint = "; a longer run (duration) tells more" if self.chaotic is None else ""
+        if self.exponent == 0.0 and self.error == 0.0:
+            what, hint = "disturbances stay as they are", ""
+        if self.found.drift:
+            turns, times = "grows" if self.found.drift > 0.0 else "shrinks", brief(math.exp(abs(self.found.drift)), "", 3)
+            what = f"the motion still drifts, the range of its slip rate {turns} by a factor {times} along the run"
+            hint = ": give a longer run (duration), or leave out more at its start (skip)"
         return f"{what}: the largest Lyapunov exponent is {size}, {self.found.how}{hint}"
 
     @property

@@ -15,21 +15,19 @@ import numpy as np
 from stickslip.contact import steady_slidings
 from stickslip.engine import History, Positions
 from stickslip.engine.input import SHARE_OF_TOLERANCE
-from stickslip.extensions.cycles.exponent import MeasuredGrowth, along
+from stickslip.extensions.cycles.exponent import MeasuredGrowth, along, whole_run
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
 from stickslip.extensions.cycles.orbit import extent_of
 from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
 from stickslip.extensions.cycles.tangent import FIRST_STATE_ROW, RATE_ROW, values_at
-from stickslip.foundation.arrays import Floats
+from stickslip.foundation.arrays import Floats, Integers1
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula import value_and_slopes
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_on_spring
-from stickslip.run import TextProgress, uninterrupted
-from stickslip.run.simulate import simulate
-from stickslip.run.study import MAX_PIECES
+from stickslip.run import TextProgress
 
 STEADY_SHARE = 1e-6
 """A run whose slip rate varies by less than this share (1) of the pull rate at its end has come to steady sliding."""
@@ -62,9 +60,7 @@ def _begun(problem: Problem, skip: float, duration: float, rtol: float) -> Histo
     """Return a run up to `skip` (s), or longer if the contact passes the pull rate fewer than two times by then."""
     lasts = max(skip, 1e-3 * duration)
     while True:
-        run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=MAX_PIECES))
-        if not run.status.ok:
-            raise InputError(f"lyapunov: the run did not reach {brief(lasts, 's')}: {run.status}")
+        run = whole_run(problem, lasts, rtol, "to leave out less at the start (a shorter skip), or a shorter duration")
         if len(passages(run.history).time) > 1 or lasts >= LATEST_SHARE * duration:
             return run.history
         lasts = min(2.0 * lasts, LATEST_SHARE * duration)
@@ -73,9 +69,14 @@ def _begun(problem: Problem, skip: float, duration: float, rtol: float) -> Histo
 def is_steady(history: History) -> bool:
     """Return True if the slip rate no longer varies in the last quarter of a run."""
     late = np.flatnonzero(history.start + history.store.speed + history.store.bend >= 0.75 * history.duration)
-    rates = history.rate(Positions.inside(np.repeat(late, 3), np.tile([0.0, 0.5, 1.0], len(late))))
+    rates = _rates(history, late)
     pull = history.problem.first_pull_rate
     return bool(np.abs(rates - pull).max() <= STEADY_SHARE * pull)
+
+
+def _rates(history: History, pieces: Integers1) -> Floats:
+    """Return slip rates (m/s) at the beginning, in the middle and at the end of pieces."""
+    return history.rate(Positions.inside(np.repeat(pieces, 3), np.tile([0.0, 0.5, 1.0], len(pieces))))
 
 
 def _steady(problem: Problem) -> MeasuredGrowth:
@@ -99,23 +100,24 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
     time, size, rests, divergence = float(met.time[-1]), 0.0, False, 0.0
     skip = time + SETTLING_SHARE * (duration - time)
     way = scale / math.sqrt(len(scale))
-    times, sizes = [], []
+    times, grown_to, extents = [], [], []
     while time < duration:
         if time >= skip:
             times.append(time)
-            sizes.append(size)
+            grown_to.append(size)
         now = section.returned(place, usual, RETURN_TRIES)
         way = now.slopes(exactly=False) @ way
         grown = float(np.linalg.norm(way / scale))
         if not grown > 0.0:
             return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, RESTS_END_ALL)
         if time >= skip:
+            extents.append(float(np.ptp(_rates(now.history, np.arange(now.piece + 1)))))
             divergence, rests = divergence + _divergence(now), rests or now.sticks
         way, place, time, size = way / grown, now.end, time + now.time, size + math.log(grown)
         if len(times) % 16 == 1:
             tell(f"{brief(time, 's')} of {brief(duration, 's')}")
     times.append(time)
-    sizes.append(size)
+    grown_to.append(size)
     if len(times) <= FEWEST_RETURNS:
         raise InputError(
             f"lyapunov: the contact passes the pull rate {len(times)} times between {brief(skip, 's')} and {brief(duration, 's')}:"
@@ -125,7 +127,7 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
     how = f"measured over {len(times) - 1} returns to the pull rate in {brief(counted, 's')} (rtol {section.rtol:g})"
     known = max(section.rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps))
     every = -math.inf if rests else divergence / counted
-    return along(np.array(times), np.array(sizes), how, events=len(times) - 1, sum_of_all=every, known=known)
+    return along(np.array(times), np.array(grown_to), np.array(extents), how, events=len(times) - 1, sum_of_all=every, known=known)
 
 
 def _divergence(one: Return) -> float:

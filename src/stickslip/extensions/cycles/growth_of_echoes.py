@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.exponent import MeasuredGrowth, along
+from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, along, whole_run
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
@@ -20,7 +20,6 @@ from stickslip.friction.contract import one_argument
 from stickslip.problem import Problem
 from stickslip.run import TextProgress, uninterrupted
 from stickslip.run.simulate import simulate
-from stickslip.run.study import MAX_PIECES
 from stickslip.solution.observables.predictability import predictability
 
 GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(12)
@@ -41,10 +40,8 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
         )
     if not duration - skip > 2.0 * trip:
         raise InputError(f"lyapunov: duration must be longer than skip by two round trips of {brief(trip, 's')} or more")
-    run = uninterrupted(simulate(problem, duration, rtol, max_pieces=MAX_PIECES))
+    run = whole_run(problem, duration, rtol, "a shorter duration, or several such runs from other initial loads, and their mean")
     tell(f"run of {brief(duration, 's')}")
-    if not run.status.ok:
-        raise InputError(f"lyapunov: the run did not reach {brief(duration, 's')}: {run.status}")
     history, back = run.history, abs(problem.body.reflection)
     edges = np.linspace(skip, duration, 1 + min(MOST_INTERVALS, int((duration - skip) / trip)))
     each = growth_on_pieces(history)
@@ -58,7 +55,19 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
     each_trip = brief(math.exp(float(growth[-1]) * trip / (duration - skip)), "", 4)
     trips = brief((duration - skip) / trip, "", 6)
     how = f"the mean over phases and {trips} round trips (rtol {rtol:g}); each multiplies a disturbance by {each_trip}"
-    return along(edges, growth, how, events=int((start >= skip).sum()), known=predictability(run).error)
+    if not (history.store.mode[middle > skip] != 0).any():
+        how += f"; nothing slips from {brief(skip, 's')} on, and a contact at rest sends disturbances back as they are"
+    sizes = ranges_of_rate(history, skip, duration)
+    return along(edges, growth, sizes, how, events=int((start >= skip).sum()), known=predictability(run).error)
+
+
+def ranges_of_rate(history: History, begin: float, end: float) -> Floats:
+    """Return how far the slip rate goes (m/s) in each of ERROR_BATCHES equal parts of a run, without those where it is steady."""
+    count = len(history)
+    rates = history.rate(Positions.inside(np.repeat(np.arange(count), 3), np.tile([0.0, 0.5, 1.0], count))).reshape(count, 3)
+    part = np.floor((history.start - begin) / (end - begin) * ERROR_BATCHES).astype(np.int64)
+    found = np.array([np.ptp(rates[part == n]) if (part == n).any() else 0.0 for n in range(ERROR_BATCHES)])
+    return found[found > 0.0]
 
 
 def growth_on_pieces(history: History) -> Floats:
@@ -66,6 +75,8 @@ def growth_on_pieces(history: History) -> Floats:
     store, problem, body = history.store, history.problem, history.problem.body
     slips = np.flatnonzero(store.mode != 0)
     found = np.zeros(len(history))
+    if not len(slips):
+        return found
     if np.isnan(store.gain[slips]).any():
         raise InputError("lyapunov: the run leaps over creep, where the growth of disturbances is not followed")
     at = Positions.inside(np.repeat(slips, len(GAUSS_PLACES)), np.tile(0.5 * (GAUSS_PLACES + 1.0), len(slips)))
