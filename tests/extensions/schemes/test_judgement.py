@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -126,6 +127,44 @@ def test_a_series_too_coarse_for_a_slip_rate_that_turns_back_is_told_so() -> Non
         "mine is too coarse for its shocks: its step is 20.8333 ms, and the exact slip rate turns back"
     ]
     assert fine.passed
+
+
+def of_benchmark(name: str, rows: int) -> Series:
+    """Return the exact series of a benchmark at evenly spaced times."""
+    scenario = benchmark_of(name).scenario
+    run, time = ss.simulate(scenario), np.linspace(0.0, scenario.duration, rows)
+    return Series(time, run.slip(time) - scenario.problem.initial_slip, run.slip_rate(time), run.traction(time), "mine")
+
+
+FEW_ROWS: dict[str, tuple[str, int, Callable[[Series], Series]]] = {
+    "constant traction": ("loop", 9, lambda one: replace(one, traction=np.full(9, 1e6))),
+    "traction": ("coulomb", 9, lambda one: replace(one, traction=1.4 * one.traction)),
+    "slip rate": ("one-pulse", 20, lambda one: replace(one, rate=1.4 * one.rate)),
+    "of many shocks": ("bow-at-a-tenth", 9, lambda one: replace(one, traction=1.4 * one.traction)),
+}
+
+
+@pytest.mark.parametrize("case", FEW_ROWS)
+def test_a_series_that_lies_beside_shocks_for_the_most_part_is_refused_with_the_rows_that_are_enough(case: str) -> None:
+    name, rows, change = FEW_ROWS[case]
+    (found,) = judge_series(change(of_benchmark(name, rows)), benchmark_of(name).scenario).judgements
+    assert not found.passed
+    said = re.search(rf"it is too coarse: \d+ of its {rows} rows lie beside shocks, .*; (\d+) rows in equal steps", found.reasons)
+    assert said
+    (right_one,) = judge_series(of_benchmark(name, int(said[1])), benchmark_of(name).scenario).judgements
+    assert "too coarse" not in right_one.reasons
+    again = right_one.measured.series
+    wrong = replace(again, rate=1.4 * again.rate, traction=1.4 * again.traction)
+    (wrong_one,) = judge_series(wrong, benchmark_of(name).scenario).judgements
+    assert "traction" in {fault.partition(" is off")[0] for fault in wrong_one.faults}
+
+
+def test_a_series_whose_cells_are_too_few_is_told_how_many_are_enough() -> None:
+    """Shadows of 4 cells: R/2 = 2.857 s, two shocks, 5.7 s: half of the time takes 16 R / 5.7 s = 16.04 cells."""
+    one = replace(of_benchmark("loop", 2001), cells=4)
+    (found,) = judge_series(one, benchmark_of("loop").scenario).judgements
+    assert "; 18 cells are enough" in found.reasons
+    assert judge_series(replace(one, cells=18), benchmark_of("loop").scenario).judgements[0].measured.compared > 0.5
 
 
 def columns() -> Any:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.schemes.measures import MeasuredSeries
-from stickslip.extensions.schemes.shocks import MADE
+from stickslip.extensions.schemes.shocks import CELLS_NEAR_SHOCK, MADE
 from stickslip.extensions.schemes.traits import EXPLAINS, traits_of
 from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
 from stickslip.foundation.arrays import Floats
@@ -21,6 +21,10 @@ TOLERANCE = 0.05
 """A series may be off by this share of the exact values, if no other is given."""
 QUANTITIES_JUDGED = {"slip": "slip", "slip rate": "slip_rate", "traction": "traction"}
 """What a series has, each with the name that a problem knows its unit by."""
+COMPARED = 0.5
+"""At least this share of a series must lie away from shocks, so that its slip rate and traction are compared at all."""
+ROWS_ENOUGH = 20
+"""So many rows for each shock are enough for that: nine of them, at most, lie beside it."""
 SIDES = "of two elastic sides each slips by half, and the jump between them counts"
 ZERO = "another zero than the exact"
 CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {
@@ -85,10 +89,23 @@ class Judgement:
             found.append(f"the rule that it follows is {rule}, and not {own}")
         if row["shocks"] < exact:
             found.append(f"it makes {row['shocks']} of {exact} shocks")
+        if self.measured.compared < COMPARED:
+            found.append(self._unseen())
         if row["own_shocks"]:
             more = "a shock" if row["own_shocks"] == 1 else f"{row['own_shocks']} shocks"
             found.append(f"it makes {more} that the exact series does not have")
         return tuple(found)
+
+    def _unseen(self) -> str:
+        """Say that the series lies beside shocks for the most part, and what is enough."""
+        one = self.measured
+        shocks = sum(not math.isnan(shock.exact_time) for shock in one.shocks)
+        enough = f"{ROWS_ENOUGH * shocks + 1} rows in equal steps are"
+        if one.series.cells and one.shadow > CELLS_NEAR_SHOCK * one.series.step:  # its cells are coarser than its steps
+            each = 2.0 * CELLS_NEAR_SHOCK * one.exact.problem.body.time_to_driver / (COMPARED * one.until)
+            enough = f"{math.ceil(each * shocks) + 1} cells are"
+        beside = f"{np.count_nonzero(~one.away)} of its {one.time.size} rows lie beside shocks"
+        return f"it is too coarse: {beside}, where slip rate and traction are not compared; {enough} enough"
 
     @property
     def passed(self) -> bool:
