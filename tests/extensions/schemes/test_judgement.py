@@ -167,6 +167,18 @@ def test_a_series_whose_cells_are_too_few_is_told_how_many_are_enough() -> None:
     assert judge_series(replace(one, cells=18), benchmark_of("loop").scenario).judgements[0].measured.compared > 0.5
 
 
+@pytest.mark.parametrize(("factor", "passes"), [(1.0, True), (1.04, True), (1.06, False)])
+def test_traction_that_stays_constant_is_compared_with_itself(factor: float, passes: bool) -> None:
+    """All slips at once at (beta - muD S)/Z = 7.83 m/s, and a driver of the same impedance sends nothing back."""
+    slab = ss.ElasticSlab(2000.0, 1500.0, 739.5, 1e8, driver_impedance=3e6)
+    problem = ss.Problem(slab, ss.friction.Coulomb(0.8, 0.567), initial_load=8.02e7)
+    time, rate = np.linspace(0.0, 5.0, 501), 2.35e7 / 3e6
+    one = Series(time, rate * time, np.full(501, rate), np.full(501, factor * 5.67e7), "mine")
+    (found,) = judge_series(one, problem).judgements
+    assert found.passed == passes
+    assert found.shares["traction"] == pytest.approx(factor - 1.0, rel=1e-9, abs=1e-9)
+
+
 def columns() -> Any:
     one = right()
     return np.column_stack([one.time, one.slip, one.rate, one.traction])

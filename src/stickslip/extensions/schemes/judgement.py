@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip.extensions.schemes.measures import MeasuredSeries
 from stickslip.extensions.schemes.shocks import CELLS_NEAR_SHOCK, MADE
-from stickslip.extensions.schemes.traits import EXPLAINS, traits_of
+from stickslip.extensions.schemes.traits import EXPLAINS, ROUNDED_AWAY, traits_of
 from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
@@ -54,7 +54,8 @@ class Judgement:
         """How far the series is from the exact one, for slip, slip rate, traction, and traction at rest.
 
         The mean distance in slip is a share of the largest slip, that in slip rate of the mean slip rate, and that in traction, in
-        the whole and while the exact contact rests, of the range of traction. Slip rate and traction are compared away from shocks.
+        the whole and while the exact contact rests, of the range of traction; of traction itself, if that is constant. Slip rate
+        and traction are compared away from shocks.
         """
         return {name: share for what in QUANTITIES_JUDGED for name, share in self._shares(what, self._pairs[what][0]).items()}
 
@@ -76,7 +77,9 @@ class Judgement:
             return {what: _share(mean, float(np.abs(exact).max()) or self.paths.size.slip)}
         if what == "slip rate":
             return {what: _share(_mean(gap, away), float(np.abs(exact).mean()) or self.paths.size.rate)}
-        rest, scale = away & (self.measured.exact_rate == 0.0), float(np.ptp(exact)) or float(np.abs(exact).max())
+        rest, scale, largest = away & (self.measured.exact_rate == 0.0), float(np.ptp(exact)), float(np.abs(exact).max())
+        if scale <= ROUNDED_AWAY * largest:  # traction is constant: its range is what rounding leaves
+            scale = largest
         return {what: _share(_mean(gap, away), scale), "traction at rest": _share(_mean(gap, rest), scale)}
 
     @cached_property
