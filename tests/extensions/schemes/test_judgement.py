@@ -169,14 +169,34 @@ def test_a_series_whose_cells_are_too_few_is_told_how_many_are_enough() -> None:
 
 @pytest.mark.parametrize(("factor", "passes"), [(1.0, True), (1.04, True), (1.06, False)])
 def test_traction_that_stays_constant_is_compared_with_itself(factor: float, passes: bool) -> None:
-    """All slips at once at (beta - muD S)/Z = 7.83 m/s, and a driver of the same impedance sends nothing back."""
-    slab = ss.ElasticSlab(2000.0, 1500.0, 739.5, 1e8, driver_impedance=3e6)
+    """Dynamic friction is constant, 5.67e7 Pa; computed from slip rate and load, its range is 7e-9 Pa."""
+    slab = ss.ElasticSlab(2000.0, 2465.0, 739.5, 1e8, driver_impedance=3e6)
     problem = ss.Problem(slab, ss.friction.Coulomb(0.8, 0.567), initial_load=8.02e7)
-    time, rate = np.linspace(0.0, 5.0, 501), 2.35e7 / 3e6
-    one = Series(time, rate * time, np.full(501, rate), np.full(501, factor * 5.67e7), "mine")
+    run, time = ss.simulate(problem, 5.0), np.linspace(0.0, 5.0, 501)
+    one = Series(time, run.slip(time), run.slip_rate(time), np.full(501, factor * 5.67e7), "mine")
     (found,) = judge_series(one, problem).judgements
     assert found.passed == passes
     assert found.shares["traction"] == pytest.approx(factor - 1.0, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(("tolerance", "passes"), [(0.05, True), (4e-4, False)])
+def test_a_shock_smaller_than_the_tolerance_allows_need_not_be_made(tolerance: float, passes: bool) -> None:
+    """The layers send back 1 %: the slip rate falls from 20.5 to 20.4901 m/s, a jump of 0.0005 of it, where it is off by 0.001."""
+    layers = ss.LayeredSlab(thickness=[400, 500], density=[2000, 2000], wave_speed=[1000, 1020], normal_stress=1e8)
+    problem = ss.Problem(layers, ss.friction.LinearSlipWeakening(0.8, 0.4, 2.0), initial_load=8.1e7)
+    run, time = ss.simulate(problem, 1.5), np.linspace(0.0, 1.5, 2001)
+    one = Series(time, 0.999 * run.slip(time), 0.999 * run.slip_rate(time), run.traction(time), "mine")
+    (found,) = judge_series(one, problem, tolerance=tolerance).judgements
+    assert found.passed == passes
+    assert ("it makes 1 of 2 shocks" in found.faults) != passes
+
+
+def test_the_small_shock_of_a_slow_problem_must_be_made() -> None:
+    """The first shock of `weak-shock`, of 2.6e-5 m/s, is a fifth of its largest slip rate: spread over 1 s it is not made."""
+    one = of_benchmark("weak-shock", 2001)
+    smooth = replace(one, rate=one.rate * np.minimum(one.time / 1.0, 1.0))
+    (found,) = judge_series(smooth, benchmark_of("weak-shock").scenario).judgements
+    assert "it makes 1 of 2 shocks" in found.faults
 
 
 def columns() -> Any:

@@ -87,7 +87,7 @@ class Judgement:
         """What keeps the series from passing, one text each; none if it passes."""
         found = [f"{name} is off by {share:.2g}" for name, share in self.shares.items() if not share <= self.tolerance]
         row, rule = self.measured.row(), self.paths.followed(self.measured.series)
-        own, exact = self.measured.exact.problem.rule, len(self.measured.shocks) - row["own_shocks"]
+        own, exact = self.measured.exact.problem.rule, row["shocks"] + self._missed
         if rule != UNTOLD and own not in rule.split(" or "):
             found.append(f"the rule that it follows is {rule}, and not {own}")
         if row["shocks"] < exact:
@@ -98,6 +98,15 @@ class Judgement:
             more = "a shock" if row["own_shocks"] == 1 else f"{row['own_shocks']} shocks"
             found.append(f"it makes {more} that the exact series does not have")
         return tuple(found)
+
+    @property
+    def _missed(self) -> int:
+        """How many exact shocks are not made, of those that are larger than the slip rate may be off by, as a share of the largest.
+
+        A series whose slip rate is off by more than half a shock need not pass the middle of it, and none that passes must.
+        """
+        least = self.tolerance * float(np.abs(self.measured.exact_rate).max())
+        return sum(math.isnan(shock.time) and shock.jump > least for shock in self.measured.shocks)
 
     def _unseen(self) -> str:
         """Say that the series lies beside shocks for the most part, and what is enough."""
