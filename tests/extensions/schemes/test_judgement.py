@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -126,6 +127,76 @@ def test_a_series_too_coarse_for_a_slip_rate_that_turns_back_is_told_so() -> Non
         "mine is too coarse for its shocks: its step is 20.8333 ms, and the exact slip rate turns back"
     ]
     assert fine.passed
+
+
+def of_benchmark(name: str, rows: int) -> Series:
+    """Return the exact series of a benchmark at evenly spaced times."""
+    scenario = benchmark_of(name).scenario
+    run, time = ss.simulate(scenario), np.linspace(0.0, scenario.duration, rows)
+    return Series(time, run.slip(time) - scenario.problem.initial_slip, run.slip_rate(time), run.traction(time), "mine")
+
+
+FEW_ROWS: dict[str, tuple[str, int, Callable[[Series], Series]]] = {
+    "constant traction": ("loop", 9, lambda one: replace(one, traction=np.full(9, 1e6))),
+    "traction": ("coulomb", 9, lambda one: replace(one, traction=1.4 * one.traction)),
+    "slip rate": ("one-pulse", 20, lambda one: replace(one, rate=1.4 * one.rate)),
+    "of many shocks": ("bow-at-a-tenth", 9, lambda one: replace(one, traction=1.4 * one.traction)),
+}
+
+
+@pytest.mark.parametrize("case", FEW_ROWS)
+def test_a_series_that_lies_beside_shocks_for_the_most_part_is_refused_with_the_rows_that_are_enough(case: str) -> None:
+    name, rows, change = FEW_ROWS[case]
+    (found,) = judge_series(change(of_benchmark(name, rows)), benchmark_of(name).scenario).judgements
+    assert not found.passed
+    said = re.search(rf"it is too coarse: \d+ of its {rows} rows lie beside shocks, .*; (\d+) rows in equal steps", found.reasons)
+    assert said
+    (right_one,) = judge_series(of_benchmark(name, int(said[1])), benchmark_of(name).scenario).judgements
+    assert "too coarse" not in right_one.reasons
+    again = right_one.measured.series
+    wrong = replace(again, rate=1.4 * again.rate, traction=1.4 * again.traction)
+    (wrong_one,) = judge_series(wrong, benchmark_of(name).scenario).judgements
+    assert "traction" in {fault.partition(" is off")[0] for fault in wrong_one.faults}
+
+
+def test_a_series_whose_cells_are_too_few_is_told_how_many_are_enough() -> None:
+    """Shadows of 4 cells: R/2 = 2.857 s, two shocks, 5.7 s: half of the time takes 16 R / 5.7 s = 16.04 cells."""
+    one = replace(of_benchmark("loop", 2001), cells=4)
+    (found,) = judge_series(one, benchmark_of("loop").scenario).judgements
+    assert "; 18 cells are enough" in found.reasons
+    assert judge_series(replace(one, cells=18), benchmark_of("loop").scenario).judgements[0].measured.compared > 0.5
+
+
+@pytest.mark.parametrize(("factor", "passes"), [(1.0, True), (1.04, True), (1.06, False)])
+def test_traction_that_stays_constant_is_compared_with_itself(factor: float, passes: bool) -> None:
+    """Dynamic friction is constant, 5.67e7 Pa; computed from slip rate and load, its range is 7e-9 Pa."""
+    slab = ss.ElasticSlab(2000.0, 2465.0, 739.5, 1e8, driver_impedance=3e6)
+    problem = ss.Problem(slab, ss.friction.Coulomb(0.8, 0.567), initial_load=8.02e7)
+    run, time = ss.simulate(problem, 5.0), np.linspace(0.0, 5.0, 501)
+    one = Series(time, run.slip(time), run.slip_rate(time), np.full(501, factor * 5.67e7), "mine")
+    (found,) = judge_series(one, problem).judgements
+    assert found.passed == passes
+    assert found.shares["traction"] == pytest.approx(factor - 1.0, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(("tolerance", "passes"), [(0.05, True), (4e-4, False)])
+def test_a_shock_smaller_than_the_tolerance_allows_need_not_be_made(tolerance: float, passes: bool) -> None:
+    """The layers send back 1 %: the slip rate falls from 20.5 to 20.4901 m/s, a jump of 0.0005 of it, where it is off by 0.001."""
+    layers = ss.LayeredSlab(thickness=[400, 500], density=[2000, 2000], wave_speed=[1000, 1020], normal_stress=1e8)
+    problem = ss.Problem(layers, ss.friction.LinearSlipWeakening(0.8, 0.4, 2.0), initial_load=8.1e7)
+    run, time = ss.simulate(problem, 1.5), np.linspace(0.0, 1.5, 2001)
+    one = Series(time, 0.999 * run.slip(time), 0.999 * run.slip_rate(time), run.traction(time), "mine")
+    (found,) = judge_series(one, problem, tolerance=tolerance).judgements
+    assert found.passed == passes
+    assert ("it makes 1 of 2 shocks" in found.faults) != passes
+
+
+def test_the_small_shock_of_a_slow_problem_must_be_made() -> None:
+    """The first shock of `weak-shock`, of 2.6e-5 m/s, is a fifth of its largest slip rate: spread over 1 s it is not made."""
+    one = of_benchmark("weak-shock", 2001)
+    smooth = replace(one, rate=one.rate * np.minimum(one.time / 1.0, 1.0))
+    (found,) = judge_series(smooth, benchmark_of("weak-shock").scenario).judgements
+    assert "it makes 1 of 2 shocks" in found.faults
 
 
 def columns() -> Any:

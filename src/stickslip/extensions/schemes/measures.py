@@ -146,6 +146,11 @@ class MeasuredSeries:
         shocks = self.exact.shocks.time.to_numpy(float)
         return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadow).all(axis=1))
 
+    @property
+    def compared(self) -> float:
+        """The share of the samples at which slip rate and traction are compared."""
+        return float(self.away.mean())
+
     @cached_property
     def gap(self) -> Floats:
         """Slip of the series minus the exact slip, m."""
