@@ -64,6 +64,17 @@ def test_a_series_with_rounded_digits_is_not_called_shifted() -> None:
     assert traits(replace(base, slip=base.slip * (1.0 + 3e-7), rate=base.rate * (1.0 - 3e-7)), "smooth-slip") == ()
 
 
+@pytest.mark.parametrize("late", [-1e-9, 1e-9])
+def test_a_sample_on_either_side_of_a_jump_at_rest_is_not_called_shifted(late: float) -> None:
+    """Echoes make traction jump while these slabs rest, at times that are samples: a rounded time is before or after them."""
+    assert traits(series_of("two-slabs", late=late), "two-slabs") == ()
+
+
+def test_half_a_step_early_is_not_called_a_step_early_for_jumps_on_samples() -> None:
+    """Under Coulomb friction traction only jumps, and half a step cannot be told from a step where jumps are on samples."""
+    assert traits(replace(series_of("dwell"), traction=series_of("dwell", late=-0.5).traction), "dwell") == ()
+
+
 def test_ringing_is_named_with_its_size_and_period() -> None:
     """0.3 m/s about the exact slip rate, in 5 steps, from 1 s on."""
     base = series_of("linear-weakening")
