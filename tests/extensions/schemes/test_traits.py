@@ -90,6 +90,19 @@ def test_a_bad_slip_rate_without_swings_does_not_ring() -> None:
     assert traits(replace(base, rate=base.rate + 0.3 * np.sin(2.0 * base.time)), "linear-weakening") == ()
 
 
+@pytest.mark.parametrize("steps", [20, 60])
+def test_swings_over_many_steps_are_no_ringing(steps: int) -> None:
+    """A wrong mass or stiffness has them: their period is that of the motion, and not of a mesh."""
+    base = series_of("smooth-slip")
+    assert traits(replace(base, rate=base.rate + 0.5 * np.sin(2.0 * np.pi * np.arange(STEPS + 1) / steps)), "smooth-slip") == ()
+
+
+@pytest.mark.parametrize("size", [0.01, 0.05])
+def test_white_noise_is_no_ringing(size: float) -> None:
+    base, noise = series_of("smooth-slip"), np.random.default_rng(1).normal(size=STEPS + 1)
+    assert traits(replace(base, rate=base.rate + size * base.rate.max() * noise), "smooth-slip") == ()
+
+
 @pytest.mark.parametrize(("scheme", "rings"), [("mass-redistribution", True), ("newmark", True), ("theta", False), ("sbp4", False)])
 def test_schemes_that_ring_after_a_shock_are_told_from_those_that_do_not(scheme: str, rings: bool) -> None:
     scenario = benchmark_of("coulomb").scenario

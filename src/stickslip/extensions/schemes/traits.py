@@ -24,6 +24,8 @@ ROUNDED_AWAY = 1e-6
 """A distance below this share of the exact values (1) has no cause that is looked for: files have so many digits."""
 SMALLEST_SWING, FEWEST_SWINGS = 0.02, 8
 """A series rings if its slip rate swings about the exact one by more than this share of the largest, so many times in a row."""
+LONGEST_PERIOD, SMALLEST_REGULAR = 12.0, 0.5
+"""A mesh rings within so many steps, and so regularly that two samples tell at least this share of what the next one is."""
 SHIFTS = {-1.0: "a step early", -0.5: "half a step early", 0.5: "half a step late", 1.0: "a step late"}
 """Shifts in time that are looked for, in steps."""
 FEWEST_SAMPLES = 10
@@ -37,7 +39,7 @@ FEWEST_STEPS = 200
 
 
 def ringing(one: MeasuredSeries) -> Iterator[str]:
-    """Yield a sentence if the slip rate swings about the exact one again and again."""
+    """Yield a sentence if the slip rate swings about the exact one again and again, within few steps, and not as noise does."""
     gap, time = one.rate - one.exact_rate, one.time
     least = SMALLEST_SWING * float(np.abs(one.exact_rate).max())
     slope = np.sign(np.diff(gap))
@@ -45,16 +47,24 @@ def ringing(one: MeasuredSeries) -> Iterator[str]:
     turns = turns[one.away[turns]]
     swings = np.abs(np.diff(gap[turns])) > least
     long = _longest(swings)
-    if long.stop - long.start >= FEWEST_SWINGS:
-        at = turns[long.start : long.stop + 1]
-        period = 2.0 * float(np.median(np.diff(time[at])))
+    if long.stop - long.start < FEWEST_SWINGS:
+        return
+    at = turns[long.start : long.stop + 1]
+    steps = 2.0 * float(np.median(np.diff(time[at]))) / one.series.step
+    if steps <= LONGEST_PERIOD and _regular(gap[at[0] : at[-1] + 1]) >= SMALLEST_REGULAR:
         size = 0.5 * float(np.median(np.abs(np.diff(gap[at]))))
         unit = one.exact.problem.unit_of("slip_rate")
-        steps = period / one.series.step
         yield (
             f"{one.series.name} rings from {brief(float(time[at[1]]), 's')} on: its slip rate swings about the exact one by "
             f"{brief(size, unit, 2)}, {long.stop - long.start} times, with a period of {steps:.3g} steps"
         )
+
+
+def _regular(gap: Floats) -> float:
+    """Return the share of the variance of each sample that a linear rule tells from the two before it: 1 of swings, 0 of noise."""
+    known = np.stack([np.ones(gap.size - 2), gap[1:-1], gap[:-2]], axis=1)
+    left = gap[2:] - known @ np.linalg.lstsq(known, gap[2:], rcond=None)[0]
+    return 1.0 - float(np.sum(left**2)) / (gap.size - 5) / float(np.var(gap[2:]))
 
 
 def _longest(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> slice:
