@@ -170,6 +170,14 @@ def test_an_echo_of_the_wrong_sign_or_size_is_named_with_its_place(wrong: str) -
     assert found == [f"mine has {words}"] * bool(words)
 
 
+@pytest.mark.parametrize(("name", "factor"), [("bow-at-a-tenth", 0.5), ("moving-ground", -1.0)])
+def test_another_convention_is_no_wrong_echo(name: str, factor: float) -> None:
+    base = series_of(name)
+    (found,) = judge_series(replace(base, slip=factor * base.slip, rate=factor * base.rate), name).judgements
+    assert [hint.partition(" the exact")[0] for hint in found.hints] in (["mine has half of"], ["mine has the opposite sign of"])
+    assert found.traits == ()
+
+
 def test_the_order_of_several_series_is_told() -> None:
     """Slip with an error of 0.2 step, and a slip rate with one of step^2."""
     several = []

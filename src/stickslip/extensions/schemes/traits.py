@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.schemes.conventions import EXPLAINS
 from stickslip.extensions.schemes.echoes.asked import LARGEST_WORK, Echoes, echoes_of
 from stickslip.extensions.schemes.measures import MeasuredSeries
 from stickslip.extensions.schemes.verdict import RulePaths
@@ -18,8 +19,6 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 
-EXPLAINS = 0.2
-"""Name a cause if it lessens the distance from the exact series by this factor."""
 ROUNDED_AWAY = 1e-6
 """A distance below this share of the exact values (1) has no cause that is looked for: files have so many digits."""
 SMALLEST_SWING, FEWEST_SWINGS = 0.02, 8
