@@ -13,6 +13,7 @@ from scipy.special import ellipe
 
 import stickslip as ss
 from stickslip.extensions.paper.cases import problem
+from stickslip.extensions.paper.claims.faults import pulses_in_3d
 from stickslip.extensions.paper.rate_law_faults import (
     LAG,
     SLOWER_THAN_UNIFORM,
@@ -25,6 +26,7 @@ from stickslip.extensions.paper.rate_law_faults import (
     slips_between,
 )
 from stickslip.extensions.paper.rate_law_report import (
+    ANSWER,
     LAGS,
     alone_table,
     chosen,
@@ -37,6 +39,7 @@ from stickslip.extensions.paper.rate_law_report import (
     meshes,
     most_pulses,
     orders,
+    pulses_of_row,
 )
 from tests.extensions.planar.planar_methods import FrictionalVolume, PlanarCase
 
@@ -288,6 +291,19 @@ def test_stored_slip_on_planes_has_its_window_around_the_limit_of_round_cracks()
     modes = {row["background [MPa]"]: row["mode"] for row in chosen(group="load", law="lag", shape="plane", driver="none")}
     assert modes == {"60": "pulse", "66": "pulse", "70": "pulse", "75": "several pulses", "78": "crack"}
     assert 70e6 < largest_load_of_pulses(SLOWER_THAN_UNIFORM["plane"]) < 75e6
+
+
+def test_second_pulses_of_far_places_at_low_loads_are_told_wherever_the_answer_is() -> None:
+    """At 50 and 55 MPa in 2D places at 16 or 24 km see two pulses while the middle sees one; page, claim and answer say so."""
+    rows = chosen(LAGS["line"], group="load", law="lag", shape="line", driver="none")
+    low = {row["background [MPa]"]: pulses_of_row(row) for row in rows if float(row["background [MPa]"]) < 60.0}
+    assert low == {"50": [1, 1, 2, 2], "55": [1, 1, 1, 2]}
+    answer = PAGE.read_text(encoding="utf-8").partition("![")[0]
+    why = pulses_in_3d(None).explanation  # type: ignore[arg-type]
+    assert "at 50 and 55 MPa in 2D far places see two" in answer
+    assert "In 3D one load shows it, 75 MPa" in answer
+    assert "At low loads in 2D, 50 and 55 MPa, far places see two pulses" in why
+    assert "At low loads in 2D far places see two" in ANSWER
 
 
 @pytest.mark.parametrize("load", ["60", "70", "75"])

@@ -64,6 +64,17 @@ def test_a_series_with_rounded_digits_is_not_called_shifted() -> None:
     assert traits(replace(base, slip=base.slip * (1.0 + 3e-7), rate=base.rate * (1.0 - 3e-7)), "smooth-slip") == ()
 
 
+@pytest.mark.parametrize("late", [-1e-9, 1e-9])
+def test_a_sample_on_either_side_of_a_jump_at_rest_is_not_called_shifted(late: float) -> None:
+    """Echoes make traction jump while these slabs rest, at times that are samples: a rounded time is before or after them."""
+    assert traits(series_of("two-slabs", late=late), "two-slabs") == ()
+
+
+def test_half_a_step_early_is_not_called_a_step_early_for_jumps_on_samples() -> None:
+    """Under Coulomb friction traction only jumps, and half a step cannot be told from a step where jumps are on samples."""
+    assert traits(replace(series_of("dwell"), traction=series_of("dwell", late=-0.5).traction), "dwell") == ()
+
+
 def test_ringing_is_named_with_its_size_and_period() -> None:
     """0.3 m/s about the exact slip rate, in 5 steps, from 1 s on."""
     base = series_of("linear-weakening")
@@ -77,6 +88,19 @@ def test_ringing_is_named_with_its_size_and_period() -> None:
 def test_a_bad_slip_rate_without_swings_does_not_ring() -> None:
     base = series_of("linear-weakening")
     assert traits(replace(base, rate=base.rate + 0.3 * np.sin(2.0 * base.time)), "linear-weakening") == ()
+
+
+@pytest.mark.parametrize("steps", [20, 60])
+def test_swings_over_many_steps_are_no_ringing(steps: int) -> None:
+    """A wrong mass or stiffness has them: their period is that of the motion, and not of a mesh."""
+    base = series_of("smooth-slip")
+    assert traits(replace(base, rate=base.rate + 0.5 * np.sin(2.0 * np.pi * np.arange(STEPS + 1) / steps)), "smooth-slip") == ()
+
+
+@pytest.mark.parametrize("size", [0.01, 0.05])
+def test_white_noise_is_no_ringing(size: float) -> None:
+    base, noise = series_of("smooth-slip"), np.random.default_rng(1).normal(size=STEPS + 1)
+    assert traits(replace(base, rate=base.rate + size * base.rate.max() * noise), "smooth-slip") == ()
 
 
 @pytest.mark.parametrize(("scheme", "rings"), [("mass-redistribution", True), ("newmark", True), ("theta", False), ("sbp4", False)])
@@ -144,6 +168,14 @@ def test_an_echo_of_the_wrong_sign_or_size_is_named_with_its_place(wrong: str) -
     make, name, words = WRONG[wrong]
     found = [text for text in traits(make(), name) if "echo" in text]
     assert found == [f"mine has {words}"] * bool(words)
+
+
+@pytest.mark.parametrize(("name", "factor"), [("bow-at-a-tenth", 0.5), ("moving-ground", -1.0)])
+def test_another_convention_is_no_wrong_echo(name: str, factor: float) -> None:
+    base = series_of(name)
+    (found,) = judge_series(replace(base, slip=factor * base.slip, rate=factor * base.rate), name).judgements
+    assert [hint.partition(" the exact")[0] for hint in found.hints] in (["mine has half of"], ["mine has the opposite sign of"])
+    assert found.traits == ()
 
 
 def test_the_order_of_several_series_is_told() -> None:

@@ -28,7 +28,8 @@ ANSWER = (
     "The paper's rate law is ill-posed along a contact. If friction follows the slip rate with a lag, it is solved. The slab in 1D"
     " then slips in one pulse; along a fault in 2D and 3D that depends on the load outside of the nucleus. Below the lower fold of"
     " the set K slip heals by itself behind its front; far above it, it is a crack. In a window between, what has healed slips"
-    " again, so that places see several pulses in one event. The echo of a rigid driver arrests slip out of a nucleus before."
+    " again, so that places see several pulses in one event. At low loads in 2D far places see two, too. The echo of a rigid driver"
+    " arrests slip out of a nucleus before."
 )
 """The answer to the paper's question under the rate law."""
 LAG_OF_ROW = "lag [s] or distance [m]"

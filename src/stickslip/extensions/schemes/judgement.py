@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.conventions import Written
 from stickslip.extensions.schemes.measures import MeasuredSeries
 from stickslip.extensions.schemes.shocks import CELLS_NEAR_SHOCK, MADE
-from stickslip.extensions.schemes.traits import EXPLAINS, ROUNDED_AWAY, traits_of
+from stickslip.extensions.schemes.traits import ROUNDED_AWAY, traits_of
 from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
@@ -25,15 +27,6 @@ COMPARED = 0.5
 """At least this share of a series must lie away from shocks, so that its slip rate and traction are compared at all."""
 ROWS_ENOUGH = 20
 """So many rows for each shock are enough for that: nine of them, at most, lie beside it."""
-SIDES = "of two elastic sides each slips by half, and the jump between them counts"
-ZERO = "another zero than the exact"
-CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {
-    "the opposite sign of the exact": ("multiply by -1", lambda own, exact: -own),
-    "half of the exact": (SIDES, lambda own, exact: 2.0 * own),
-    "twice the exact": ("divide by 2", lambda own, exact: 0.5 * own),
-    ZERO: ("subtract", lambda own, exact: own - float(np.median(own - exact))),
-}
-"""A right series may be written in other conventions: what it then has, the cure, and the series in the convention used here."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +136,16 @@ class Judgement:
     @cached_property
     def hints(self) -> tuple[str, ...]:
         """The conventions that explain what is off, or a step that is too long for the shocks, one sentence each."""
-        return () if self.passed else tuple(self._conventions()) or tuple(self._too_coarse())
+        if self.passed:
+            return ()
+        return tuple(self._written.sentences(self.name, "exact", self._unit_of)) or tuple(self._too_coarse())
+
+    @cached_property
+    def _written(self) -> Written:
+        """The conventions that the series is written in, if it does not pass."""
+        if self.passed:
+            return Written(self._pairs)
+        return Written.of(self._pairs, lambda what, own: max(self._shares(what, own).values()), self.tolerance)
 
     def _too_coarse(self) -> Iterator[str]:
         """Yield a sentence if shocks are wrong because they are too near to each other, or too short, for the series' steps."""
@@ -164,22 +166,14 @@ class Judgement:
 
     @cached_property
     def traits(self) -> tuple[str, ...]:
-        """What the series shows of its program, whether it passes or not: ringing, a shift by a step, a wrong echo."""
-        return traits_of(self.measured)
+        """What the series shows of its program, whether it passes or not: ringing, a shift by a step, a wrong echo.
 
-    def _conventions(self) -> Iterator[str]:
-        explained: dict[str, list[str]] = {}
-        for what, (own, exact) in self._pairs.items():
-            named = {said: max(self._shares(what, change(own, exact)).values()) for said, (_, change) in CONVENTIONS.items()}
-            best, off = min(named, key=lambda said: named[said]), max(self._shares(what, own).values())
-            if off > 0.5 * self.tolerance and named[best] < EXPLAINS * off and (what, best) != ("slip rate", ZERO):
-                explained.setdefault(best, []).append(what)
-        for said, names in explained.items():
-            cure = CONVENTIONS[said][0]
-            if said == ZERO:
-                zeros = (brief(float(np.median(np.subtract(*self._pairs[what]))), self._unit_of(what), 4) for what in names)
-                cure = f"subtract {' and '.join(zeros)}"
-            yield f"{self.name} has {said} {', '.join(names[:-1])}{' and ' if len(names) > 1 else ''}{names[-1]}: {cure}"
+        They are looked for in the convention used here: half of the slip is not half of an echo.
+        """
+        one, written = self.measured, self._written
+        if not written.found:
+            return traits_of(one)
+        return traits_of(replace(one, series=Series(one.time, *written.mended.values(), self.name, one.series.cells)))
 
 
 def _mean(gap: Floats, which: NDArray[np.bool_]) -> float:

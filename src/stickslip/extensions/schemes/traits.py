@@ -9,7 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from stickslip.extensions.schemes.conventions import EXPLAINS
 from stickslip.extensions.schemes.echoes.asked import LARGEST_WORK, Echoes, echoes_of
 from stickslip.extensions.schemes.measures import MeasuredSeries
 from stickslip.extensions.schemes.verdict import RulePaths
@@ -17,14 +19,18 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 
-EXPLAINS = 0.2
-"""Name a cause if it lessens the distance from the exact series by this factor."""
 ROUNDED_AWAY = 1e-6
 """A distance below this share of the exact values (1) has no cause that is looked for: files have so many digits."""
 SMALLEST_SWING, FEWEST_SWINGS = 0.02, 8
 """A series rings if its slip rate swings about the exact one by more than this share of the largest, so many times in a row."""
+LONGEST_PERIOD, SMALLEST_REGULAR = 12.0, 0.5
+"""A mesh rings within so many steps, and so regularly that two samples tell at least this share of what the next one is."""
 SHIFTS = {-1.0: "a step early", -0.5: "half a step early", 0.5: "half a step late", 1.0: "a step late"}
 """Shifts in time that are looked for, in steps."""
+FEWEST_SAMPLES = 10
+"""A shift shows in at least so many samples, of which most are explained."""
+LARGEST_HALF = 0.7
+"""A quantity jumps if half the time brings more than this share of its change."""
 SMALLEST_MISS = 0.01
 """Look for another echo if the load differs from what the echoes bring by more than this share of its range."""
 FEWEST_STEPS = 200
@@ -32,7 +38,7 @@ FEWEST_STEPS = 200
 
 
 def ringing(one: MeasuredSeries) -> Iterator[str]:
-    """Yield a sentence if the slip rate swings about the exact one again and again."""
+    """Yield a sentence if the slip rate swings about the exact one again and again, within few steps, and not as noise does."""
     gap, time = one.rate - one.exact_rate, one.time
     least = SMALLEST_SWING * float(np.abs(one.exact_rate).max())
     slope = np.sign(np.diff(gap))
@@ -40,16 +46,24 @@ def ringing(one: MeasuredSeries) -> Iterator[str]:
     turns = turns[one.away[turns]]
     swings = np.abs(np.diff(gap[turns])) > least
     long = _longest(swings)
-    if long.stop - long.start >= FEWEST_SWINGS:
-        at = turns[long.start : long.stop + 1]
-        period = 2.0 * float(np.median(np.diff(time[at])))
+    if long.stop - long.start < FEWEST_SWINGS:
+        return
+    at = turns[long.start : long.stop + 1]
+    steps = 2.0 * float(np.median(np.diff(time[at]))) / one.series.step
+    if steps <= LONGEST_PERIOD and _regular(gap[at[0] : at[-1] + 1]) >= SMALLEST_REGULAR:
         size = 0.5 * float(np.median(np.abs(np.diff(gap[at]))))
         unit = one.exact.problem.unit_of("slip_rate")
-        steps = period / one.series.step
         yield (
             f"{one.series.name} rings from {brief(float(time[at[1]]), 's')} on: its slip rate swings about the exact one by "
             f"{brief(size, unit, 2)}, {long.stop - long.start} times, with a period of {steps:.3g} steps"
         )
+
+
+def _regular(gap: Floats) -> float:
+    """Return the share of the variance of each sample that a linear rule tells from the two before it: 1 of swings, 0 of noise."""
+    known = np.stack([np.ones(gap.size - 2), gap[1:-1], gap[:-2]], axis=1)
+    left = gap[2:] - known @ np.linalg.lstsq(known, gap[2:], rcond=None)[0]
+    return 1.0 - float(np.sum(left**2)) / (gap.size - 5) / float(np.var(gap[2:]))
 
 
 def _longest(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> slice:
@@ -64,27 +78,51 @@ def _longest(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> slice:
 
 def shifted(one: MeasuredSeries) -> Iterator[str]:
     """Yield a sentence if slip, slip rate or traction would be right at times that are half a step or a step away."""
-    exact, step = one.exact, one.series.step
+    exact = one.exact
     own = {"slip": one.series.slip[: one.time.size] + exact.problem.initial_slip, "slip rate": one.rate, "traction": one.traction}
     found: dict[str, list[str]] = {}
     for name, values in own.items():
         at: Callable[[Floats], Floats] = getattr(exact, name.replace(" ", "_"))
         kept = _inside(one) if name == "slip" else _inside(one) & one.away
-        if not kept.any():
-            continue
-        scale, last = float(np.abs(at(one.time)).max()), exact.history.span[1]
-        moved = {shift: at(np.clip(one.time - shift * step, 0.0, last)) for shift in (0.0, *SHIFTS)}
-        left = {shift: float(np.abs(values - there)[kept].mean()) for shift, there in moved.items()}
-        off = left.pop(0.0)
-        best = min(left, key=lambda shift: left[shift])
-        if off > ROUNDED_AWAY * scale and left[best] < EXPLAINS * off:
+        best = _shift(at, one, values, kept)
+        if best is not None:
+            best = _shift(at, one, values, kept & _is_smooth(at, one))
+        if best is not None:
             found.setdefault(SHIFTS[best], []).append(name)
     for words, names in found.items():
         listed = f"{', '.join(names[:-1])}{' and ' if len(names) > 1 else ''}{names[-1]}"
         yield f"{one.series.name} has its {listed} {words}: write the values of the time that stands beside them"
 
 
-def _inside(one: MeasuredSeries) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _shift(at: Callable[[Floats], Floats], one: MeasuredSeries, values: Floats, kept: NDArray[np.bool_]) -> float | None:
+    """Return the shift (steps) that explains what is off in some samples; None if none does, or if only few of them are off."""
+    if not kept.any():
+        return None
+    exact, last = at(one.time), one.exact.history.span[1]
+    moved = {shift: at(np.clip(one.time - shift * one.series.step, 0.0, last)) for shift in SHIFTS}
+    left = {shift: float(np.abs(values - there)[kept].mean()) for shift, there in moved.items()}
+    off, best = np.abs(values - exact), min(left, key=lambda shift: left[shift])
+    least, mean = ROUNDED_AWAY * float(np.abs(exact).max()), float(off[kept].mean())
+    changes = kept & (np.abs(moved[best] - exact) > least)
+    explained = np.abs(values - moved[best])[changes] < EXPLAINS * off[changes]
+    many = changes.sum() >= FEWEST_SAMPLES and 2 * explained.sum() > changes.sum()
+    return best if many and mean > least and left[best] < EXPLAINS * mean else None
+
+
+def _is_smooth(at: Callable[[Floats], Floats], one: MeasuredSeries) -> NDArray[np.bool_]:
+    """Return where an exact quantity has no jump within a step and a half: there half the time brings half the change.
+
+    Traction jumps at rest, too, when a wave of it arrives. Beside a jump a series that is right may have the value before it or
+    after it, since its times are rounded, and so are travel times.
+    """
+    sides = np.linspace(-1.5, 1.5, 25)
+    times = np.clip(one.time + one.series.step * sides[:, None], 0.0, one.exact.history.span[1])
+    values = at(times.ravel()).reshape(times.shape)
+    whole, half = (np.abs(np.diff(values[::stride], axis=0)).max(axis=0) for stride in (2, 1))
+    return np.asarray((half <= LARGEST_HALF * whole) | (whole <= ROUNDED_AWAY * float(np.abs(values).max())))
+
+
+def _inside(one: MeasuredSeries) -> NDArray[np.bool_]:
     """Return where a shift by a step stays between start and end of the exact solution."""
     step = one.series.step
     return np.asarray((one.time > 1.5 * step) & (one.time < one.exact.history.span[1] - 1.5 * step))
