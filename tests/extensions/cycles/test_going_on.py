@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +75,17 @@ def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: P
         assert len(again.points) > len(part.points)
         kept = [one.value for one in part.points if not one.edge]
         assert [one.value for one in again.points if not one.edge][: len(kept)] == pytest.approx(kept, rel=1e-12)
+
+
+def test_the_stability_of_a_cycle_at_an_edge_is_not_told_where_a_multiplier_is_on_the_unit_circle() -> None:
+    """Rounding decides nothing there: a multiplier a little inside of the circle is neutral at its edge, and stable elsewhere."""
+    start = ss.studies.cycle(coulomb())
+    branch = ss.studies.follow(start, "pull_rate", to=0.2, steps=2)
+    inside = branch.points[0]._replace(multipliers=np.array([-1.0 + 2e-8]))
+    names = "", "period doubling", "fold of cycles", "Neimark-Sacker", "end of doubling"
+    points = tuple(inside._replace(edge=name) for name in names)
+    assert [one.stable for one in points] == [True, None, None, None, None]
+    assert replace(branch, points=points).table["stable"].tolist() == ["yes", *["not known"] * 4]
 
 
 def test_hysteresis_is_where_steady_sliding_and_stick_slip_are_both_stable() -> None:
