@@ -77,6 +77,18 @@ def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: P
         assert [one.value for one in again.points if not one.edge][: len(kept)] == pytest.approx(kept, rel=1e-12)
 
 
+@pytest.mark.parametrize(("pull", "to"), [(0.28, 0.35), (0.28, 0.3), (0.14, 0.4)])
+def test_a_finished_branch_that_goes_on_stays_as_it_is(pull: float, to: float, tmp_path: Path) -> None:
+    """Back to where it began, at the end of its range and at the Hopf point, from its table and from itself: not one row more."""
+    start = ss.studies.cycle(stribeck(pull, initial_load=0.0))
+    branch = ss.studies.follow(start, to=to, steps=4)
+    for n in range(2):
+        again = ss.studies.follow(start, to=to, steps=4, resume=branch.to_csv(tmp_path / f"{n}.csv") if n else branch)
+        pd.testing.assert_frame_equal(again.table, branch.table, check_exact=True)
+        assert [edge.name for edge in again.edges] == [edge.name for edge in branch.edges]
+        assert [edge.value for edge in again.edges] == [edge.value for edge in branch.edges]
+
+
 def test_the_stability_of_a_cycle_at_an_edge_is_not_told_where_a_multiplier_is_on_the_unit_circle() -> None:
     """Rounding decides nothing there: a multiplier a little inside of the circle is neutral at its edge, and stable elsewhere."""
     start = ss.studies.cycle(coulomb())
