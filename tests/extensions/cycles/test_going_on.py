@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +76,29 @@ def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: P
         assert len(again.points) > len(part.points)
         kept = [one.value for one in part.points if not one.edge]
         assert [one.value for one in again.points if not one.edge][: len(kept)] == pytest.approx(kept, rel=1e-12)
+
+
+@pytest.mark.parametrize(("pull", "to"), [(0.28, 0.35), (0.28, 0.3), (0.14, 0.4)])
+def test_a_finished_branch_that_goes_on_stays_as_it_is(pull: float, to: float, tmp_path: Path) -> None:
+    """Back to where it began, at the end of its range and at the Hopf point, from its table and from itself: not one row more."""
+    start = ss.studies.cycle(stribeck(pull, initial_load=0.0))
+    branch = ss.studies.follow(start, to=to, steps=4)
+    for n in range(2):
+        again = ss.studies.follow(start, to=to, steps=4, resume=branch.to_csv(tmp_path / f"{n}.csv") if n else branch)
+        pd.testing.assert_frame_equal(again.table, branch.table, check_exact=True)
+        assert [edge.name for edge in again.edges] == [edge.name for edge in branch.edges]
+        assert [edge.value for edge in again.edges] == [edge.value for edge in branch.edges]
+
+
+def test_the_stability_of_a_cycle_at_an_edge_is_not_told_where_a_multiplier_is_on_the_unit_circle() -> None:
+    """Rounding decides nothing there: a multiplier a little inside of the circle is neutral at its edge, and stable elsewhere."""
+    start = ss.studies.cycle(coulomb())
+    branch = ss.studies.follow(start, "pull_rate", to=0.2, steps=2)
+    inside = branch.points[0]._replace(multipliers=np.array([-1.0 + 2e-8]))
+    names = "", "period doubling", "fold of cycles", "Neimark-Sacker", "end of doubling"
+    points = tuple(inside._replace(edge=name) for name in names)
+    assert [one.stable for one in points] == [True, None, None, None, None]
+    assert replace(branch, points=points).table["stable"].tolist() == ["yes", *["not known"] * 4]
 
 
 def test_hysteresis_is_where_steady_sliding_and_stick_slip_are_both_stable() -> None:

@@ -12,15 +12,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stickslip.extensions.cycles.edges import MEANING, CycleEdge
+from stickslip.extensions.cycles.edges import DOUBLING, FOLD, HALVING, MEANING, TORUS, CycleEdge
 from stickslip.extensions.cycles.hysteresis import Interval, joined, with_stable_cycles, with_stable_sliding
-from stickslip.extensions.cycles.limit_cycle import LimitCycle, is_stable, row_of
+from stickslip.extensions.cycles.limit_cycle import NOT_KNOWN, LimitCycle, is_stable, row_of
 from stickslip.extensions.cycles.measures import Measures
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import ParameterPath
 from stickslip.run import Study
+
+ON_THE_CIRCLE = (FOLD, DOUBLING, TORUS, HALVING)
+"""The edges where a multiplier is on the unit circle: linear disturbances neither fade nor grow."""
 
 
 class PointOnBranch(NamedTuple):
@@ -45,8 +48,8 @@ class PointOnBranch(NamedTuple):
 
     @property
     def stable(self) -> bool | None:
-        """Whether its disturbances fade."""
-        return is_stable(self.multipliers)
+        """Whether its disturbances fade; None at an edge where a multiplier is on the unit circle, but for rounding."""
+        return None if self.edge in ON_THE_CIRCLE else is_stable(self.multipliers)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,6 +81,8 @@ class BranchOfCycles(Study):
         rows = []
         for one in self.points:
             row = {self.parameter.name: one.value} | row_of(one.measures, one.multipliers)
+            if one.edge in ON_THE_CIRCLE:
+                row["stable"] = NOT_KNOWN
             row |= {"edge": one.edge, "part": one.part, "doubled": one.doubled}
             rows.append(row | {f"start_{n}": value for n, value in enumerate(one.start.tolist(), 1)})
         return pd.DataFrame(rows)

@@ -35,6 +35,8 @@ CLOSE_TO_REST, NEARER, MOST_NEARER = 1e-7, 0.05, 30
 """A branch is followed to this share (1) of the pull rate as least slip rate, each time this much nearer, at most so often."""
 SMALLEST_BISECTED = 1e-12
 """Width (1, share of the range) to which a value is bisected beyond which there is no cycle."""
+SMALL = 0.05
+"""A branch whose amplitude is above this share (1) of the pull rate does not end in steady sliding."""
 WIDER, MOST_WIDER = 4.0, 12
 """By what factor, and how often, the surroundings of an end in steady sliding are widened (1)."""
 
@@ -139,9 +141,9 @@ def end_in_steady_sliding(path: Path, values: Floats, amplitudes: Floats) -> flo
 
     The square of the amplitude goes to 0 in proportion to the distance from it.
     """
-    squares = amplitudes[-2:] ** 2
-    if squares[0] == squares[1]:
+    if len(values) < 2 or not amplitudes[-1] < min(amplitudes[-2], SMALL * path.section(float(values[-1])).problem.first_pull_rate):
         return None
+    squares = amplitudes[-2:] ** 2
     expected = float(values[-1] - squares[1] * (values[-2] - values[-1]) / (squares[0] - squares[1]))
     width = max(4.0 * abs(values[-1] - expected), 1e-9 * abs(expected))
 

@@ -7,7 +7,6 @@ from os import PathLike
 
 import numpy as np
 
-from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
 from stickslip.extensions.cycles.doubling import MOST_DOUBLED, end_of_doubling, first_doubled
 from stickslip.extensions.cycles.edges import (
@@ -24,8 +23,15 @@ from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.meeting import with_rest, without_rest
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
-from stickslip.extensions.cycles.reaching import STRAIGHT, at_end_of_range, between, past_end, range_of
-from stickslip.extensions.cycles.resuming import check_can_be_kept, edge_of, orbit_of, place_to_go_on, points_to_go_on
+from stickslip.extensions.cycles.reaching import STRAIGHT, at_end_of_range, between, first_place, past_end, range_of
+from stickslip.extensions.cycles.resuming import (
+    check_can_be_kept,
+    edge_of,
+    is_at_its_end,
+    orbit_of,
+    place_to_go_on,
+    points_to_go_on,
+)
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -151,11 +157,11 @@ class _Following:
 
     def run(self, earlier: list[PointOnBranch]) -> None:
         """Follow all parts of the branch, from the end of earlier cycles on if there are any."""
-        orbit = self.cycle.orbit
-        path = CYCLE_KINDS[self.cycle.problem.body.structure].path(orbit, self.cycle.scenario, self.parameter, self.span)
-        start = path.at_value(self.ends[0], orbit.place, orbit.period)
-        if start.way[-1] * (self.ends[1] - self.ends[0]) < 0.0:
-            start = replace(start, way=-start.way)
+        path, start = first_place(self.cycle, self.parameter, self.ends)
+        if earlier and is_at_its_end(earlier, self.ends):
+            self._taken_over(path, earlier)
+            self._next_doubled()
+            return
         path, start = self._gone_on(path, start, earlier) if earlier else (path, start)
         part: tuple[Path, PlaceOnBranch] | None = (path, start)
         for _ in range(MOST_PARTS):
@@ -166,15 +172,21 @@ class _Following:
 
     def _gone_on(self, path: Path, start: PlaceOnBranch, earlier: list[PointOnBranch]) -> tuple[Path, PlaceOnBranch]:
         """Take over earlier cycles but the last one, and return that with the way on."""
-        *self.points, last = earlier
-        self.number, self.doubled = last.part, last.doubled
-        for one in [one for one in self.points if one.edge]:
-            self.edges.append(edge_of(one, self.cycle, self.parameter))
-            self._note(path, self.edges[-1], one.doubled)
+        last = earlier[-1]
+        self._taken_over(path, earlier)
+        self.points.pop()
         if last.at_onset != path.at_onset:
             extent = orbit_of(last, self.cycle, self.parameter).extent
             path = replace(path, at_onset=last.at_onset, scales=np.append(extent, self.span))
         return path, place_to_go_on(path, start, earlier)
+
+    def _taken_over(self, path: Path, earlier: list[PointOnBranch]) -> None:
+        """Take over earlier cycles with their edges."""
+        self.points = list(earlier)
+        self.number, self.doubled = earlier[-1].part, earlier[-1].doubled
+        for one in [one for one in earlier if one.edge]:
+            self.edges.append(edge_of(one, self.cycle, self.parameter))
+            self._note(path, self.edges[-1], one.doubled)
 
     def _note(self, path: Path, edge: CycleEdge, doubled: int) -> None:
         """Note where a branch of cycles of twice the period begins, if they are wished."""
@@ -185,6 +197,10 @@ class _Following:
         """Follow the cycles of twice the period, and of twice theirs; one that an earlier branch has begun goes on first."""
         if self.doubled:
             self._part(path, start)
+        self._next_doubled()
+
+    def _next_doubled(self) -> None:
+        """Follow the cycles of twice the period from the doublings that are left."""
         while self.number < len(self.doublings):
             doubled, path, edge = self.doublings[self.number]
             self.number, self.doubled = self.number + 1, doubled + 1
@@ -277,12 +293,10 @@ class _Following:
             edge, last = loss_of_stick(path, now, float(beyond) if end is None else end)
             self._edge(edge)
             return without_rest(path, edge, last)
-        small = amplitudes[-1] < 0.05 * now.orbit.section.problem.first_pull_rate
-        if len(values) > 1 and small and amplitudes[-1] < amplitudes[-2]:
-            found = end_in_steady_sliding(path, np.array(values), np.array(amplitudes))
-            if found is not None:
-                self._edge(CycleEdge(STEADY_END, found, now.orbit))
-                return None
+        found = end_in_steady_sliding(path, np.array(values), np.array(amplitudes))
+        if found is not None:
+            self._edge(CycleEdge(STEADY_END, found, now.orbit))
+            return None
         if now.orbit.section.problem.friction.sticks and not now.orbit.sticks:
             touched = first_stick(path, now)
             if touched is not None:

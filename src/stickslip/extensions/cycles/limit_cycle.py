@@ -22,6 +22,8 @@ from stickslip.solution import Solution
 if TYPE_CHECKING:
     from stickslip.foundation.arrays import Floats
 
+NOT_KNOWN = "not known"
+"""What tables say of a cycle whose stability cannot be told."""
 NEUTRAL = 1e-9
 """A multiplier this close to the unit circle (1) is on it, as far as can be told."""
 
@@ -42,7 +44,7 @@ def row_of(measures: Measures, multipliers: Floats) -> dict[str, Any]:
     """Return the numbers of a cycle as a row of a table, in SI."""
     row: dict[str, Any] = measures._asdict() | {"amplitude": measures.amplitude}
     stable = is_stable(multipliers)
-    row["stable"] = {True: "yes", False: "no", None: "not known"}[stable]
+    row["stable"] = {True: "yes", False: "no", None: NOT_KNOWN}[stable]
     for n, one in enumerate(multipliers, 1):
         row |= {f"multiplier_{n}": float(one.real), f"multiplier_{n}_imaginary": float(one.imag)}
     return row

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
@@ -35,6 +37,14 @@ def range_of(cycle: LimitCycle, along: str, to: float | str | WithUnit) -> tuple
         raise InputError(f"follow: to: {error}") from None
     check_can_be_followed(at_end, "follow: to")
     return parameter, begin, end
+
+
+def first_place(cycle: LimitCycle, parameter: ParameterPath, ends: Sequence[float]) -> tuple[Path, PlaceOnBranch]:
+    """Return the path of a cycle along a range, and its place there, with the way that leads to the end. Raises NoCycleError."""
+    orbit, length = cycle.orbit, ends[1] - ends[0]
+    path: Path = CYCLE_KINDS[cycle.problem.body.structure].path(orbit, cycle.scenario, parameter, abs(length))
+    start = path.at_value(ends[0], orbit.place, orbit.period)
+    return path, start if start.way[-1] * length >= 0.0 else replace(start, way=-start.way)
 
 
 def past_end(value: float, ends: Sequence[float]) -> float | None:

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
-from stickslip.extensions.cycles.edges import MEANING, CycleEdge
+from stickslip.extensions.cycles.edges import GRAZING, HALVING, MEANING, NOT_FOUND, STEADY_END, CycleEdge
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import Measures
 from stickslip.extensions.cycles.orbit import Orbit, extent_of
@@ -24,6 +24,10 @@ from stickslip.problem.scenarios import ParameterPath
 
 SAME_CYCLE = 1e-6
 """The first cycle of a table is that of the scenario if value and period differ by less than this share (1)."""
+SAME_END = 1e-12
+"""A branch is at an end of its range if it is no farther from it than this share (1) of the range."""
+NOTHING_BEHIND = (STEADY_END, HALVING, GRAZING, NOT_FOUND)
+"""The edges at which a part of a branch ends for good."""
 BESIDE_EDGE = (-1e-11, 1e-11, -1e-9, 1e-9)
 """If no run comes back at an edge, which is found to rounding, one beside it does, off by these shares (1) of its value."""
 
@@ -38,7 +42,10 @@ def check_can_be_kept(cycle: LimitCycle, *, double: bool, resume: bool) -> None:
 def points_to_go_on(
     earlier: BranchOfCycles | str | os.PathLike[str], cycle: LimitCycle, parameter: ParameterPath, begin: float
 ) -> list[PointOnBranch]:
-    """Return the cycles of an earlier branch up to the last one that is no edge. Raises InputError if it is another branch."""
+    """Return the cycles of an earlier branch, up to the last one that is no edge unless nothing is behind an edge.
+
+    Raises InputError if it is another branch.
+    """
     if isinstance(earlier, BranchOfCycles):
         where, name, points = "follow: resume", earlier.parameter.name, list(earlier.points)
     else:
@@ -55,9 +62,16 @@ def points_to_go_on(
             for value, period in ((points[0].value, points[0].measures.period), (begin, cycle.period))
         )
         raise InputError(f"{where}: begins at {parameter.name} = {found}, and this cycle is at {wanted}: it is another branch")
-    while points[-1].edge:
+    while points[-1].edge and points[-1].edge not in NOTHING_BEHIND:
         points.pop()
     return points
+
+
+def is_at_its_end(points: list[PointOnBranch], ends: tuple[float, float]) -> bool:
+    """Return True if the last part of a branch has come to its end: to an end of its range, or to an edge with nothing behind."""
+    last = points[-1]
+    near = SAME_END * abs(ends[1] - ends[0])
+    return last.edge in NOTHING_BEHIND or (len(points) > 1 and min(abs(last.value - one) for one in ends) <= near)
 
 
 def _read(path: FilePath, where: str, parameter: ParameterPath) -> tuple[str, list[PointOnBranch]]:
