@@ -15,7 +15,7 @@ from scipy.signal import lfilter
 import stickslip as ss
 from stickslip.extensions.cycles import exponent
 from stickslip.extensions.cycles.exponent import drift_of, error_of_mean
-from stickslip.extensions.cycles.growth_of_echoes import growth_on_pieces
+from stickslip.extensions.cycles.growth_of_echoes import growth_on_pieces, ranges_of_rate
 from tests.command_line import Command
 from tests.extensions.cycles.problems import DISTANCE, NORMAL, REFERENCE, SLOW, coulomb, rate_and_state, stribeck
 
@@ -138,6 +138,15 @@ def test_where_nothing_slips_disturbances_stay_as_they_are_but_for_the_driver() 
     assert giving.exponent == pytest.approx(math.log((1e8 - IMPEDANCE) / (1e8 + IMPEDANCE)) / TRIP, rel=1e-12)
     for one in (held, giving):
         assert one.text.endswith("nothing slips from 45.7143 s on, and a contact at rest sends disturbances back as they are")
+
+
+def test_the_size_of_the_motion_of_a_slab_is_the_range_of_its_slip_rate_in_each_sixteenth_of_the_run() -> None:
+    """Loads, and so slip rates, are constant in each half of a round trip; a sixteenth has two: to rounding."""
+    run = ss.simulate(slab(7e7), 32.0 * TRIP)
+    times = TRIP * (np.arange(64).reshape(16, 4) + 0.5) / 2.0
+    wanted = np.ptp(run.slip_rate(times.ravel()).reshape(16, 4), axis=1)
+    assert ranges_of_rate(run.history, 0.0, 32.0 * TRIP) == pytest.approx(wanted[wanted > 0.0], rel=1e-9)
+    assert len(np.unique(wanted)) > 8
 
 
 def test_a_drift_is_told_from_chance() -> None:

@@ -151,12 +151,10 @@ class LyapunovExponent(Study):
     def chaotic(self) -> bool | None:
         """True if disturbances grow, False if they fade.
 
-        None: the exponent lies within three standard errors of 0, or is 0, or the motion itself still grows or shrinks.
+        None: the exponent is 0, or lies within three standard errors of it, which are large if the motion itself grows or shrinks.
         """
         if math.isinf(self.exponent):
             return False
-        if self.found.drift:
-            return None
         return None if not abs(self.exponent) > SURE_ERRORS * self.error else self.exponent > 0.0
 
     @property
@@ -194,8 +192,9 @@ class LyapunovExponent(Study):
             what, hint = "disturbances stay as they are", ""
         if self.found.drift:
             turns, times = "grows" if self.found.drift > 0.0 else "shrinks", brief(math.exp(abs(self.found.drift)), "", 3)
-            what = f"the motion still drifts, the range of its slip rate {turns} by a factor {times} along the run"
-            hint = ": give a longer run (duration), or leave out more at its start (skip)"
+            drifts = f"the motion still drifts, the range of its slip rate {turns} by a factor {times} along the run"
+            what, so = (drifts, "") if self.chaotic is None else (what, f"; {drifts}")
+            hint = f"{so}: give a longer run (duration), or leave out more at its start (skip)"
         return f"{what}: the largest Lyapunov exponent is {size}, {self.found.how}{hint}"
 
     @property

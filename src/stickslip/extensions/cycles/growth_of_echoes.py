@@ -45,7 +45,7 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
     history, back = run.history, abs(problem.body.reflection)
     edges = np.linspace(skip, duration, 1 + min(MOST_INTERVALS, int((duration - skip) / trip)))
     each = growth_on_pieces(history)
-    middle = history.start + 0.5 * (history.store.speed + history.store.bend)
+    middle = middle_of_pieces(history)
     grown, _ = np.histogram(middle, edges, weights=each)
     at_driver = math.log(back) if back > 0.0 else -math.inf
     if not np.isfinite(grown).all() or not back > 0.0:
@@ -61,11 +61,16 @@ def growth_of_echoes(problem: Problem, skip: float, duration: float, rtol: float
     return along(edges, growth, sizes, how, events=int((start >= skip).sum()), known=predictability(run).error)
 
 
+def middle_of_pieces(history: History) -> Floats:
+    """Return the times (s) halfway between the ends of each piece."""
+    return np.asarray(history.start + 0.5 * (history.store.speed + history.store.bend))
+
+
 def ranges_of_rate(history: History, begin: float, end: float) -> Floats:
     """Return how far the slip rate goes (m/s) in each of ERROR_BATCHES equal parts of a run, without those where it is steady."""
     count = len(history)
     rates = history.rate(Positions.inside(np.repeat(np.arange(count), 3), np.tile([0.0, 0.5, 1.0], count))).reshape(count, 3)
-    part = np.floor((history.start - begin) / (end - begin) * ERROR_BATCHES).astype(np.int64)
+    part = np.floor((middle_of_pieces(history) - begin) / (end - begin) * ERROR_BATCHES).astype(np.int64)
     found = np.array([np.ptp(rates[part == n]) if (part == n).any() else 0.0 for n in range(ERROR_BATCHES)])
     return found[found > 0.0]
 
