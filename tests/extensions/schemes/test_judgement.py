@@ -199,6 +199,24 @@ def test_the_small_shock_of_a_slow_problem_must_be_made() -> None:
     assert "it makes 1 of 2 shocks" in found.faults
 
 
+UNEQUAL: dict[str, tuple[str, tuple[tuple[float, float, int], ...]]] = {
+    "long steps up to a shock": ("coulomb", ((0.0, 6.5, 201), (6.5, 9.0, 2010))),
+    "many rows at rest": ("loop", ((0.0, 1.0, 60_001), (1.0, 5.7, 2001))),
+    "few rows at rest": ("coulomb", ((0.0, 5.71, 801), (5.71, 9.0, 12))),
+}
+
+
+@pytest.mark.parametrize("steps", UNEQUAL)
+def test_a_right_series_of_unequal_steps_passes_and_a_wrong_one_does_not(steps: str) -> None:
+    name, parts = UNEQUAL[steps]
+    scenario = benchmark_of(name).scenario
+    run, time = ss.simulate(scenario), np.unique(np.concatenate([np.linspace(start, end, rows) for start, end, rows in parts]))
+    one = Series(time, run.slip(time) - scenario.problem.initial_slip, run.slip_rate(time), run.traction(time), "mine")
+    assert judge_series(one, scenario).judgements[0].faults == ()
+    wrong = replace(one, traction=np.where(one.rate > 0.0, 0.8 * one.traction, one.traction))  # off by more than 0.05 in time
+    assert "traction is off by" in judge_series(wrong, scenario).judgements[0].reasons
+
+
 def columns() -> Any:
     one = right()
     return np.column_stack([one.time, one.slip, one.rate, one.traction])

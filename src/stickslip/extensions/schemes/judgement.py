@@ -15,7 +15,7 @@ from stickslip.extensions.schemes.conventions import Written
 from stickslip.extensions.schemes.measures import MeasuredSeries
 from stickslip.extensions.schemes.shocks import CELLS_NEAR_SHOCK, MADE
 from stickslip.extensions.schemes.traits import ROUNDED_AWAY, traits_of
-from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths
+from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths, travel_time
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
 
@@ -63,17 +63,17 @@ class Judgement:
         return self.measured.exact.problem.unit_of(QUANTITIES_JUDGED[what])
 
     def _shares(self, what: str, own: Floats) -> dict[str, float]:
-        exact, away = self._pairs[what][1], self.measured.away
+        exact, away, weights = self._pairs[what][1], self.measured.away, self.measured.weights
         gap = np.abs(own - exact)
         if what == "slip":
             mean = float(np.trapezoid(gap, self.measured.time) / np.ptp(self.measured.time))
             return {what: _share(mean, float(np.abs(exact).max()) or self.paths.size.slip)}
         if what == "slip rate":
-            return {what: _share(_mean(gap, away), float(np.abs(exact).mean()) or self.paths.size.rate)}
+            return {what: _share(_mean(gap, away, weights), float(weights @ np.abs(exact)) or self.paths.size.rate)}
         rest, scale, largest = away & (self.measured.exact_rate == 0.0), float(np.ptp(exact)), float(np.abs(exact).max())
         if scale <= ROUNDED_AWAY * largest:  # traction is constant: its range is what rounding leaves
             scale = largest
-        return {what: _share(_mean(gap, away), scale), "traction at rest": _share(_mean(gap, rest), scale)}
+        return {what: _share(_mean(gap, away, weights), scale), "traction at rest": _share(_mean(gap, rest, weights), scale)}
 
     @cached_property
     def faults(self) -> tuple[str, ...]:
@@ -106,7 +106,7 @@ class Judgement:
         one = self.measured
         shocks = sum(not math.isnan(shock.exact_time) for shock in one.shocks)
         enough = f"{ROWS_ENOUGH * shocks + 1} rows in equal steps are"
-        if one.series.cells and one.shadow > CELLS_NEAR_SHOCK * one.series.step:  # its cells are coarser than its steps
+        if travel_time(one.series, one.exact) > one.series.step:
             each = 2.0 * CELLS_NEAR_SHOCK * one.exact.problem.body.time_to_driver / (COMPARED * one.until)
             enough = f"{math.ceil(each * shocks) + 1} cells are"
         beside = f"{np.count_nonzero(~one.away)} of its {one.time.size} rows lie beside shocks"
@@ -153,13 +153,16 @@ class Judgement:
         if not any("shock" in fault for fault in self.faults):
             return
         said = f"{self.name} is too coarse for its shocks: its step is {brief(one.series.step, 's')}, and"
-        nearest = float(np.diff(times[times <= one.until]).min(initial=math.inf))
-        if nearest < 2.0 * one.shadow:
+        times = times[times <= one.until]
+        wide, between = one.shadows(times), np.diff(times)
+        nearest = float(between[between < wide[1:] + wide[:-1]].min(initial=math.inf))
+        if nearest < math.inf:
             yield f"{said} exact shocks are as near as {brief(nearest, 's')}: write more times"
             return
         for shock in one.shocks:
             if math.isnan(shock.time):
-                sides = np.clip([shock.exact_time - one.shadow, shock.exact_time + one.shadow], 0.0, one.until)
+                wide = one.shadows(np.array(shock.exact_time))
+                sides = np.clip([shock.exact_time - wide, shock.exact_time + wide], 0.0, one.until)
                 if abs(float(np.diff(one.exact.slip_rate(sides))[0])) < MADE * shock.jump:
                     yield f"{said} the exact slip rate turns back soon after {brief(shock.exact_time, 's')}: write more times"
                     return
@@ -176,9 +179,9 @@ class Judgement:
         return traits_of(replace(one, series=Series(one.time, *written.mended.values(), self.name, one.series.cells)))
 
 
-def _mean(gap: Floats, which: NDArray[np.bool_]) -> float:
-    """Return the mean over some samples; 0 if there are none."""
-    return float(gap[which].mean()) if which.any() else 0.0
+def _mean(gap: Floats, which: NDArray[np.bool_], weights: Floats) -> float:
+    """Return the mean over the time of some samples; 0 if there are none."""
+    return float(weights[which] @ gap[which] / weights[which].sum()) if which.any() else 0.0
 
 
 def _share(value: float, scale: float) -> float:

@@ -144,12 +144,20 @@ class MeasuredSeries:
     def away(self) -> NDArray[np.bool_]:
         """True at times away from the exact shocks, when slip rate and traction are compared."""
         shocks = self.exact.shocks.time.to_numpy(float)
-        return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadow).all(axis=1))
+        return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadows(shocks)).all(axis=1))
+
+    @cached_property
+    def weights(self) -> Floats:
+        """The share of time that each sample stands for: where steps are longer, a sample counts for more."""
+        steps = np.diff(self.time)
+        halves = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))
+        shares: Floats = halves / halves.sum()
+        return shares
 
     @property
     def compared(self) -> float:
-        """The share of the samples at which slip rate and traction are compared."""
-        return float(self.away.mean())
+        """The share of time in which slip rate and traction are compared."""
+        return float(self.weights[self.away].sum())
 
     @cached_property
     def gap(self) -> Floats:
@@ -167,10 +175,9 @@ class MeasuredSeries:
         """The mean magnitude of the slip difference, m."""
         return mean_magnitude(self.gap, self.time)
 
-    @property
-    def shadow(self) -> float:
-        """Do not compare the slip rate within this time on either side of a shock, s."""
-        return shadow(self.series, self.exact)
+    def shadows(self, shocks: Floats) -> Floats:
+        """Return the times (s) on either side of shocks, at times (s), within which the slip rate is not compared."""
+        return shadow(self.series, self.exact, shocks)
 
     @property
     def rate_error(self) -> float:

@@ -8,7 +8,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from stickslip.extensions.schemes.contract import Series
-from stickslip.extensions.schemes.verdict import cell_time
+from stickslip.extensions.schemes.verdict import travel_time
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
@@ -102,9 +102,16 @@ class Shock(NamedTuple):
         return abs(self.exact_after - self.exact_before)
 
 
-def shadow(series: Series, exact: Solution) -> float:
-    """Return the time (s) on either side of a shock over which a series spreads it."""
-    return CELLS_NEAR_SHOCK * cell_time(series, exact)
+def shadow(series: Series, exact: Solution, at: Floats) -> Floats:
+    """Return the time (s) on either side of shocks at times over which a series spreads them, by its cells or its steps there."""
+    steps, count = np.diff(series.time), int(CELLS_NEAR_SHOCK)
+    beyond = np.arange(1, count + 1)
+    time = np.concatenate([series.time[0] - steps[0] * beyond[::-1], series.time, series.time[-1] + steps[-1] * beyond])
+    rows = np.arange(time.size, dtype=float)
+    row = np.interp(np.clip(at, series.time[0], series.time[-1]), time, rows)
+    by_steps = np.maximum(at - np.interp(row - count, rows, time), np.interp(row + count, rows, time) - at)
+    widths: Floats = np.maximum(CELLS_NEAR_SHOCK * travel_time(series, exact), by_steps)
+    return widths
 
 
 def shocks_of(series: Series, exact: Solution, until: float) -> list[Shock]:
@@ -116,23 +123,24 @@ def shocks_of(series: Series, exact: Solution, until: float) -> list[Shock]:
     without a shock.
     """
     kept = series.time <= until
-    time, rate, width = series.time[kept], series.rate[kept], shadow(series, exact)
+    time, rate = series.time[kept], series.rate[kept]
     found: list[Shock] = []
     used: list[float] = []
     for at, before, after in exact.shocks[["time", "rate_before", "rate_after"]].to_numpy(float):
         if at <= until:
-            found.append(_beside(Shock(at, before, after), (time, rate), (exact, width), used))
-    return found + _own(found, (time, rate), (exact, width), used)
+            found.append(_beside(Shock(at, before, after), (time, rate), (exact, series), used))
+    return found + _own(found, (time, rate), (exact, series), used)
 
 
-def _change(time: Floats, rate: Floats, at: Floats, width: float) -> tuple[Floats, Floats]:
-    """Return the slip rates before and after times, by a width (s); before t = 0 the contact is at rest."""
+def _change(time: Floats, rate: Floats, at: Floats, width: Floats) -> tuple[Floats, Floats]:
+    """Return the slip rates before and after times, by widths (s); before t = 0 the contact is at rest."""
     return np.interp(at - width, time, rate, left=0.0), np.interp(at + width, time, rate, left=0.0)
 
 
-def _beside(shock: Shock, series: tuple[Floats, Floats], how: tuple[Solution, float], used: list[float]) -> Shock:
+def _beside(shock: Shock, series: tuple[Floats, Floats], how: tuple[Solution, Series], used: list[float]) -> Shock:
     """Return a shock with what the series makes of it, and note the time of the series' own in `used`."""
-    (time, rate), (exact, width) = series, how
+    (time, rate), (exact, whole_series) = series, how
+    width = float(shadow(whole_series, exact, np.array(shock.exact_time)))
     beyond = (rate > 0.5 * (shock.exact_before + shock.exact_after)) == (shock.exact_after > shock.exact_before)
     at_start = shock.exact_time <= float(time[0])
     turned = np.flatnonzero(beyond & np.append(at_start, ~beyond[:-1]))
@@ -141,8 +149,9 @@ def _beside(shock: Shock, series: tuple[Floats, Floats], how: tuple[Solution, fl
     exact_rates = [0.0 if at_start else float(exact.slip_rate(sides[0])), float(exact.slip_rate(sides[1]))]
     whole = exact_rates[1] - exact_rates[0] or shock.exact_after - shock.exact_before
     passages = np.where(turned > 0, _middle(time, rate, turned, 0.5 * (shock.exact_before + shock.exact_after)), time[turned])
-    for at in passages[np.argsort(np.abs(passages - shock.exact_time))].tolist():
-        before, after = (float(side) for side in _change(time, rate, np.array(at), width))
+    nearest = passages[np.argsort(np.abs(passages - shock.exact_time))]
+    sides_of = np.transpose(_change(time, rate, nearest, shadow(whole_series, exact, nearest)))
+    for at, (before, after) in zip(nearest.tolist(), sides_of.tolist(), strict=True):
         if at not in used and (after - before) / whole >= MADE:
             used.append(at)
             return shock._replace(time=at, before=before, after=after, delay=at - shock.exact_time, size=(after - before) / whole)
@@ -157,12 +166,14 @@ def _middle(time: Floats, rate: Floats, turned: np.ndarray[tuple[int], np.dtype[
     return time[before] + np.clip(share, 0.0, 1.0) * (time[turned] - time[before])
 
 
-def _own(found: list[Shock], series: tuple[Floats, Floats], how: tuple[Solution, float], used: list[float]) -> list[Shock]:
+def _own(found: list[Shock], series: tuple[Floats, Floats], how: tuple[Solution, Series], used: list[float]) -> list[Shock]:
     """Return the shocks of a series that the exact solution does not have."""
-    (time, rate), (exact, width) = series, how
+    (time, rate), (exact, whole_series) = series, how
+    width = shadow(whole_series, exact, time)
     least = MADE * max((shock.jump for shock in found), default=math.inf)
     places = np.array([shock.exact_time for shock in found])
-    far = (np.abs(time[:, None] - places) > 2.0 * width).all(axis=1)
+    reach = np.maximum(width[:, None], shadow(whole_series, exact, places))
+    far = (np.abs(time[:, None] - places) > 2.0 * reach).all(axis=1)
     before, after = _change(time, exact.slip_rate(time), time, width)
     if (np.abs(after - before)[far] >= least).any():
         return []
@@ -172,7 +183,7 @@ def _own(found: list[Shock], series: tuple[Floats, Floats], how: tuple[Solution,
     ends = np.flatnonzero((large != 0.0) & (large != np.append(large[1:], 0.0)))
     shocks = []
     for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
-        if not any(time[start] - width <= at <= time[end] + width for at in used):
+        if not any(time[start] - width[start] <= at <= time[end] + width[end] for at in used):
             k = start + int(np.argmax(np.abs(after - before)[start : end + 1]))
             middle = 0.5 * (time[start] + time[end])
             shocks.append(Shock(math.nan, math.nan, math.nan, float(middle), float(before[k]), float(after[k])))

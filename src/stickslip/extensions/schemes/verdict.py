@@ -68,9 +68,14 @@ def change(coarse: Series, fine: Series, until: float) -> Gap:
     return Gap(*(mean_magnitude(one[: time.size] - np.interp(time, fine.time, other), time) for one, other in pairs))
 
 
+def travel_time(series: Series, exact: Solution) -> float:
+    """Return the travel time of a cell, s; 0 if the number of cells is unknown."""
+    return exact.problem.body.time_to_driver / series.cells if series.cells else 0.0
+
+
 def cell_time(series: Series, exact: Solution) -> float:
     """Return the time (s) that a series cannot resolve: the travel time of a cell, or the step of time if that is longer."""
-    return max(exact.problem.body.time_to_driver / series.cells if series.cells else 0.0, series.step)
+    return max(travel_time(series, exact), series.step)
 
 
 @dataclass(frozen=True, eq=False)
