@@ -84,6 +84,11 @@ CONVENTIONS: dict[str, tuple[Callable[[Series], Series], tuple[str, ...]]] = {
         lambda one: replace(one, slip=one.slip + 0.6, traction=one.traction - 81.6e6),
         ("mine has another zero than the exact slip and traction: subtract 0.6 m and -81.6 MPa",),
     ),
+    "sign and zero": (
+        lambda one: replace(one, traction=81.6e6 - one.traction),
+        ("mine has the opposite sign and another zero than the exact traction: multiply by -1 and then subtract -81.6 MPa",),
+    ),
+    "size": (lambda one: replace(one, slip=1.2 * one.slip, rate=1.2 * one.rate, traction=1.2 * one.traction), ()),
     "noise": (lambda one: replace(one, rate=one.rate + 0.3 * np.sin(9.0 * one.time)), ()),
 }
 
@@ -94,6 +99,17 @@ def test_a_right_series_in_another_convention_does_not_pass_and_is_explained(con
     found = judged(change(right()))
     assert not found.passed
     assert found.hints == hints
+
+
+@pytest.mark.parametrize("what", ["slip", "traction"])
+def test_a_wrong_size_is_not_called_another_zero(what: str) -> None:
+    """Slip of one short pulse is the same most of the time, and traction changes by less than its mean."""
+    scenario = benchmark_of("one-pulse").scenario
+    run, time = ss.simulate(scenario), np.linspace(0.0, scenario.duration, 2001)
+    one = Series(time, run.slip(time) - scenario.problem.initial_slip, run.slip_rate(time), run.traction(time), "mine")
+    (found,) = judge_series(replace(one, **{what: 1.1 * getattr(one, what)}), scenario).judgements
+    assert not found.passed
+    assert found.hints == ()
 
 
 def test_a_series_too_coarse_for_its_shocks_is_told_so() -> None:

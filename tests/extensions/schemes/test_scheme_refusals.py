@@ -9,6 +9,7 @@ from tests.command_line import Command, check_refusal
 CASES = [
     (["benchmark", "get", "loop", "--out", "a.csv"], "benchmark: --out does not belong to get: get writes files to --folder"),
     (["benchmark", "list", "--folder", "x"], "benchmark: --folder does not belong to list: leave it out"),
+    (["benchmark", "list", "x"], "benchmark: list takes no name, got 'x': `get` writes a problem, `judge` reads a file"),
     (["benchmark", "get", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
     (["benchmark", "get", "loop", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
     (["benchmark", "get"], "benchmark: get needs the name of a problem: see `list`"),
