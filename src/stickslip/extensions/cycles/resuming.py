@@ -27,7 +27,7 @@ SAME_CYCLE = 1e-6
 SAME_END = 1e-12
 """A branch is at an end of its range if it is no farther from it than this share (1) of the range."""
 NOTHING_BEHIND = (STEADY_END, HALVING, GRAZING, NOT_FOUND)
-"""The edges at which a part of a branch ends for good."""
+"""Edges where a part of a branch ends for good."""
 BESIDE_EDGE = (-1e-11, 1e-11, -1e-9, 1e-9)
 """If no run comes back at an edge, which is found to rounding, one beside it does, off by these shares (1) of its value."""
 

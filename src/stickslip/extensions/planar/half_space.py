@@ -161,7 +161,7 @@ class InBlocks(StepByStep):
 
 @cache
 def target() -> str:
-    """Return the name by which XLA knows our machine code, or nothing if it cannot call it.
+    """Return the name of our machine code in XLA, or nothing if XLA cannot call it.
 
     The name holds the key of the code, because JAX keeps what it has compiled with calls of it.
     """

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from stickslip.extensions.planar.slab import PlanarSlab
     from stickslip.extensions.planar.solution import PlanarSolution
 
-PLACE = Quantity("m", "place along the contact")
+PLACE_OF_STATION = Quantity("m", "place along the contact")
 Station = float | str | WithUnit | tuple[float | str | WithUnit, float | str | WithUnit]
 """A place along y, of a plane along y and z: m, or a text with units, as in "8 km" or "8 km, -2 km"."""
-COLUMNS = ("Time (s)", "slip (m)", "slip rate (m/s)", "shear stress (MPa)")
+STATION_COLUMNS = ("Time (s)", "slip (m)", "slip rate (m/s)", "shear stress (MPa)")
 """Meanings of the columns."""
 DATA_FIELDS = "t slip slip-rate shear-stress"
 """Their names in the benchmarks."""
@@ -42,7 +42,7 @@ def node_at(slab: PlanarSlab, station: Station | None) -> tuple[int, ...]:
         raise InputError(f"station: needs {wanted}, got {len(given)} number{'s' * (len(given) != 1)}")
     found = []
     for (axis, nodes), one, apart in zip(axes.items(), given, slab.spacing, strict=True):
-        place = PLACE.check("station", axis, one)
+        place = PLACE_OF_STATION.check("station", axis, one)
         nearest = int(np.abs(nodes - place).argmin())
         if abs(nodes[nearest] - place) > 0.5 * apart * (1.0 + 1e-9):
             ends = f"from {brief(nodes[0], 'm')} to {brief(nodes[-1], 'm')}"
@@ -74,6 +74,6 @@ def _about(run: PlanarSolution, node: tuple[int, ...]) -> Iterator[str]:
     yield f"num_time_steps={len(run.times)}"
     places = zip("yz", (slab.y, slab.z) if slab.is_plane else (slab.y,), node, strict=False)
     yield f"location={', '.join(f'{axis} = {along[n]:.13g} m' for axis, along, n in places)}"
-    yield f"Time series in {len(COLUMNS)} columns: E21.13, then E20.12"
-    yield from (f"Column #{number} = {meaning}" for number, meaning in enumerate(COLUMNS, 1))
+    yield f"Time series in {len(STATION_COLUMNS)} columns: E21.13, then E20.12"
+    yield from (f"Column #{number} = {meaning}" for number, meaning in enumerate(STATION_COLUMNS, 1))
     yield "The line below lists the names of the data fields:"

@@ -156,7 +156,7 @@ class MeasuredSeries:
 
     @property
     def compared(self) -> float:
-        """The share of time in which slip rate and traction are compared."""
+        """The share of time when slip rate and traction are compared."""
         return float(self.weights[self.away].sum())
 
     @cached_property

@@ -37,14 +37,14 @@ STATIONS = {"0km": 0.0, "8km": 8e3, "16km": 16e3}
 """Stations along y (m): in the middle of the nucleus, off it, and close to a barrier."""
 MESHES = (320, 640, 1280)
 """Nodes of the meshes: edges of the nucleus at 4 km and barriers at 18 km are nodes of all."""
-FRAMES = 640
+FRAMES_OF_RUN = 640
 """Frames of each mesh in a two-way travel time, if it has so many steps."""
-SAMPLES = 801
+SAMPLES_OF_SERIES = 801
 """Samples of a series."""
 NEIGHBOURS = 2
 """A band is the largest of a sample and of so many on both sides."""
 ARRIVED = 0.01
-"""Slip at which a front has arrived, and slip before the last at which slip has come to rest, m."""
+"""A front has arrived after so much slip, and slip has come to rest when less than so much is left, m."""
 UNITS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa"}
 """Units of the fields, in the order of their rows."""
 KEY_TIMES = {"arrival": ("front arrival", "s"), "peak_rate": ("peak slip rate", "m s-1"), "arrest": ("arrest", "s")}
@@ -59,7 +59,7 @@ class Station(NamedTuple):
 
     @property
     def key(self) -> Floats:
-        """What `KEY_TIMES` names, of which no number is there if slip stays below `ARRIVED`."""
+        """What `KEY_TIMES` names; no number is there if slip stays below `ARRIVED`."""
         slip, rate = self.fields[0], self.fields[1]
         if not slip[-1] > 2.0 * ARRIVED:
             return np.array([math.nan, np.abs(rate).max(), math.nan])
@@ -82,7 +82,7 @@ class Station(NamedTuple):
 @cache
 def on_mesh(nodes: int) -> tuple[Station, ...]:
     """Return the motion of the stations with a number of nodes."""
-    run: Any = simulate(load_scenario(FAULT).with_values({"contact.nodes": nodes, "contact.frames": FRAMES}))
+    run: Any = simulate(load_scenario(FAULT).with_values({"contact.nodes": nodes, "contact.frames": FRAMES_OF_RUN}))
     fields = np.stack([run.slip - run.slip[0], run.slip_rate, run.traction])
     return tuple(Station(run.times, fields[:, :, int(np.abs(run.slab.y - place).argmin())]) for place in STATIONS.values())
 
@@ -93,7 +93,7 @@ def converged(meshes: Sequence[Station]) -> xr.Dataset:
 
     keys = [one.key for one in meshes]
     rough, right = 2.0 * keys[1] - keys[0], 2.0 * keys[2] - keys[1]
-    time = np.linspace(0.0, float(meshes[-1].time[-1]), SAMPLES)
+    time = np.linspace(0.0, float(meshes[-1].time[-1]), SAMPLES_OF_SERIES)
     coarse, middle, fine = (one.at(time, right[0] - key[0]) for one, key in zip(meshes, keys, strict=True))
     fields = 2.0 * fine - middle
     fields[1] = np.where(fine[1] == 0.0, 0.0, fields[1])

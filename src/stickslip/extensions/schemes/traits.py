@@ -24,11 +24,11 @@ ROUNDED_AWAY = 1e-6
 SMALLEST_SWING, FEWEST_SWINGS = 0.02, 8
 """A series rings if its slip rate swings about the exact one by more than this share of the largest, so many times in a row."""
 LONGEST_PERIOD, SMALLEST_REGULAR = 12.0, 0.5
-"""A mesh rings within so many steps, and so regularly that two samples tell at least this share of what the next one is."""
+"""A mesh rings within so many steps, and so regularly that two samples foretell at least this share of the next one."""
 SHIFTS = {-1.0: "a step early", -0.5: "half a step early", 0.5: "half a step late", 1.0: "a step late"}
 """Shifts in time that are looked for, in steps."""
 FEWEST_SAMPLES = 10
-"""A shift shows in at least so many samples, of which most are explained."""
+"""A shift shows in at least so many samples, and explains most of them."""
 LARGEST_HALF = 0.7
 """A quantity jumps if half the time brings more than this share of its change."""
 SMALLEST_MISS = 0.01

@@ -64,7 +64,7 @@ def numbers(arrays: int, n: int) -> Any:
 
 @entry
 def advance(frame: int) -> int:
-    """Take a step, called by XLA with the address of a call frame; return 0, by which XLA means success.
+    """Take a step, called by XLA with the address of a call frame; return 0, XLA's word for success.
 
     The arguments are those of `Chunk` but the last, as arrays (chunks, rows, lanes), the number of steps since the block began, and
     slip (2, chunks, lanes). The results are the first three and that number, in the place of the arguments, and what M tells now
