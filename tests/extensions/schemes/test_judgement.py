@@ -233,6 +233,17 @@ def test_a_right_series_of_unequal_steps_passes_and_a_wrong_one_does_not(steps: 
     assert "traction is off by" in judge_series(wrong, scenario).judgements[0].reasons
 
 
+@pytest.mark.parametrize(("samples", "passes"), [(1, True), (20, False)])
+def test_a_sample_on_a_jump_of_traction_at_rest_may_have_either_side(samples: int, passes: bool) -> None:
+    """The first echo of `dwell` comes at R = 20/7 s to a contact at rest, row 1000 of 2801 rows up to 8 s."""
+    one = of_benchmark("dwell", 2801)
+    rows = np.arange(2801)
+    late = np.where((rows >= 1000) & (rows < 1000 + samples), one.traction[999], one.traction)
+    assert abs(late[1000] - one.traction[1001]) > 0.1 * np.ptp(one.traction)
+    (found,) = judge_series(replace(one, traction=late), benchmark_of("dwell").scenario, tolerance=1e-4).judgements
+    assert found.passed == passes
+
+
 def columns() -> Any:
     one = right()
     return np.column_stack([one.time, one.slip, one.rate, one.traction])

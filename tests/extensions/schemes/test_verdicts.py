@@ -57,6 +57,18 @@ def test_garbage_follows_no_rule() -> None:
     assert judged(noise, rest).verdicts == {"noise": NONE, "rest": NONE}
 
 
+def test_a_right_series_a_step_late_passes_where_rules_are_nearer_than_its_step() -> None:
+    """In a torsion bar the rules differ by 1e-3 of the slip rate, less than eight times what a step late makes."""
+    bar = ss.load_scenario("kolsky-slab")
+    time = np.linspace(0.0, bar.duration, 6001)
+    right, other = exact("perfect-delay", bar.problem, time), exact("maxwell", bar.problem, time, "other")
+    late = {name: np.append(getattr(right, name)[0], getattr(right, name)[:-1]) for name in ("slip", "rate", "traction")}
+    more = {name: np.append(np.full(8, values[0]), values[:-8]) for name, values in late.items()}
+    study = judge_series([replace(right, **late), replace(right, name="later", **more), other], bar)
+    assert study.verdicts == {"series": "perfect-delay or minimal", "later": NONE, "other": "maxwell or maximal"}
+    assert [found.passed for found in study.judgements] == [True, False, False]
+
+
 def test_the_right_slip_with_a_slip_rate_that_stops_and_starts_follows_none() -> None:
     right = exact("perfect-delay")
     chopped = replace(right, rate=np.where(np.arange(TIME.size) // 20 % 2, 2.0 * right.rate, 0.0))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip.extensions.schemes.contract import Series
 from stickslip.extensions.schemes.conventions import Written
-from stickslip.extensions.schemes.measures import MeasuredSeries
+from stickslip.extensions.schemes.measures import COMPARED, MeasuredSeries
 from stickslip.extensions.schemes.shocks import CELLS_NEAR_SHOCK, MADE
 from stickslip.extensions.schemes.traits import ROUNDED_AWAY, traits_of
 from stickslip.extensions.schemes.verdict import UNTOLD, RulePaths, travel_time
@@ -23,8 +23,6 @@ TOLERANCE = 0.05
 """A series may be off by this share of the exact values, if no other is given."""
 QUANTITIES_JUDGED = {"slip": "slip", "slip rate": "slip_rate", "traction": "traction"}
 """What a series has, each with the name that a problem knows its unit by."""
-COMPARED = 0.5
-"""At least this share of a series must lie away from shocks, so that its slip rate and traction are compared at all."""
 ROWS_ENOUGH = 20
 """So many rows for each shock are enough for that: nine of them, at most, lie beside it."""
 
@@ -48,7 +46,7 @@ class Judgement:
 
         The mean distance in slip is a share of the largest slip, that in slip rate of the mean slip rate, and that in traction, in
         the whole and while the exact contact rests, of the range of traction; of traction itself, if that is constant. Slip rate
-        and traction are compared away from shocks.
+        and traction are compared away from shocks, and traction away from its jumps at rest.
         """
         return {name: share for what in QUANTITIES_JUDGED for name, share in self._shares(what, self._pairs[what][0]).items()}
 
@@ -70,6 +68,7 @@ class Judgement:
             return {what: _share(mean, float(np.abs(exact).max()) or self.paths.size.slip)}
         if what == "slip rate":
             return {what: _share(_mean(gap, away, weights), float(weights @ np.abs(exact)) or self.paths.size.rate)}
+        away = self.measured.away_from_jumps
         rest, scale, largest = away & (self.measured.exact_rate == 0.0), float(np.ptp(exact)), float(np.abs(exact).max())
         if scale <= ROUNDED_AWAY * largest:  # traction is constant: its range is what rounding leaves
             scale = largest

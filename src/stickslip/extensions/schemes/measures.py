@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.extensions.schemes.contract import Energies, Series
-from stickslip.extensions.schemes.shocks import Shock, shadow, shocks_of
+from stickslip.extensions.schemes.shocks import CELLS_NEAR_SHOCK, Shock, shadow, shocks_of
 from stickslip.extensions.schemes.verdict import mean_magnitude
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import KINDS_OF_BODY
@@ -20,6 +20,10 @@ from stickslip.friction import FrictionLaw
 from stickslip.problem import default_event_rate
 from stickslip.solution import Solution
 
+COMPARED = 0.5
+"""At least this share of a series must lie away from shocks, so that its slip rate and traction are compared at all."""
+JUMPS = 0.01
+"""Traction jumps where it changes at once by more than this share of its range."""
 COLUMNS_OF_SCHEMES = {
     "scheme": ("", "name of the scheme, or of the program"),
     "cells": ("", "cells in the thickness; 0 if unknown"),
@@ -145,6 +149,22 @@ class MeasuredSeries:
         """True at times away from the exact shocks, when slip rate and traction are compared."""
         shocks = self.exact.shocks.time.to_numpy(float)
         return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadows(shocks)).all(axis=1))
+
+    @cached_property
+    def away_from_jumps(self) -> NDArray[np.bool_]:
+        """True at times away from shocks, and more than a step away from jumps of traction at rest, when traction is compared.
+
+        Where echoes come so often that this leaves less than half of the time, these jumps do not count.
+        """
+        breaks = self.exact.breaks[self.exact.breaks <= self.until]
+        jump = np.abs(self.exact.traction(breaks) - self.exact.traction(breaks, side="left"))
+        jumps = breaks[jump > JUMPS * float(np.ptp(self.exact_traction))]
+        beside = self.shadows(jumps) / CELLS_NEAR_SHOCK
+        edges = np.zeros(self.time.size + 1, int)  # there may be as many jumps as echoes: count those that each sample lies beside
+        np.add.at(edges, np.searchsorted(self.time, jumps - beside), 1)
+        np.add.at(edges, np.searchsorted(self.time, jumps + beside, "right"), -1)
+        away = self.away & (np.cumsum(edges[:-1]) == 0)
+        return away if self.weights[away].sum() >= COMPARED else self.away
 
     @cached_property
     def weights(self) -> Floats:

@@ -41,6 +41,8 @@ def groups(rules: Sequence[str], apart: Mapping[tuple[str, str], float], floor: 
 
 STRICT = 0.125
 """A series follows a rule if its distance to that rule's path is below this share of the distance to the next rule's path."""
+LATE = 1.5
+"""A path that is late, or early, by up to so many steps of a series cannot be told from one that is not."""
 SAME_PATH = 1e-8
 """Paths whose distance is below this share of the largest mean slip, and of the largest mean slip rate, are the same."""
 UNIFORM = 20_001
@@ -134,6 +136,15 @@ class RulePaths:
         slip, rate = self._path(rule, time)
         return Gap(mean_magnitude(series.slip[kept] - slip, time), mean_magnitude(series.rate[kept] - rate, time))
 
+    def late(self, series: Series, rule: str) -> Gap:
+        """Return the distance from the path of a rule to the same path late by LATE steps of a series.
+
+        Slip is then off by the slip rate times the delay. The slip rate is off by each of its changes for the time of the delay.
+        """
+        delay, (_, rate) = LATE * series.step, self._paths[rule]
+        changes = float(np.abs(np.diff(rate, prepend=0.0)).sum())
+        return Gap(delay * mean_magnitude(rate, self._time), delay * changes / self.until)
+
     def misses(self, series: Series) -> dict[str, float]:
         """Return how far a series is from the path of each rule, as a share of the distance from that path to the next one.
 
@@ -153,11 +164,13 @@ class RulePaths:
     def followed(self, series: Series, misses: Mapping[str, float] | None = None) -> str:
         """Return the rules that a series follows, joined by "or"; NONE; or UNTOLD if it would be any of all rules.
 
-        `misses` are those of the series, if they are known already.
+        A series that follows none may be as near to some as if it were late: it then follows these. `misses` are those of the
+        series, if they are known already.
         """
         misses, told = misses or self.misses(series), self.groups(cell_time(series, self.exact[next(iter(self.exact))]))
         group = next((group for group in told if min(misses[rule] for rule in group) < STRICT), ())
-        return UNTOLD if len(told) == 1 and group else " or ".join(group) or NONE
+        group = group or tuple(rule for rule in self.exact if np.less_equal(self.gap(series, rule), self.late(series, rule)).all())
+        return UNTOLD if (group and len(told) == 1) or len(group) == len(self.exact) else " or ".join(group) or NONE
 
 
 def exact_runs(problem: Problem, duration: float, rtol: float, tell: TextProgress) -> dict[str, Solution]:
