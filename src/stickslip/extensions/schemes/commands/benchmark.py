@@ -61,7 +61,9 @@ def benchmark(
         raise InputError(f"benchmark: {wrong} does not belong to {action}: {cure}")
     if action == "list":
         if what:
-            raise InputError(f"benchmark: list takes no name, got {ascii(what[0])[:60]}: `get` writes a problem, `judge` reads a file")
+            raise InputError(
+                f"benchmark: list takes no name, got {ascii(what[0])[:60]}: `get` writes a problem, `judge` reads a file"
+            )
         _list()
         return
     if not what:
