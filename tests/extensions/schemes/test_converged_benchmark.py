@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,31 @@ def test_only_what_leaves_the_band_counts(ramp: ConvergedBenchmark, off: float, 
     assert found.passed == passes
     assert np.array_equal(ramp.band.slip_rate, np.full(TIME.size, BAND))
     assert found.sentences[0].startswith("passed" if passes else "not passed")
+
+
+WRONG: dict[str, tuple[tuple[float, float, float], str]] = {
+    "half": ((0.5, 0.5, 1.0), "ramp has half of the converged slip and slip rate: of two elastic sides each slips by half"),
+    "sign": ((1.0, 1.0, -1.0), "ramp has the opposite sign of the converged traction: multiply by -1"),
+    "size": ((1.0, 1.2, 1.0), ""),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_another_convention_is_named_beside_what_is_off(ramp: ConvergedBenchmark, wrong: str) -> None:
+    factors, words = WRONG[wrong]
+    one = series()
+    slip, rate, traction = (values * factor for values, factor in zip((one.slip, one.rate, one.traction), factors, strict=True))
+    found = ss.studies.judge_series(replace(one, slip=slip, rate=rate, traction=traction), ramp.name)
+    assert not found.passed
+    assert [text.partition(", and the jump")[0] for text in found.sentences[2:]] == [words] * bool(words)
+
+
+def test_another_unit_is_refused_in_one_line(ramp: ConvergedBenchmark) -> None:
+    one = series()
+    with pytest.raises(ss.InputError, match=r"^ramp: largest traction is 5e-06 Pa, converged 5 Pa: is it in MPa\?$"):
+        ss.studies.judge_series(replace(one, traction=1e-6 * one.traction), ramp.name)
+    with pytest.raises(ss.InputError, match=r"^ramp: largest slip is 4000 m, converged 4 m: is it in mm\?$"):
+        ss.studies.judge_series(replace(one, slip=1e3 * one.slip), ramp.name)
 
 
 def test_the_command_gives_and_judges_it(command: Command, ramp: ConvergedBenchmark, tmp_path: Path) -> None:

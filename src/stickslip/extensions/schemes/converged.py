@@ -12,8 +12,9 @@ import pandas as pd
 
 import stickslip
 from stickslip.extensions.schemes.contract import Series
+from stickslip.extensions.schemes.conventions import Written
 from stickslip.extensions.schemes.measures import said_of
-from stickslip.extensions.schemes.shocks import check_length
+from stickslip.extensions.schemes.shocks import check_length, check_sizes
 from stickslip.foundation.arrays import Floats
 from stickslip.run import Study
 
@@ -28,6 +29,8 @@ COLUMNS_WITHIN_BAND = {
     "share": ("", "the same, as a share of the largest slip, the mean slip rate, or the range of traction"),
 }
 """Columns of the table, each with its unit and meaning; distances are in the SI unit of the quantity."""
+UNITS_COMPARED = {"slip": "m", "slip rate": "m/s", "traction": "Pa"}
+"""What a series has, each with its unit."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,8 +42,10 @@ class SeriesWithinBand(Study):
     tolerance: float
 
     def __post_init__(self) -> None:
+        largest = {name: float(np.abs(values).max()) for name, values in self._right.items()}
         for one in self.series:
             check_length(one, float(self.right.time[-1]), "the converged series")
+            check_sizes(one, largest, UNITS_COMPARED, "converged")
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -49,15 +54,30 @@ class SeriesWithinBand(Study):
         return pd.DataFrame(rows, columns=list(COLUMNS_WITHIN_BAND))
 
     def _rows(self, one: Series) -> Iterator[dict[str, Any]]:
-        time = self.right.time.to_numpy()
-        slip, rate, traction = (self.right[name].to_numpy() for name in ("slip", "slip_rate", "traction"))
-        scales = float(np.abs(slip).max()), _mean(np.abs(rate), time), float(np.ptp(traction))
-        pairs = zip(("slip", "slip_rate", "traction"), (one.slip, one.rate, one.traction), scales, strict=True)
-        for name, own, scale in pairs:
-            gap = np.abs(np.interp(time, one.time, own) - self.right[name].to_numpy())
-            beyond = _mean(np.maximum(gap - self.right[f"{name}_band"].to_numpy(), 0.0), time)
-            found = {"distance": _mean(gap, time), "beyond": beyond, "share": beyond / scale if scale else np.inf}
-            yield {"series": one.name, "quantity": name.replace("_", " "), **found}
+        for name, (own, _) in self._pairs(one).items():
+            yield {"series": one.name, "quantity": name, **self._off(name, own)}
+
+    @cached_property
+    def _right(self) -> dict[str, Floats]:
+        return {name: self.right[name.replace(" ", "_")].to_numpy() for name in UNITS_COMPARED}
+
+    def _pairs(self, one: Series) -> dict[str, tuple[Floats, Floats]]:
+        """Return each quantity of a series at the times of the converged one, and that itself."""
+        own = (np.interp(self.right.time.to_numpy(), one.time, values) for values in (one.slip, one.rate, one.traction))
+        return {name: (values, self._right[name]) for name, values in zip(UNITS_COMPARED, own, strict=True)}
+
+    def _off(self, name: str, own: Floats) -> dict[str, float]:
+        """Return the numbers of a row for values of a quantity."""
+        right, time = self._right[name], self.right.time.to_numpy()
+        scales = {"slip": np.abs(right).max(), "slip rate": _mean(np.abs(right), time), "traction": np.ptp(right)}
+        gap, scale = np.abs(own - right), float(scales[name])
+        beyond = _mean(np.maximum(gap - self.right[f"{name.replace(' ', '_')}_band"].to_numpy(), 0.0), time)
+        return {"distance": _mean(gap, time), "beyond": beyond, "share": beyond / scale if scale else np.inf}
+
+    def hints_of(self, one: Series) -> tuple[str, ...]:
+        """Return the conventions that explain what is off in a series, one sentence each."""
+        written = Written.of(self._pairs(one), lambda name, own: self._off(name, own)["share"], self.tolerance)
+        return tuple(written.sentences(one.name, "converged", UNITS_COMPARED.__getitem__))
 
     @property
     def passed(self) -> bool:
@@ -79,10 +99,12 @@ class SeriesWithinBand(Study):
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
+        of_name = {one.name: one for one in self.series}
         for name, rows in self.table.groupby("series", sort=False):
             told = bool((rows.share <= self.tolerance).all())
             yield f"{'passed' if told else 'not passed'}, with a tolerance of {self.tolerance:g} beyond the error band: {name}"
             yield "; ".join(f"{row.quantity} is off by {row.share:.2g}" for row in rows.itertuples())
+            yield from () if told else self.hints_of(of_name[str(name)])
 
 
 def _mean(values: Floats, time: Floats) -> float:

@@ -175,7 +175,8 @@ class Judgement:
         one, written = self.measured, self._written
         if not written.found:
             return traits_of(one)
-        return traits_of(replace(one, series=Series(one.time, *written.mended.values(), self.name, one.series.cells)))
+        slip, rate, traction = written.mended.values()
+        return traits_of(replace(one, series=Series(one.time, slip, rate, traction, self.name, one.series.cells)))
 
 
 def _mean(gap: Floats, which: NDArray[np.bool_], weights: Floats) -> float:

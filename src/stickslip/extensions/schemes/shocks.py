@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple, NoReturn
 
 import numpy as np
@@ -39,16 +40,22 @@ def check_units(series: Series, exact: Solution, problem: Problem) -> None:
         hint = " (it seems to be absolute)" if problem.initial_slip else ""
         _refuse(series, f"slip is {series.slip[0]:g} {problem.unit_of('slip')} at the start{hint}: slip must count from t = 0")
     time = series.time[series.time <= exact.history.span[1]]
-    own = {"slip": peak, "slip rate": float(np.abs(series.rate).max()), "traction": float(np.abs(series.traction).max())}
     expected = {
         "slip": float(np.abs(exact.slip(time) - problem.initial_slip).max()),
         "slip rate": float(np.abs(exact.slip_rate(time)).max()),
         "traction": float(np.abs(exact.traction(time)).max()),
     }
-    for name in expected:
-        wrong, unit = _prefix(own[name], expected[name]), problem.unit_of(name.replace(" ", "_"))
+    check_sizes(series, expected, {name: problem.unit_of(name.replace(" ", "_")) for name in expected})
+
+
+def check_sizes(series: Series, expected: Mapping[str, float], units: Mapping[str, str], right: str = "exact") -> None:
+    """Raise InputError if the largest slip, slip rate or traction of a series are wrong by a power of 1000."""
+    peak = float(np.abs(series.slip - series.slip[0]).max())
+    own = {"slip": peak, "slip rate": float(np.abs(series.rate).max()), "traction": float(np.abs(series.traction).max())}
+    for name, unit in units.items():
+        wrong = _prefix(own[name], expected[name])
         if wrong:
-            _refuse(series, f"largest {name} is {own[name]:g} {unit}, exact {expected[name]:g} {unit}: is it in {wrong}{unit}?")
+            _refuse(series, f"largest {name} is {own[name]:g} {unit}, {right} {expected[name]:g} {unit}: is it in {wrong}{unit}?")
 
 
 def _prefix(value: float, expected: float) -> str:
