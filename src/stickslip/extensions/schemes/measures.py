@@ -176,7 +176,7 @@ class MeasuredSeries:
 
     @property
     def compared(self) -> float:
-        """The share of time when slip rate and traction are compared."""
+        """The share of time that lies away from shocks: slip rate and traction are compared there."""
         return float(self.weights[self.away].sum())
 
     @cached_property
