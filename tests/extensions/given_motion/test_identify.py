@@ -105,6 +105,7 @@ def test_most_stated_intervals_hold_the_truth_where_the_rate_is_noisy(way: str, 
     assert 0.6 < float(np.sqrt(np.mean(np.square(scores)))) < 1.5
 
 
+@pytest.mark.slow
 def test_positions_of_an_encoder_are_differentiated_smoothly() -> None:
     """Positions rounded to 1 um, as an encoder counts, whose differences are steps of 0.5 mm/s."""
     time, rate = swung(501, 1.0)

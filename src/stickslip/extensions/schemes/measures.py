@@ -22,7 +22,7 @@ from stickslip.solution import Solution
 
 COMPARED = 0.5
 """At least this share of a series must lie away from shocks, so that its slip rate and traction are compared at all."""
-JUMPS = 0.01
+JUMP_OF_TRACTION = 0.01
 """Traction jumps where it changes at once by more than this share of its range."""
 COLUMNS_OF_SCHEMES = {
     "scheme": ("", "name of the scheme, or of the program"),
@@ -158,7 +158,7 @@ class MeasuredSeries:
         """
         breaks = self.exact.breaks[self.exact.breaks <= self.until]
         jump = np.abs(self.exact.traction(breaks) - self.exact.traction(breaks, side="left"))
-        jumps = breaks[jump > JUMPS * float(np.ptp(self.exact_traction))]
+        jumps = breaks[jump > JUMP_OF_TRACTION * float(np.ptp(self.exact_traction))]
         beside = self.shadows(jumps) / CELLS_NEAR_SHOCK
         edges = np.zeros(self.time.size + 1, int)  # there may be as many jumps as echoes: count those that each sample lies beside
         np.add.at(edges, np.searchsorted(self.time, jumps - beside), 1)
