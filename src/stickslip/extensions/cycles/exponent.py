@@ -60,6 +60,12 @@ class MeasuredGrowth:
     """The change of the logarithm of the motion's own size (1) along the run, if it drifts."""
 
 
+def law_in(problem: Problem, direction: int) -> Any:
+    """Return the law of a problem for a direction of slip, 1 or -1: its own backward one if it has two."""
+    law = problem.friction
+    return law.ways[1] if direction < 0 and law.backward_from else law
+
+
 def along(time: Floats, growth: Floats, sizes: Floats, how: str, **more: float) -> MeasuredGrowth:
     """Return the growth along a run, with the mean of its rate and the error of that; `time` and `growth` begin with a start.
 

@@ -15,7 +15,7 @@ import numpy as np
 from stickslip.contact import steady_slidings
 from stickslip.engine import History, Positions
 from stickslip.engine.input import SHARE_OF_TOLERANCE
-from stickslip.extensions.cycles.exponent import MeasuredGrowth, along, whole_run
+from stickslip.extensions.cycles.exponent import MeasuredGrowth, along, law_in, whole_run
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
 from stickslip.extensions.cycles.orbit import extent_of
 from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
@@ -148,7 +148,7 @@ def _divergence(one: Return) -> float:
 
 def _trace(problem: Problem, values: Floats, direction: int) -> Floats:
     """Return the divergence (1/s) of the motion where load, slip rate and states, a row each, are known."""
-    law = problem.friction.ways[1] if direction < 0 and problem.friction.backward_from else problem.friction
+    law = law_in(problem, direction)
     signs = np.ones(len(law.states))
     if direction < 0:
         signs[list(problem.friction.reverses)] = -1.0

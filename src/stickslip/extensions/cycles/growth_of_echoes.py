@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, along, whole_run
+from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, along, law_in, whole_run
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
@@ -88,7 +88,7 @@ def growth_on_pieces(history: History) -> Floats:
     rates, slopes = np.abs(history.rate(at)), np.empty(len(at.piece))
     for direction in (1, -1):
         here = store.mode[at.piece] == direction
-        law = problem.friction.ways[1] if direction < 0 and problem.friction.backward_from else problem.friction
+        law = law_in(problem, direction)
         if here.any():
             slopes[here] = law.slopes(0.0, rates[here], one_argument(()))[1]
     with np.errstate(divide="ignore"):

@@ -41,7 +41,7 @@ SAME_MESH = 1e-7
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MANY_MULTIPLIERS, LEAST_LARGE = 6, 0.5
-"""Most multipliers (1), and the least size (1) of multipliers that are always exact."""
+"""Most multipliers (1), and the size (1) below which multipliers are only roughly known."""
 
 
 @dataclass(frozen=True)
