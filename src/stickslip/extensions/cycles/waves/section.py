@@ -11,6 +11,7 @@ import numpy as np
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
+from stickslip.extensions.cycles.waves.sources import source_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem, Stop
@@ -83,7 +84,7 @@ class WaveReturn:
     @property
     def source(self) -> WaveSource:
         """The wave of the last round trip before the return."""
-        return WaveSource(self.history, self.end)
+        return source_of(self.history, self.end)
 
     @cached_property
     def states(self) -> Floats:
@@ -165,4 +166,4 @@ def place_in(history: History, met: Crossings, n: int, mesh: WaveMesh) -> WavePl
     """Return the place where a run meets a section for the n-th time."""
     at = Positions.inside(met.piece[n], met.place[n])
     states: Any = [one[0] for one in history.states(at)]
-    return WavePlace(mesh, np.array(states), WaveSource(history, float(met.time[n])).at(mesh.phases))
+    return WavePlace(mesh, np.array(states), source_of(history, float(met.time[n])).at(mesh.phases))
