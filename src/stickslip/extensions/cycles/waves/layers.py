@@ -12,7 +12,7 @@ from stickslip.extensions.cycles.waves.fronts import Fronts
 from stickslip.extensions.cycles.waves.mesh import FADED, MOST_ECHOES, WaveSource, changes_in
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.bodies import OfLayers
-from stickslip.solution.observables.layers import LayerWaves
+from stickslip.solution.observables import LayerWaves
 
 
 class LayerSource(WaveSource):

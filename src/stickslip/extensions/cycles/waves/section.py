@@ -9,6 +9,7 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
+from stickslip.extensions.cycles.waves.begin import begin_with
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
 from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
 from stickslip.extensions.cycles.waves.sources import source_of
@@ -151,7 +152,7 @@ class WaveSection:
         """Return the run from a place that lasts so long (s), and the code of its end."""
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
         beside = np.concatenate([place.states, rate_and_push(self.problem, place.kept)])
-        run.begin_with(place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
+        begin_with(run, place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
         while True:
             code = run.advance(PASSES)
             if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
