@@ -47,7 +47,7 @@ LOOSER = 10.0
 HALVINGS_OF_GROUP = 8
 """Halve a group of pieces at most this many times (1), until one series describes it."""
 SHORTER = 0.125
-"""Steps that come to a fold are at least this much (1) shorter at its end than at first."""
+"""Steps that come to a fold, as only an algebraic contact has it, are at least this much (1) shorter at its end than at first."""
 LARGEST_TURN = 1.0
 """A tone in the loading is a polynomial to rounding up to this phase (rad)."""
 
