@@ -28,7 +28,8 @@ def not_repeated(problem: Problem) -> str:
     if not problem.body.has_inertia and not law.states:
         return (
             f"without a mass at the contact and under {type(law).__name__}, which has no states, each moment of the round trip"
-            " moves by itself, and chaotically where r (1 - 2 Z / g') is above 1 in size"
+            " moves by itself, and chaotically where r (1 - 2 Z / g') is above 1 in size; with"
+            f" {problem.body.mass_field} above 0 they move together"
         )
     return ""
 
