@@ -11,9 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.engine import TERMS, History
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.bodies import as_waves
 
 NODES = 10
 """Points of Gauss and Legendre on each piece of the mesh (1): none is at a kink, which a disturbance moves."""
@@ -42,6 +44,13 @@ class WaveMesh:
 
     edges: Floats
     """Phases (s) of their ends, from 0 on."""
+    resolved: float = RESOLVED
+    """The share (1) of the wave's extent to which it is resolved."""
+
+    @property
+    def is_fine(self) -> bool:
+        """True if it resolves a wave as well as meshes do."""
+        return self.resolved <= RESOLVED
 
     @cached_property
     def phases(self) -> Floats:
@@ -56,9 +65,21 @@ class WaveMesh:
 
     def at(self, values: Floats, phases: Floats) -> Floats:
         """Return a wave with these values at the points, at phases (s)."""
+        piece, powers = self._found(phases)
+        return np.asarray(np.sum(self.series(values)[piece, :NODES] * powers, axis=1))
+
+    def matrix_at(self, phases: Floats) -> Floats:
+        """Return the matrix that makes values at phases (s) of those at the points."""
+        piece, powers = self._found(phases)
+        found = np.zeros((len(phases), len(self.phases)))
+        np.put_along_axis(found, piece[:, None] * NODES + np.arange(NODES), powers @ POWERS_OF_TERMS @ TERMS_OF_VALUES, axis=1)
+        return found
+
+    def _found(self, phases: Floats) -> tuple[NDArray[np.intp], Floats]:
+        """Return the pieces in which phases (s) are, and the powers of the places (1) there."""
         piece = np.clip(np.searchsorted(self.edges, phases, side="right") - 1, 0, len(self.edges) - 2)
         xi = (phases - self.edges[piece]) / (self.edges[piece + 1] - self.edges[piece])
-        return np.asarray(np.sum(self.series(values)[piece, :NODES] * xi[:, None] ** np.arange(NODES), axis=1))
+        return piece, np.vander(xi, NODES, increasing=True)
 
 
 @dataclass(frozen=True)
@@ -73,6 +94,15 @@ class WaveSource:
         begin, history = self.end - self.history.round_trip_time, self.history
         where = history.find(begin + phases, "right")
         return np.asarray(2.0 * history.problem.body.echo_impedance * history.rate(where) - history.excess(where))
+
+    def pace_at(self, phases: Floats) -> Floats:
+        """Return how fast the wave changes (Pa/s) at phases (s)."""
+        history = self.history
+        where, store = history.find(self.end - history.round_trip_time + phases, "right"), history.store
+        series = 2.0 * history.problem.body.echo_impedance * store.rate[where.piece] - store.load[where.piece]
+        slopes = np.sum(series[:, 1:] * np.arange(1, TERMS) * where.xi[:, None] ** np.arange(TERMS - 1), axis=1)
+        lasts = store.speed[where.piece] + 2.0 * store.bend[where.piece] * where.xi
+        return np.asarray(slopes / lasts * (-as_waves(history.problem.body).front_reflection) ** where.leaped)
 
 
 def kinks(history: History, end: float, period: float, share: float) -> Floats:
@@ -92,8 +122,8 @@ def kinks(history: History, end: float, period: float, share: float) -> Floats:
     return np.concatenate([row[(row > 0.0) & (row < trip)] for row in found])
 
 
-def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
-    """Return a mesh that resolves a wave with `sharp` kinks at phases (s), the sharpest first."""
+def mesh_of(source: WaveSource, sharp: Floats, resolved: float = RESOLVED) -> WaveMesh:
+    """Return a mesh that resolves a wave with `sharp` kinks at phases (s), the sharpest first, to a share (1) of its extent."""
     trip = source.history.round_trip_time
     kept = [0.0, trip]
     for one in sharp.tolist():
@@ -105,9 +135,9 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
     divided = [np.linspace(low, high, n, endpoint=False) for low, high, n in ends]
     edges = np.append(np.concatenate(divided), trip)
     while True:
-        mesh = WaveMesh(edges)
+        mesh = WaveMesh(edges, resolved)
         values = source.at(mesh.phases).reshape(-1, NODES)
-        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=1) > RESOLVED * np.ptp(values)
+        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=1) > resolved * np.ptp(values)
         rough &= np.diff(edges) > FINEST * trip
         if not rough.any() or len(edges) + rough.sum() > MOST_PIECES:
             return mesh

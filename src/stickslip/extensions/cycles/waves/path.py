@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -13,7 +12,7 @@ from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, NOT_FOUND,
 from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
-from stickslip.extensions.cycles.waves.krylov import solved
+from stickslip.extensions.cycles.waves.krylov import Operator, solved
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
     MOST_DIRECTIONS,
@@ -25,6 +24,7 @@ from stickslip.extensions.cycles.waves.orbit import (
     difference,
     even_mesh,
     missed_share,
+    slopes_at,
     with_sharp_kinks,
 )
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
@@ -44,6 +44,35 @@ FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
 SHORT_REST, TOUCHES = 1e-2, 1e-3
 """A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch; slip rate and load touch rest and
 strength where they come as near (1, of their extent) as the second."""
+
+
+@dataclass(frozen=True)
+class Bordered:
+    """The derivative of the miss of a return by start and parameter, with a plane as its last row."""
+
+    grown: Operator | None
+    """The derivative by the start, if it is known by differences of runs only."""
+    by_value: Floats
+    plane: Floats
+    slopes: Floats | None = None
+    """The derivative of the return itself by the start, if it is known."""
+
+    def solve(self, right: Floats, accuracy: float) -> Floats:
+        """Return x of the linear equation, up to a share (1) of its size where differences of runs have to do. Raises NoCycleError."""
+        if self.slopes is None:
+            return solved(self._of, right, accuracy, MOST_DIRECTIONS)[0]
+        count = len(self.by_value)
+        matrix = np.empty((count + 1, count + 1))
+        matrix[:count, :count], matrix[:count, count], matrix[count] = self.slopes - np.eye(count), self.by_value, self.plane
+        try:
+            return np.linalg.solve(matrix, right)
+        except np.linalg.LinAlgError:
+            raise NoCycleError("follow: the cycles near here cannot be told apart") from None
+
+    def _of(self, change: Floats) -> Floats:
+        assert self.grown is not None
+        here = self.grown(change[:-1]) if change[:-1].any() else np.zeros(len(self.by_value))
+        return np.append(here + change[-1] * self.by_value, self.plane @ change)
 
 
 @dataclass(frozen=True)
@@ -90,19 +119,19 @@ class WavePath(Path):
             off = self._off(coordinates(now.start), value, target, way)
             last, share, image = share, max(missed_share(now), abs(off)), Image(now.start, now.time)
             good = share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last)
-            along = self._derivative(image, value, way)
+            bordered = self._bordered(now, image, value, way)
             if good:
                 break
             missed = np.append(now.on(image.place.mesh).vector / image.scale - image.start, off)
-            step, _, _ = solved(along, -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+            step = bordered.solve(-missed, LINEAR_SHARE)
             value += float(step[-1]) * self.range
             now, runs = image.of(image.start + step[:-1], self.section(value))[1], runs + 1
         if share > STILL_CLOSED:
             raise NoCycleError("follow: Newton's iteration finds no cycle here")
-        orbit = checked(WaveOrbit(now, self.section(value), share, runs, 0.0))
+        orbit = checked(WaveOrbit(now, self.section(value), share, runs, 0.0, bordered.slopes))
         ahead = np.zeros(len(image.start) + 1)
         ahead[-1] = 1.0
-        grown, _, _ = solved(along, ahead, DIRECTION_SHARE, MOST_DIRECTIONS)
+        grown = bordered.solve(ahead, DIRECTION_SHARE)
         moved = image.place.moved_to(grown[:-1] * image.scale)
         new = np.append(coordinates(moved) / self.scales[:-1], grown[-1])
         return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))
@@ -111,19 +140,18 @@ class WavePath(Path):
         """Return how far a start is from the plane through `target` across `way`."""
         return float((self.together(place, value) - target) @ way)
 
-    def _derivative(self, image: Image, value: float, way: Floats) -> Callable[[Floats], Floats]:
+    def _bordered(self, now: WaveReturn, image: Image, value: float, way: Floats) -> Bordered:
         """Return the derivative of the miss of a return, and of the distance from the plane, by start and parameter."""
-        section = self.section(value)
-        missed = image.of(image.start, section)[0] - image.start
+        section, count = self.section(value), len(image.place.states)
+        slopes = slopes_at(now)
         ends = [image.of(image.start, self.section(value + sign * SMALL_NUDGE * self.range))[0] for sign in (1.0, -1.0)]
-        by_value, grown = (ends[0] - ends[1]) / (2.0 * SMALL_NUDGE), difference(image, section, missed)
-
-        def along(change: Floats) -> Floats:
-            here = grown(change[:-1]) if change[:-1].any() else np.zeros(len(missed))
-            moved = coordinates(image.place.moved_to(change[:-1] * image.scale)) / self.scales[:-1]
-            return np.append(here + change[-1] * by_value, np.append(moved, change[-1]) @ way)
-
-        return along
+        by_value = (ends[0] - ends[1]) / (2.0 * SMALL_NUDGE)
+        mesh, weights = image.place.mesh, way[:-1] / self.scales[:-1]
+        over_plane = np.append(weights[:count], weights[count:] @ mesh.matrix_at(even_mesh(float(mesh.edges[-1])).phases))
+        if slopes is None:
+            missed = image.of(image.start, section)[0] - image.start
+            return Bordered(difference(image, section, missed), by_value, np.append(over_plane * image.scale, way[-1]))
+        return Bordered(None, by_value, np.append(over_plane * image.scale, way[-1]), slopes)
 
     def step(self, begin: PlaceOnBranch, length: float) -> PlaceOnBranch:
         """Return the cycle a step further along the branch. Raises NoCycleError."""

@@ -45,7 +45,7 @@ class WavePlace:
     def over(self, trip: float) -> WavePlace:
         """Return the same wave over a round trip that lasts so long (s)."""
         edges = self.mesh.edges
-        return self if edges[-1] == trip else WavePlace(WaveMesh(edges * (trip / edges[-1])), self.states, self.wave)
+        return self if edges[-1] == trip else WavePlace(WaveMesh(edges * (trip / edges[-1]), self.mesh.resolved), self.states, self.wave)
 
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the same place on another mesh."""
@@ -64,6 +64,8 @@ class WaveReturn:
     """The time (s) of the return in the history."""
     first: int
     """The first piece of the history behind the wave."""
+    at_onset: bool
+    """True if it begins and ends at an onset of slip after a rest."""
 
     @property
     def history(self) -> History:
@@ -148,7 +150,7 @@ class WaveSection:
             raise InputError(f"cycle: the contact no longer {what} within {longer * guess:.4g} s: there is no cycle near")
         nearest = int(np.abs(met.time - trip - guess).argmin())
         piece, xi, time = int(met.piece[nearest]), float(met.place[nearest]), float(met.time[nearest])
-        return WaveReturn(place, solution, piece, xi, time, len(place.mesh.edges) - 1)
+        return WaveReturn(place, solution, piece, xi, time, len(place.mesh.edges) - 1, self.at_onset)
 
     def met(self, history: History) -> Crossings:
         """Return where a run that begins with a wave meets the section, not counting its start."""
