@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
 from stickslip.extensions.cycles.waves.disturbed import is_known, slopes_of
-from stickslip.extensions.cycles.waves.krylov import Operator, leading, solved
+from stickslip.extensions.cycles.waves.krylov import Operator, largest, leading, solved
 from stickslip.extensions.cycles.waves.mesh import RESOLVED, WaveMesh, kinks, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
@@ -141,14 +141,6 @@ class WaveOrbit:
         return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
 
 
-def largest(matrix: Floats, many: int, least: float) -> NDArray[Any]:
-    """Return up to `many` of the largest eigenvalues, without those of a smaller size than `least` beyond the first."""
-    values = np.linalg.eigvals(matrix)
-    values = values[np.argsort(-np.abs(values), kind="stable")]
-    count = max(1, min(many, int(np.sum(np.abs(values) > least))))
-    return np.asarray(values[: count + (values[count - 1].imag > 0.0)], complex)
-
-
 def sharp_factor(history: History, begin: float, end: float) -> float:
     """Return what a disturbance that lasts an instant is multiplied by (1) on its ways between two times (s), in the mean.
 
@@ -262,7 +254,7 @@ def coordinates(place: WavePlace) -> Floats:
 def missed_share(met: WaveReturn) -> float:
     """Return by what share (1) of the extent a return misses its start."""
     start = Image(met.start, met.time)
-    return float(np.abs(met.on(met.start.mesh).vector / start.scale - start.start).max())
+    return float(np.abs(met.landed.vector / start.scale - start.start).max())
 
 
 def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
@@ -279,7 +271,7 @@ def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
         if share <= CLOSED_SHARE or (before is not None and before.share <= GOOD_ENOUGH and share > 0.5 * before.share):
             return checked(best)
         image = Image(now.start, now.time)
-        missed = now.on(now.start.mesh).vector / image.scale - image.start
+        missed = now.landed.vector / image.scale - image.start
         step, directions = _newton_step(image, section, now, missed)
         period, now = now.time, _shortened(image, section, step, share)
         runs, change = runs + directions + 1, abs(now.time - period)

@@ -98,6 +98,11 @@ class WaveReturn:
         return WavePlace(mesh, self.states, self.source.at(mesh.phases))
 
     @cached_property
+    def landed(self) -> WavePlace:
+        """The place of the return on the mesh of the start."""
+        return self.on(self.start.mesh)
+
+    @cached_property
     def sticks(self) -> bool:
         """True if the contact rests on the way."""
         here = slice(self.first, self.piece + 1)
