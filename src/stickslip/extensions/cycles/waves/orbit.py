@@ -40,6 +40,8 @@ CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 """A cycle closes to this share (1) of its extent; where rounding or kinks forbid that, to the second."""
 SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
+NO_STATE = 1e-15
+"""A state that is no larger than this, in its unit, is 0."""
 RESOLVED_OF_MISS = 1e-2
 """The mesh resolves a wave to this share (1) of what the return misses."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
@@ -112,7 +114,7 @@ class WaveOrbit:
     def extent(self) -> Floats:
         """Sizes of the states, and how far the wave goes, for each of these."""
         place, count = self.place, len(self.closed.start.states)
-        return np.append(np.abs(place[:count]) + 1e-300, np.full(len(place) - count, np.ptp(place[count:])))
+        return np.append(sizes_of(place[:count]), np.full(len(place) - count, np.ptp(place[count:])))
 
     @cached_property
     def sharp_waves(self) -> float:
@@ -163,6 +165,12 @@ def sharp_factor(history: History, begin: float, end: float) -> float:
     return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
 
 
+def sizes_of(states: Floats) -> Floats:
+    """Return the sizes of states; one that is 0, as a rest makes some, has none, and counts as it is."""
+    sizes = np.abs(states)
+    return np.where(sizes > NO_STATE, sizes, 1.0)
+
+
 @dataclass(frozen=True)
 class Image:
     """The return as a map of vectors: states and wave at the points of the mesh of a place, over their extents."""
@@ -174,7 +182,7 @@ class Image:
     def scale(self) -> Floats:
         """The extents: sizes of the states, and how far the wave goes."""
         place = self.place
-        return np.concatenate([np.abs(place.states) + 1e-300, np.full(len(place.wave), np.ptp(place.wave) + 1e-300)])
+        return np.concatenate([sizes_of(place.states), np.full(len(place.wave), np.ptp(place.wave) + 1e-300)])
 
     @cached_property
     def start(self) -> Floats:
