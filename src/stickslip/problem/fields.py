@@ -20,7 +20,6 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import BODIES, BodyOnCharacteristics
 from stickslip.problem.loading import VARYING, LoadingHistory, Sinusoidal
-from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
 
 if TYPE_CHECKING:
@@ -112,6 +111,8 @@ class ProblemFields(CheckedArguments):
 
             object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         if isinstance(self.normal_load, LoadingHistory):
+            from stickslip.problem.normal_load import begun_with_body
+
             object.__setattr__(self, "normal_load", begun_with_body(self.normal_load, self.body))
         self._check_varying()
         if self.force is not None or self.body.is_free:
@@ -159,6 +160,8 @@ class ProblemFields(CheckedArguments):
             getattr(self, name).check()
         self._check_two_drivers()
         if self.normal_load is not None:
+            from stickslip.problem.normal_load import check_normal_load
+
             check_normal_load(self.normal_load, self.body)
         if self.body.has_belt:
             from stickslip.problem.belt import check_belt
