@@ -163,12 +163,7 @@ class ProblemFields(CheckedArguments):
             from stickslip.problem.normal_load import check_normal_load
 
             check_normal_load(self.normal_load, self.body)
-        if self.body.has_belt:
-            from stickslip.problem.belt import check_belt
-
-            other = next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
-            check_belt(type(self.body).__name__, self.ground, other)
-        elif self.ground is not None:
+        if self.ground is not None and self._given_ground:
             from stickslip.problem.rare_checks import check_ground
 
             check_ground(self.body, self.ground, [getattr(self, name) for name in self._varying if name in PULLS])
@@ -349,15 +344,17 @@ class ProblemFields(CheckedArguments):
     @cached_property
     def ground(self) -> Ground | None:
         """The motion of the ground; None if it is at rest."""
-        if self.body.has_belt:
-            from stickslip.problem.belt import ground_of_belt  # few problems have one
-
-            return ground_of_belt(self.pull_rate)
-        if self.ground_velocity is None and self.ground_acceleration is None:
-            return None
+        belt: Ground | None = self.body.belt_as_ground(self.pull_rate, self._given_ground)
+        if not self._given_ground:
+            return belt
         from stickslip.problem.ground import Ground
 
         return Ground.of(self.ground_velocity, self.ground_acceleration)
+
+    @property
+    def _given_ground(self) -> str:
+        """The name of the field with a motion of the ground; "" if there is none."""
+        return next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
 
     @cached_property
     def contact_law(self) -> FrictionLaw:
