@@ -113,17 +113,19 @@ class Session(Generic[Options]):
         run.restore(checkpoint)
         return run
 
-    def begin_with(self, edges: Floats, series: Floats, rate: float, states: Floats) -> None:
+    def begin_with(self, edges: Floats, series: Floats, rate: float, beside: Floats) -> None:
         """Begin with a wave that left the contact of a uniform body, over a round trip before the start of its run.
 
         It is 2 Z v - load, plus the reference strength (Pa), a polynomial in xi between each two phases (s) of `edges`. The contact
-        has the slip rate (m/s), rests at 0 if its law knows rest, and has states as formulas see them in forward slip.
+        has the slip rate (m/s) and rests at 0 if its law knows rest. `beside` are its states as formulas see them in forward slip,
+        and rate (m/s) and push (Pa) of a driver that moves by itself, where it meets the beginning of the wave.
         """
         from stickslip.engine.from_wave import put_wave  # of searches for periodic motion
 
         self.reserve(len(series))
         self.state.rate_now, self.count.piece = rate, int(self.problem.friction.piece_at(self.problem.law_slip, rate))
-        for n, value in enumerate(states.tolist()):
+        *states, self.state.driver_rate, self.state.driver_push = beside.tolist()
+        for n, value in enumerate(states):
             self.state.state_now[n] = value
         put_wave(self.store, self.count, self.state, edges, series)
 

@@ -12,7 +12,6 @@ from stickslip.problem.bodies import as_waves
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
 OF_DRIVERS = {
-    "machine": "cycles behind a machine with a motion of its own are not found",
     "damper": "cycles of a column that is damped are not found",
     "changing": "the driver changes in time",
 }

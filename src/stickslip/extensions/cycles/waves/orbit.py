@@ -97,14 +97,13 @@ class WaveOrbit:
 
     @property
     def place(self) -> Floats:
-        """Where the cycle meets the section: the states, and the wave at points that are evenly spread over a round trip."""
+        """Where the cycle meets the section: numbers, and the wave at points that are evenly spread over a round trip."""
         return coordinates(self.closed.start)
 
     @property
     def extent(self) -> Floats:
         """Sizes of the states, and how far the wave goes, for each of these."""
-        place, count = self.place, len(self.closed.start.states)
-        return np.append(np.abs(place[:count]) + 1e-300, np.full(len(place) - count, np.ptp(place[count:])))
+        return spread(self.closed.start).scale
 
     @cached_property
     def sharp_waves(self) -> float:
@@ -117,7 +116,9 @@ class WaveOrbit:
         place = self.closed.start
         image = Image(place, self.period)
         phases = place.mesh.phases / self.closed.begin
-        start = np.concatenate([np.ones(len(place.states)), sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))])
+        start = np.concatenate(
+            [np.ones(len(place.vector) - len(phases)), sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))]
+        )
         large = max(LEAST_LARGE, math.sqrt(self.sharp_waves))
         return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
 
@@ -153,9 +154,8 @@ class Image:
 
     @cached_property
     def scale(self) -> Floats:
-        """The extents: sizes of the states, and how far the wave goes."""
-        place = self.place
-        return np.concatenate([np.abs(place.states) + 1e-300, np.full(len(place.wave), np.ptp(place.wave) + 1e-300)])
+        """The extents of its numbers and of its wave."""
+        return self.place.scale
 
     @cached_property
     def start(self) -> Floats:
@@ -219,9 +219,14 @@ def even_mesh(trip: float) -> WaveMesh:
     return WaveMesh(np.linspace(0.0, trip, EVEN_PIECES + 1))
 
 
+def spread(place: WavePlace) -> WavePlace:
+    """Return a place with its wave at points that are evenly spread over a round trip."""
+    return place.on(even_mesh(float(place.mesh.edges[-1])))
+
+
 def coordinates(place: WavePlace) -> Floats:
-    """Return states and wave at points that are evenly spread over a round trip."""
-    return place.on(even_mesh(float(place.mesh.edges[-1]))).vector
+    """Return the numbers of a place and its wave at points that are evenly spread over a round trip."""
+    return spread(place).vector
 
 
 def missed_share(met: WaveReturn) -> float:
