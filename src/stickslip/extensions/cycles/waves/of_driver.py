@@ -6,19 +6,21 @@ wave of that round trip, decide how it goes on. Its numbers are kept as stresses
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Problem
-from stickslip.problem.bodies import as_waves
+from stickslip.problem.bodies import BodyWithWaves, as_waves
 
 
 def moving(problem: Problem) -> tuple[bool, bool]:
     """Return whether the rate of the driver is a number of its own, and whether the push of its integral gain is."""
     if problem.driver_kind == "damper":
         return True, False
-    body = as_waves(problem.body)
+    body = cast(BodyWithWaves, problem.body)
     is_machine = problem.driver_kind == "machine"
     return is_machine and body.driver_inertia > 0.0, is_machine and body.driver_integral_gain > 0.0
 
@@ -27,7 +29,7 @@ def rate_and_push(problem: Problem, kept: Floats) -> Floats:
     """Return the rate (m/s) and the push (Pa) of a driver that keeps these stresses (Pa)."""
     found, own = np.zeros(2), np.array(moving(problem))
     found[own] = kept
-    found[0] /= 2.0 * as_waves(problem.body).echo_impedance
+    found[0] /= 2.0 * problem.body.echo_impedance
     return found
 
 

@@ -16,16 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine import History, Positions
+from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
 from stickslip.extensions.cycles.waves.krylov import Operator, leading, solved
-from stickslip.extensions.cycles.waves.mesh import WaveMesh, kinks, mesh_of
+from stickslip.extensions.cycles.waves.mesh import WaveMesh, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
-from stickslip.problem.bodies import as_waves
 from stickslip.solution import Solution
 
 SMALL_NUDGE, FINE_NUDGE = 1e-6, 5e-6
@@ -108,7 +107,7 @@ class WaveOrbit:
     @cached_property
     def sharp_waves(self) -> float:
         """What a period multiplies the sharpest waves by (1): all that is not among the multipliers fades at least so fast."""
-        return sharp_factor(self.closed.history, self.closed.begin, self.closed.end)
+        return self.closed.source.sharp_factor(self.closed.begin)
 
     @cached_property
     def multipliers(self) -> NDArray[Any]:
@@ -116,33 +115,10 @@ class WaveOrbit:
         place = self.closed.start
         image = Image(place, self.period)
         phases = place.mesh.phases / self.closed.begin
-        start = np.concatenate(
-            [np.ones(len(place.vector) - len(phases)), sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))]
-        )
+        swing: Any = sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))
+        start = np.concatenate([np.ones(sum(place.counts)), np.resize(swing, len(place.wave))])
         large = max(LEAST_LARGE, math.sqrt(self.sharp_waves))
         return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
-
-
-def sharp_factor(history: History, begin: float, end: float) -> float:
-    """Return what a disturbance that lasts an instant is multiplied by (1) on its ways between two times (s), in the mean.
-
-    Each way multiplies it by r (1 - 2 Z / g'), where g' = D + S dmu/dv is how the contact resists at once: mass or rest resist
-    whole.
-    """
-    problem, trip = history.problem, history.round_trip_time
-    body, law = as_waves(problem.body), problem.friction
-    back = (end - begin) / trip * math.log(max(abs(body.front_reflection), 1e-300))
-    if body.has_inertia:
-        return math.exp(back)
-    first, last = np.searchsorted(history.start, [begin, end])
-    here = np.arange(first, last)
-    here = here[history.store.mode[here] != 0]
-    piece, xi = np.repeat(here, 5), np.tile(np.linspace(0.1, 0.9, 5), len(here))
-    at = Positions.inside(piece, xi)
-    by_rate = law.slopes(0.0, np.abs(history.rate(at)), history.state(at))[1]
-    lasts = np.repeat((history.end - history.start)[here] / 5.0, 5)
-    answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
-    return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
 
 
 @dataclass(frozen=True)
@@ -193,8 +169,7 @@ def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
 
 def fitted_mesh(met: WaveReturn) -> WaveMesh:
     """Return the mesh for the wave at a return."""
-    history, body = met.history, as_waves(met.history.problem.body)
-    return mesh_of(met.source, kinks(history, met.end, met.time, abs(body.front_reflection)))
+    return mesh_of(met.source, met.source.kinks(met.time))
 
 
 def with_sharp_kinks(section: WaveSection, now: WaveReturn, share: float) -> WaveReturn:

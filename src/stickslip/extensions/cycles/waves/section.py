@@ -9,8 +9,10 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
+from stickslip.extensions.cycles.waves.begin import begin_with
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
 from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
+from stickslip.extensions.cycles.waves.sources import source_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem, Stop, driver_of
@@ -101,7 +103,7 @@ class WaveReturn:
     @property
     def source(self) -> WaveSource:
         """The wave of the last round trip before the return."""
-        return WaveSource(self.history, self.end)
+        return source_of(self.history, self.end)
 
     @cached_property
     def states(self) -> Floats:
@@ -150,7 +152,7 @@ class WaveSection:
         """Return the run from a place that lasts so long (s), and the code of its end."""
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
         beside = np.concatenate([place.states, rate_and_push(self.problem, place.kept)])
-        run.begin_with(place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
+        begin_with(run, place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
         while True:
             code = run.advance(PASSES)
             if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
@@ -193,6 +195,5 @@ def place_in(history: History, met: Crossings, n: int, mesh: WaveMesh) -> WavePl
     """Return the place where a run that begins as its problem says meets a section for the n-th time."""
     time, problem = float(met.time[n]), history.problem
     kept = kept_by_driver(history, time, np.array(driver_of(problem).at_first(problem)))
-    return WavePlace(
-        mesh, states_at(history, int(met.piece[n]), float(met.place[n])), kept, WaveSource(history, time).at(mesh.phases)
-    )
+    states = states_at(history, int(met.piece[n]), float(met.place[n]))
+    return WavePlace(mesh, states, kept, source_of(history, time).at(mesh.phases))
