@@ -1,7 +1,7 @@
 """How far a rigid body is behind the end of its spring, or behind the reference of its position loop, where that matters.
 
-Load and slip rate say all of a body on a spring. The load of a position loop has the integral of the lag in it, so that the lag is a
-state of its own; hard stops bar the way at a lag under a reference at rest; and a spring beside a play feels no lag that is small.
+Load and slip rate say all of a body on a spring. The load of a position loop has the integral of the lag in it, so that the lag is
+a state of its own. Hard stops bar the way at a lag, under a reference at rest. A spring beside a play feels no lag that is small.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies import as_on_spring
 
 SMALL_RATE = 0.01
-"""Slip rate (1) at which a motion about a set point is cut, over the range of friction divided by sqrt(K m)."""
+"""Slip rate (1) at which a motion about a set point is cut, as a share of its `usual_rate`."""
 
 
 def is_wound(problem: Problem) -> bool:
@@ -25,20 +25,33 @@ def is_wound(problem: Problem) -> bool:
     return bool(getattr(problem.body, "integral_gain", 0.0) > 0.0)
 
 
+def force_of_slip(problem: Problem) -> float:
+    """Return about by how much (N) friction falls in slip about a set point: its range, or all of it if that is 0."""
+    return float(problem.normal * (problem.friction.variation or problem.friction.static_coefficient(0.0)))
+
+
+def usual_rate(problem: Problem) -> float:
+    """Return the slip rate (m/s) with which those of a cycle are compared: the pull rate, or that of a free slip if it is 0."""
+    return problem.first_pull_rate or force_of_slip(problem) / float(problem.body.impedance)
+
+
 def section_rate(problem: Problem) -> float:
-    """Return the slip rate (m/s) at which a motion is cut that never rests: the pull rate, or a small one under a set point at rest."""
-    if problem.first_pull_rate > 0.0:
-        return problem.first_pull_rate
-    return float(SMALL_RATE * problem.normal * problem.friction.variation / problem.body.impedance)
+    """Return the slip rate (m/s) at which a motion is cut that never rests: the pull rate, or a small one if that is 0."""
+    return problem.first_pull_rate or SMALL_RATE * usual_rate(problem)
 
 
 def loading_rate(problem: Problem) -> float:
     """Return about how fast (N/s) the load of a contact at rest grows: by the pull, and by the integral of a lag of usual size."""
     pulled: float = problem.body.stiffness * problem.first_pull_rate
     if is_wound(problem):
-        usual = problem.normal * problem.friction.variation / problem.body.stiffness
-        pulled += as_on_spring(problem.body).integral_gain * usual
+        pulled += as_on_spring(problem.body).integral_gain * force_of_slip(problem) / problem.body.stiffness
     return pulled
+
+
+def impacts_of(history: History, last: int) -> int:
+    """Return how often the body meets a hard stop in a history up to a piece."""
+    body, mode, slip = as_on_spring(history.problem.body), history.store.mode[:last], history.store.slip[1 : last + 1]
+    return int((((mode > 0) & (slip == body.stop_ahead)) | ((mode < 0) & (slip == -body.stop_behind))).sum())
 
 
 def has_lag(problem: Problem) -> bool:

@@ -70,6 +70,11 @@ class Orbit:
         return self.closed.sticks
 
     @property
+    def impacts(self) -> int:
+        """How often the body meets a hard stop in a period."""
+        return self.closed.impacts
+
+    @property
     def grazes(self) -> bool:
         """True if the contact rests for an instant only: what follows from a disturbance then depends on its sign."""
         end, history = self.closed, self.closed.history

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.compiled.places import MOST_IN_PIECE, find_passages
-from stickslip.extensions.cycles.lag import at_lag, is_wound, section_rate
+from stickslip.extensions.cycles.lag import at_lag, impacts_of, is_wound, section_rate
 from stickslip.extensions.cycles.tangent import FIRST_STATE_ROW, LOAD_ROW, RATE_ROW, Tangent, pace_at, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -75,6 +75,11 @@ class Return:
         """True if the contact rests on the way."""
         history = self.history
         return bool((history.store.mode[: self.piece + 1] == 0).any() or history.rests[: self.piece].any())
+
+    @cached_property
+    def impacts(self) -> int:
+        """How often the body meets a hard stop on the way."""
+        return impacts_of(self.history, self.piece)
 
 
 @dataclass(frozen=True)

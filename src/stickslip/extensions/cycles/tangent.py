@@ -4,10 +4,10 @@ The state is load L, slip rate v, and the states w of the law. Under a steady pu
 
     dL/dt = K (V - v)      m dv/dt = L - c v - d S mu(|v|, w)      dw/dt = f(|v|, w)
 
-and at rest v = 0. In a position loop, at hard stops and in a play the lag e behind the reference matters, too (`lag`), and dL/dt has
-ki e more in a loop and no K in a play. A disturbance obeys the derivative of this, which Radau's method solves on each piece of the history: a fast
-motion that has long faded takes no short steps. At an event with the condition n y = const a disturbance is multiplied by
-I + (f+ - f-) n / (n f-), where f- and f+ are dy/dt before and after it. All of it is machine code (`compiled`).
+and at rest v = 0. In a position loop, at hard stops and in a play the lag e behind the reference matters, too (`lag`), and dL/dt
+has ki e more in a loop and no K in a play. A disturbance obeys the derivative of this, which Radau's method solves on each piece
+of the history: a fast motion that has long faded takes no short steps. At an event with the condition n y = const a disturbance is
+multiplied by I + (f+ - f-) n / (n f-), where f- and f+ are dy/dt before and after it (`events`). All of it is machine code.
 
 Source: di Bernardo et al. 2008, Piecewise-smooth Dynamical Systems, section 2.5, for the factor at events.
 """

@@ -1,7 +1,7 @@
-"""Numbers of a run for compiled code, what its law says at a place in it, and how fast load, slip rate, states and lag change there.
+"""Numbers of a run for compiled code, what its law says at a place in it, and how fast load, rate, states and lag change there.
 
-The lag is how far slip is behind the end of the spring or the reference of a position loop. It matters to a loop whose integral winds
-up, at hard stops, and in a play. Elsewhere load, slip rate and states are all that there is.
+The lag is how far slip is behind the end of the spring, or behind the reference of a position loop. It matters to a loop whose
+integral winds up, at hard stops, and in a play. Elsewhere load, slip rate and states are all that there is.
 """
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
 """What events of a run do to disturbances of it: rest begins and ends, the formula changes, a stop or an edge of a play is met.
 
-Source: di Bernardo et al. 2008, Piecewise-smooth Dynamical Systems, section 2.5. An impact, which multiplies the slip rate by -r, has
-the factor g + (f+ - g f-) n / (n f-) with g = diag(1, -r, 1 ...) there; n is the row of the lag, because a stop stands still.
+An impact multiplies the slip rate by -r. Its factor is g + (f+ - g f-) n / (n f-) with g = diag(1, -r, 1 ...), and n is the row of
+the lag, because a stop stands still. At a graze n f- is 0, and the factor is infinite (Nordmark 1991, J. Sound Vib. 145, 279).
+
+Source: di Bernardo et al. 2008, Piecewise-smooth Dynamical Systems, section 2.5.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Bodies in a position loop: their cycles start with load, states and the lag behind the reference, which the controller integrates."""
+"""Bodies in a position loop: their cycles start with load, states and the lag that the controller integrates."""
 
 from __future__ import annotations
 
