@@ -9,6 +9,7 @@ from typing import Any
 
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.lag import is_wound, loading_rate
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
@@ -16,6 +17,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
 from stickslip.problem import INITIAL_STATES, TOO_MANY, Problem
+from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
@@ -87,7 +89,7 @@ def cycle(
     first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
         begin = without_load(scenario.problem)
-        wait = (scenario.problem.load - begin.load) / (begin.body.stiffness * begin.first_pull_rate)
+        wait = (scenario.problem.load - begin.load) / loading_rate(begin)
         times, kind = (wait, FIRST_NEAR * time_of_cycle(begin)), CYCLE_KINDS[begin.body.structure]
         early = kind.settled(begin, times, rtol, tell) if near is None else None
         return LimitCycle(early or _searched(begin, first, attempts, rtol, tell), scenario)
@@ -112,7 +114,8 @@ def time_of_cycle(problem: Problem) -> float:
     """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
     law = problem.friction
     falls = law.variation if law.states else min(law.variation, float(law.static_coefficient(0.0)))
-    return problem.body.round_trip_time + 2.0 * problem.normal * falls / (problem.body.stiffness * problem.first_pull_rate)
+    turn = as_on_spring(problem.body).period if is_wound(problem) else problem.body.round_trip_time
+    return float(turn + 2.0 * problem.normal * falls / loading_rate(problem))
 
 
 def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> FoundCycle:
@@ -135,7 +138,9 @@ def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: 
 
 def check_can_be_followed(problem: Problem, who: str) -> None:
     """Refuse a problem whose cycles are not looked for. Raises InputError, which begins with `who`."""
-    if why := CYCLE_KINDS[problem.body.structure].refusal(problem):
+    kind, pull = CYCLE_KINDS[problem.body.structure], problem.first_pull_rate
+    if why := kind.refusal(problem):
         raise InputError(f"{who}: {why}; {INSTEAD}")
-    if not problem.first_pull_rate > 0.0 or not math.isfinite(problem.first_pull_rate):
-        raise InputError(f"{who}: pull_rate must be above 0, got {problem.first_pull_rate:g} {problem.unit_of('pull_rate')}")
+    if not (pull > 0.0 or (kind.may_be_held and pull == 0.0)) or not math.isfinite(pull):
+        least = "0 or above" if kind.may_be_held else "above 0"
+        raise InputError(f"{who}: pull_rate must be {least}, got {pull:g} {problem.unit_of('pull_rate')}")

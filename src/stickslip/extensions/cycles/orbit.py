@@ -70,6 +70,11 @@ class Orbit:
         return self.closed.sticks
 
     @property
+    def impacts(self) -> int:
+        """How often the body meets a hard stop in a period."""
+        return self.closed.impacts
+
+    @property
     def grazes(self) -> bool:
         """True if the contact rests for an instant only: what follows from a disturbance then depends on its sign."""
         end, history = self.closed, self.closed.history
@@ -79,7 +84,7 @@ class Orbit:
     @property
     def forgets_all(self) -> bool:
         """True if each rest ends all disturbances, because only the load is left then."""
-        return self.section.at_onset
+        return self.section.at_onset and not len(self.place)
 
     @property
     def certainty(self) -> str:
@@ -104,9 +109,11 @@ class Orbit:
     @cached_property
     def multipliers(self) -> NDArray[Any]:
         """What a return multiplies disturbances by, the largest first: one less than there are load, slip rate and states."""
-        if self.section.at_onset:
+        if self.forgets_all:
             return np.array([np.nan if self.grazes else 0.0])
         found = np.linalg.eigvals(self.closed.slopes())
+        if self.section.at_onset:  # the rest has left no more than these
+            found = np.append(found, 0.0)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
 
@@ -147,7 +154,7 @@ def _first_time_round(orbit: Orbit) -> float | None:
     A run that comes to a cycle from two sides in turn is closer to itself after two periods than after one.
     """
     met = crossings(orbit.closed.history, orbit.section.at_onset)
-    away = np.abs(places_of(orbit.closed.history, met) - orbit.place[:, None]) / orbit.extent[:, None]
+    away = np.abs(places_of(orbit.closed.history, met, orbit.section.at_onset) - orbit.place[:, None]) / orbit.extent[:, None]
     earlier = met.time[(away.max(axis=0) <= SAME_PLACE) & (met.time < (1.0 - CLOSES) * orbit.period)]
     return float(earlier[0]) if len(earlier) else None
 
@@ -188,9 +195,9 @@ def _checked(orbit: Orbit) -> Orbit:
     return orbit
 
 
-def places_of(history: History, met: Crossings) -> Floats:
-    """Return load and states where a run passes the pull rate, each in a row."""
-    return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset=False)
+def places_of(history: History, met: Crossings, at_onset: bool = False) -> Floats:
+    """Return what may vary on a section where a run crosses it, each in a row."""
+    return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
 
 
 def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
@@ -202,12 +209,10 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
             "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes the pull rate twice:"
             " give a longer run (near), or another start"
         )
-    if at_onset:
-        return closed(Section(problem, at_onset, rtol), np.zeros(0), float(met.time[-1] - met.time[-2]))
-    places = places_of(history, met)
-    every = meetings(places, extent_of(history, False, len(history) - 1), CLOSES) or 1
+    places = places_of(history, met, at_onset)
+    every = meetings(places, extent_of(history, at_onset, len(history) - 1), CLOSES) or 1
     found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
-    if problem.friction.states or not found.sticks:
+    if at_onset or problem.friction.states or not found.sticks:
         return found
     return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
 
