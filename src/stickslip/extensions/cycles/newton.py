@@ -80,7 +80,7 @@ def closed_beyond(section: Section, now: Return, period: float, earlier: Sequenc
         return _once_round(Orbit(now, extent, 1, change))
     period = now.time
     for n in range(MOST_ITERATIONS):
-        steps = _steps(now, seen, extent)
+        steps = next_steps(now, seen, extent)
         seen.append(Miss(now.start, now.missed))
         tried = _shortened(section, now, steps, share, extent)
         period, change = tried.time, abs(tried.time - period)
@@ -109,7 +109,7 @@ def _once_round(orbit: Orbit) -> Orbit:
     return closed_beyond(orbit.section, orbit.section.returned(orbit.place, once), once)
 
 
-def _steps(now: Return, seen: Sequence[Miss], extent: Floats) -> Steps:
+def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> Steps:
     """Return the next steps from a return. Raises InputError if the cycles near here cannot be told apart.
 
     The miss of a step d is F + J d + a (s d)^2 / 2 where s leads to an earlier return, and a makes that miss what it does.
@@ -126,11 +126,11 @@ def _steps(now: Return, seen: Sequence[Miss], extent: Floats) -> Steps:
     curved = straight
     if len(usable):
         n = int(usable[lengths[usable].argmin()])
-        curved = _curved(derivative, straight, ways[n], seen[n].missed / extent - missed)
+        curved = curved_step(derivative, straight, ways[n], seen[n].missed / extent - missed)
     return Steps(curved * extent, straight * extent)
 
 
-def _curved(derivative: Floats, straight: Floats, way: Floats, change: Floats) -> Floats:
+def curved_step(derivative: Floats, straight: Floats, way: Floats, change: Floats) -> Floats:
     """Return the step with the curvature that the change of what is missed along a way shows; the straight one if there is none."""
     length = way @ way
     bend = np.linalg.solve(derivative, (change - derivative @ way) / length**2)  # a / 2, behind the derivative
