@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -86,20 +87,25 @@ def cycle(
     scenario = Scenario(problem, 1.0) if isinstance(problem, Problem) else read_source("cycle", problem)
     check_can_be_followed(scenario.problem, "cycle")
     TOLERANCE_OF_RUNS.check("cycle", "rtol", rtol)
-    first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
         begin = without_load(scenario.problem)
+        if near is not None:
+            return LimitCycle(_searched(begin, (float(NEAR.check("cycle", "near", near)),), rtol, tell), scenario)
         wait = (scenario.problem.load - begin.load) / loading_rate(begin)
-        times, kind = (wait, FIRST_NEAR * time_of_cycle(begin)), CYCLE_KINDS[begin.body.structure]
-        early = kind.settled(begin, times, rtol, tell) if near is None else None
-        return LimitCycle(early or _searched(begin, first, attempts, rtol, tell), scenario)
+        lasts, kind = FIRST_NEAR * time_of_cycle(begin), CYCLE_KINDS[begin.body.structure]
+        found = kind.settled(begin, (wait, lasts), rtol, tell)
+        if found is None:
+            first = lasts if isinstance(problem, Problem) else scenario.duration
+            found = _searched(begin, _durations(first, lasts), rtol, tell)
+        return LimitCycle(found, scenario)
 
 
-def _first_run(scenario: Scenario, near: float | str | WithUnit | None, *, given: bool) -> float:
-    """Return the duration (s) of the first run."""
-    if near is not None:
-        return float(NEAR.check("cycle", "near", near))
-    return scenario.duration if given else FIRST_NEAR * time_of_cycle(scenario.problem)
+def _durations(first: float, least: float) -> list[float]:
+    """Return the durations (s) of runs at whose end a cycle is looked for, from the first one on."""
+    found = [first]
+    for _ in range(ATTEMPTS - 1):
+        found.append(max(LONGER * found[-1], least))
+    return found
 
 
 def without_load(problem: Problem) -> Problem:
@@ -118,10 +124,10 @@ def time_of_cycle(problem: Problem) -> float:
     return float(turn + 2.0 * problem.normal * falls / loading_rate(problem))
 
 
-def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> FoundCycle:
-    """Return the cycle near the end of a run, which is made longer where none is found. Raises InputError."""
+def _searched(problem: Problem, durations: Sequence[float], rtol: float, tell: TextProgress) -> FoundCycle:
+    """Return the cycle near the end of a run, of the next duration (s) where none is found. Raises InputError."""
     kind = CYCLE_KINDS[problem.body.structure]
-    for attempt in range(attempts):
+    for lasts in durations:
         run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=kind.most_pieces))
         tell(f"run of {brief(lasts, 's')}")
         full = not run.status.ok
@@ -130,10 +136,9 @@ def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: 
         try:
             return kind.near_end(run.history, problem, rtol)
         except InputError:
-            if attempt == attempts - 1 or full:
+            if lasts == durations[-1] or full:
                 raise
-        lasts = max(LONGER * lasts, FIRST_NEAR * time_of_cycle(problem))
-    raise AssertionError("there is at least one attempt")
+    raise AssertionError("there is at least one duration")
 
 
 def check_can_be_followed(problem: Problem, who: str) -> None:

@@ -11,13 +11,12 @@ import numpy as np
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.compiled.places import MOST_IN_PIECE, find_passages
 from stickslip.extensions.cycles.lag import at_lag, impacts_of, is_wound, section_rate
+from stickslip.extensions.cycles.short_runs import short_run
 from stickslip.extensions.cycles.tangent import FIRST_STATE_ROW, LOAD_ROW, RATE_ROW, Tangent, pace_at, values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem import INITIAL_STATES, Problem
-from stickslip.run import uninterrupted
-from stickslip.run.simulate import simulate
 
 SPARE_TIME, MOST_TRIES = 1.1, 6
 """A run to a return lasts longer than the guessed period by this factor (1), and is doubled so often if it has no return."""
@@ -71,6 +70,11 @@ class Return:
         return np.asarray(onto[np.ix_(kept, kept)])
 
     @cached_property
+    def about(self) -> Floats:
+        """The derivative of the return as Newton's iteration needs it."""
+        return self.slopes(exactly=False)
+
+    @cached_property
     def sticks(self) -> bool:
         """True if the contact rests on the way."""
         history = self.history
@@ -114,7 +118,7 @@ class Section:
         """
         problem, lasts = self.start_at(place), SPARE_TIME * guess
         for _ in range(tries):
-            run = uninterrupted(simulate(problem, lasts, self.rtol))
+            run = short_run(problem, lasts, self.rtol)
             met = crossings(run.history, self.at_onset)
             # Where nothing is open all is as at the start, so that the first return is the period. Elsewhere it is the one next to
             # the guess, if none beyond the run may be nearer.
@@ -133,6 +137,11 @@ class Section:
 def coordinates(values: Floats, at_onset: bool) -> Floats:
     """Return what may vary on a section, of load, slip rate, states and lag: at an onset only the lag."""
     return values[FIRST_STATE_ROW:] if at_onset else np.delete(values, RATE_ROW, axis=0)
+
+
+def places_of(history: History, met: Crossings, at_onset: bool = False) -> Floats:
+    """Return what may vary on a section where a run crosses it, each in a row."""
+    return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
 
 
 def crossings(history: History, at_onset: bool) -> Crossings:

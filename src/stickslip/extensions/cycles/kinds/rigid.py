@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
-from stickslip.extensions.cycles.orbit import Orbit, near_end
+from stickslip.extensions.cycles.near import near_end
+from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.path import Path, path_of
 from stickslip.extensions.cycles.settling import settled
 from stickslip.problem import Problem
