@@ -11,6 +11,8 @@ from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
 from stickslip.extensions.cycles.doubling import MOST_DOUBLED, end_of_doubling, first_doubled
 from stickslip.extensions.cycles.edges import (
     DOUBLING,
+    END_OF_HUNTING,
+    GRAZING,
     NOT_FOUND,
     STEADY_END,
     CycleEdge,
@@ -19,9 +21,12 @@ from stickslip.extensions.cycles.edges import (
     first_stick,
     loss_of_stick,
 )
+from stickslip.extensions.cycles.found import kind_of
+from stickslip.extensions.cycles.hunting import end_of_hunting
+from stickslip.extensions.cycles.lag import usual_rate
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import measures_of
-from stickslip.extensions.cycles.meeting import with_rest, without_rest
+from stickslip.extensions.cycles.meeting import with_other_impacts, with_rest, without_rest
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.reaching import STRAIGHT, at_end_of_range, between, first_place, past_end, range_of
 from stickslip.extensions.cycles.resuming import (
@@ -48,7 +53,7 @@ SHARE_OF_EXTENT = 0.25
 SAME_PERIOD = 0.3
 """A step is too long if the period changes by more than this share (1)."""
 VANISHING = 2e-3
-"""A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding."""
+"""A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding, or of a free slip at a set point."""
 MOST_COORDINATES = 8
 """Of cycles with more coordinates of the start than this (1), such as waves, these are not kept, and no branch goes on."""
 MOST_PARTS = 4
@@ -256,7 +261,7 @@ class _Following:
             amplitudes.append(self.points[-1].measures.amplitude)
             values.append(new.value)
             now, length = new, min(LONGER * step, 2.0 / self.steps)
-            if amplitudes[-1] < VANISHING * now.orbit.section.problem.first_pull_rate and amplitudes[-1] < amplitudes[-2]:
+            if amplitudes[-1] < VANISHING * usual_rate(now.orbit.section.problem) and amplitudes[-1] < amplitudes[-2]:
                 return self._at_end(path, now, values, amplitudes)
 
     def _stepped(self, path: Path, now: PlaceOnBranch, step: float, *, shortest: bool) -> PlaceOnBranch | None:
@@ -267,7 +272,7 @@ class _Following:
             return None
         same = (shortest and path.at_onset) or abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
         straight = abs(float(new.way @ now.way)) >= STRAIGHT
-        if not (same and straight) or new.orbit.sticks != now.orbit.sticks:
+        if not (same and straight) or kind_of(new.orbit) != kind_of(now.orbit):
             return None
         return new if new.way @ now.way > 0.0 else replace(new, way=-new.way)
 
@@ -287,12 +292,17 @@ class _Following:
         if end is not None:
             self._edge(end)
             return None
-        if path.at_onset:
+        gone = end_of_hunting(path, now)
+        if gone is not None and amplitudes[-1] < amplitudes[0]:
+            self._edge(CycleEdge(END_OF_HUNTING, gone, now.orbit))
+            return None
+        if path.at_onset or now.orbit.section.problem.body.has_stops:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span
             end = past_end(float(beyond), self.ends)
             edge, last = loss_of_stick(path, now, float(beyond) if end is None else end)
-            self._edge(edge)
-            return without_rest(path, edge, last)
+            if path.at_onset or edge.name == GRAZING:
+                self._edge(edge)
+                return (with_other_impacts if edge.name == GRAZING else without_rest)(path, edge, last)
         found = end_in_steady_sliding(path, np.array(values), np.array(amplitudes))
         if found is not None:
             self._edge(CycleEdge(STEADY_END, found, now.orbit))

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, time_of_cycle
-from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.found import FoundCycle, kind_of
 from stickslip.extensions.cycles.orbit import Orbit, extent_of
 from stickslip.extensions.cycles.section import Return, Section
 from stickslip.foundation.arrays import Floats
@@ -115,7 +115,7 @@ class Path:
             with np.errstate(over="ignore"):  # far from a cycle a state may overflow, which the problem refuses
                 section = self.section(value)
                 # The first return to an onset is the period, however much longer than that of the cycle before.
-                lasts = max(guess, time_of_cycle(section.problem)) if self.at_onset else guess
+                lasts = max(guess, time_of_cycle(section.problem)) if not len(place) else guess
                 now = section.returned(place, lasts, TRIES)
         except InputError as error:
             raise NoCycleError(str(error)) from None
@@ -145,12 +145,12 @@ class Path:
         raise NoCycleError("follow: no run beside this one is of its kind")
 
     def _nudged(self, now: Return, place: Floats, value: float) -> Floats | None:
-        """Return the end of a run at a value next to another; None if it does not return, or rests as that does not."""
+        """Return the end of a run at a value next to another; None if it does not return, or is of another kind."""
         try:
             found = self.section(value).returned(place, now.time, TRIES)
         except InputError:
             return None
-        return found.end if found.sticks == now.sticks else None
+        return found.end if kind_of(found) == kind_of(now) else None
 
     def at(self, target: Floats, way: Floats, guess: float) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError."""

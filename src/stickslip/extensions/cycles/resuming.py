@@ -120,7 +120,7 @@ def _numbered(row: dict[Any, Any], name: str) -> Any:
 def orbit_of(point: PointOnBranch, cycle: LimitCycle, parameter: ParameterPath) -> Orbit:
     """Return the cycle of a place on a branch, by a run of one period. Raises InputError if it does not come back."""
     problem = cycle.scenario.problem.parameters[parameter.name].put(point.value)
-    at_onset = not len(point.start)
+    at_onset = point.at_onset
     now = Section(problem, at_onset, cycle.orbit.section.rtol).returned(point.start, point.measures.period)
     return Orbit(now, extent_of(now.history, at_onset, now.piece), 1, 0.0)
 

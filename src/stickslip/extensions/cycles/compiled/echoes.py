@@ -4,11 +4,11 @@ A disturbance of the load b at the contact obeys, with d = 1 in forward and -1 i
 
     m dv' = db - D dv - d S (mu_v d|v| + mu_w dw)      dw' = f_v d|v| + f_w dw
 
-or, without a mass, the first equation with 0 on its left; at rest dv = 0. It is solved by Radau's method on parts of the pieces. What
-leaves the contact is 2 Z dv - db, and comes back after a round trip times r. At an event whose condition is n y = const what moves
-with it is y = (load, slip rate, states): a disturbance is multiplied by I + (f+ - f-) n / (n f-), f being dy/dt. The wave itself needs
-no factor: the slip rate is continuous where a mass or a law of states makes it so, and then a moved event moves only a kink of the
-wave, whose effect at a fixed moment is of second order.
+or, without a mass, the first equation with 0 on its left; at rest dv = 0. It is solved by Radau's method on parts of the pieces.
+What leaves the contact is 2 Z dv - db, and comes back after a round trip times r. At an event whose condition is n y = const, with
+y = (load, slip rate, states), a disturbance is multiplied by I + (f+ - f-) n / (n f-), f being dy/dt. The wave itself needs no
+factor: a mass, or a law of states, makes the slip rate continuous, and then a moved event moves only a kink of the wave. At a fixed
+moment beside the event that is an effect of second order. A return that comes earlier sees the wave change as fast as it does.
 
 Source: di Bernardo et al. 2008, Piecewise-smooth Dynamical Systems, section 2.5, for the factor at events.
 """
@@ -48,7 +48,7 @@ from stickslip.extensions.cycles.compiled.echo_parts import (
     set_row,
     write_interpolation,
 )
-from stickslip.foundation.arrays import Floats, Floats1, Floats2
+from stickslip.foundation.arrays import Floats, Floats2
 from stickslip.foundation.kernels.kernels import entry, kernel
 from stickslip.foundation.kernels.memory.addresses import ahead, room_for
 
@@ -252,13 +252,14 @@ def carry(waves: WavesOfRun, parts: PartsOfRun, last: int, place: float) -> int:
 
 
 @entry
-def read_waves(waves: WavesOfRun, parts: PartsOfRun, count: int, times: Floats1, paces: Floats1, found: Floats2) -> None:
-    """Write disturbances of the wave at times (s) before the return that move with it; `paces` (Pa/s) say how fast the wave changes."""
+def read_waves(waves: WavesOfRun, parts: PartsOfRun, count: int, times_and_paces: Floats2, found: Floats2) -> None:
+    """Write disturbances of the wave at times (s) before the return that move with it, beside how fast the wave changes (Pa/s)."""
     weights = room_for(WAVE_POINTS)
-    for i in range(len(times)):
-        echo = echo_behind(waves, parts.ends, count, times[i], 0.0)
+    for i in range(len(times_and_paces)):
+        time = times_and_paces[i, 0]
+        echo = echo_behind(waves, parts.ends, count, time, 0.0)
         begin = parts.ends[echo.part, 0]
-        write_interpolation((times[i] - echo.delay - begin) / (parts.ends[echo.part, 1] - begin), weights)
-        set_row(found[i], -paces[i], parts.moved)
+        write_interpolation((time - echo.delay - begin) / (parts.ends[echo.part, 1] - begin), weights)
+        set_row(found[i], -times_and_paces[i, 1], parts.moved)
         for k in range(WAVE_POINTS):
             add_row(found[i], echo.share * weights[k], parts.waves[echo.part * WAVE_POINTS + k])

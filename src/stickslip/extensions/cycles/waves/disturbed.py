@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, RunNumbers
@@ -26,7 +28,10 @@ DRIVERS = ("rigid", "lossy")
 def is_known(met: WaveReturn) -> bool:
     """Return True if disturbances of a return are known from its run: else they are by differences of runs."""
     history, law = met.history, met.history.problem.friction
-    if history.problem.driver_kind not in DRIVERS or law.depends_on_slip or history.store.bend.any():
+    problem = history.problem
+    if problem.body.structure != "uniform" or problem.driver_kind not in DRIVERS:
+        return False
+    if law.depends_on_slip or history.store.bend.any():
         return False
     if law.states and history.rests[met.first : met.piece + 1].any():
         return False
@@ -46,7 +51,8 @@ def numbers_along(met: WaveReturn) -> WavesOfRun:
     history, problem, law = met.history, met.history.problem, numbers_of_law(met.history.problem.friction)
     body, store = as_waves(problem.body), history.store
     forces = 0.0, body.total_damping, body.inertia, problem.normal, problem.first_pull_rate
-    run = RunNumbers(*store, *forces, law.calls, law.constants, law.reverses, law.sticks, law.has_knots)
+    of_law = law.calls, law.constants, law.reverses, law.sticks, law.has_knots
+    run = RunNumbers(*store, *forces, *of_law, np.zeros(0), 0.0, 0.0, math.inf, -math.inf, 0.0)  # neither loop, play nor stop
     lasts = np.array(store.speed)
     trip, back = history.round_trip_time, float(body.reflection)
     return WavesOfRun(run, history.start, lasts, trip, back, body.echo_impedance, met.first, int(met.at_onset))
@@ -63,7 +69,7 @@ def grown_columns(met: WaveReturn, columns: Floats) -> Floats:
     mesh = met.start.mesh
     found = np.empty((len(mesh.phases), many))
     times = met.end - waves.trip + mesh.phases
-    read_waves(waves, parts, count, times, met.source.pace_at(mesh.phases), found)
+    read_waves(waves, parts, count, np.column_stack([times, met.source.pace_at(mesh.phases)]), found)
     return np.concatenate([parts.now[FIRST_STATE_ROW : FIRST_STATE_ROW + states], found])
 
 

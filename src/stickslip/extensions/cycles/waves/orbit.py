@@ -1,8 +1,8 @@
 """From a run of a body with waves to the cycle near its end: Newton's iteration on the wave of a round trip, by exact runs.
 
-The derivative of a return is a matrix, from the linear equation of disturbances along the run (`disturbed`). Where that does not hold,
-it is known by differences of runs: each says what it does to one disturbance; GMRES then solves Newton's equation, and Arnoldi's
-iteration finds the leading multipliers.
+The derivative of a return is a matrix, from the linear equation of disturbances along the run (`disturbed`). Where that does not
+hold, it is known by differences of runs: each says what it does to one disturbance; GMRES then solves Newton's equation, and
+Arnoldi's iteration finds the leading multipliers.
 
 Source: Knoll & Keyes 2004, J. Comput. Phys. 193, 357, for Newton's iteration without a matrix.
 """
@@ -17,17 +17,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine import History, Positions
+from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
 from stickslip.extensions.cycles.waves.disturbed import is_known, slopes_of
 from stickslip.extensions.cycles.waves.krylov import Operator, largest, leading, solved
-from stickslip.extensions.cycles.waves.mesh import RESOLVED, WaveMesh, kinks, mesh_of
+from stickslip.extensions.cycles.waves.mesh import RESOLVED, WaveMesh, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
-from stickslip.problem.bodies import as_waves
 from stickslip.solution import Solution
 
 SMALL_NUDGE, FINE_NUDGE = 1e-6, 5e-6
@@ -40,8 +39,6 @@ CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 """A cycle closes to this share (1) of its extent; where rounding or kinks forbid that, to the second."""
 SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
-NO_STATE = 1e-15
-"""A state that is no larger than this, in its unit, is 0."""
 RESOLVED_OF_MISS = 1e-2
 """The mesh resolves a wave to this share (1) of what the return misses."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
@@ -107,19 +104,18 @@ class WaveOrbit:
 
     @property
     def place(self) -> Floats:
-        """Where the cycle meets the section: the states, and the wave at points that are evenly spread over a round trip."""
+        """Where the cycle meets the section: numbers, and the wave at points that are evenly spread over a round trip."""
         return coordinates(self.closed.start)
 
     @property
     def extent(self) -> Floats:
         """Sizes of the states, and how far the wave goes, for each of these."""
-        place, count = self.place, len(self.closed.start.states)
-        return np.append(sizes_of(place[:count]), np.full(len(place) - count, np.ptp(place[count:])))
+        return spread(self.closed.start).scale
 
     @cached_property
     def sharp_waves(self) -> float:
         """What a period multiplies the sharpest waves by (1): all that is not among the multipliers fades at least so fast."""
-        return sharp_factor(self.closed.history, self.closed.begin, self.closed.end)
+        return self.closed.source.sharp_factor(self.closed.begin)
 
     @property
     def slopes(self) -> Floats | None:
@@ -138,37 +134,10 @@ class WaveOrbit:
         if slopes is not None:
             return largest(slopes, MANY_MULTIPLIERS, self.sharp_waves)
         phases = place.mesh.phases / self.closed.begin
-        start = np.concatenate([np.ones(len(place.states)), sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))])
+        swing: Any = sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))
+        start = np.concatenate([np.ones(sum(place.counts)), np.resize(swing, len(place.wave))])
         large = max(LEAST_LARGE, math.sqrt(self.sharp_waves))
         return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
-
-
-def sharp_factor(history: History, begin: float, end: float) -> float:
-    """Return what a disturbance that lasts an instant is multiplied by (1) on its ways between two times (s), in the mean.
-
-    Each way multiplies it by r (1 - 2 Z / g'), where g' = D + S dmu/dv is how the contact resists at once: mass or rest resist
-    whole.
-    """
-    problem, trip = history.problem, history.round_trip_time
-    body, law = as_waves(problem.body), problem.friction
-    back = (end - begin) / trip * math.log(max(abs(body.front_reflection), 1e-300))
-    if body.has_inertia:
-        return math.exp(back)
-    first, last = np.searchsorted(history.start, [begin, end])
-    here = np.arange(first, last)
-    here = here[history.store.mode[here] != 0]
-    piece, xi = np.repeat(here, 5), np.tile(np.linspace(0.1, 0.9, 5), len(here))
-    at = Positions.inside(piece, xi)
-    by_rate = law.slopes(0.0, np.abs(history.rate(at)), history.state(at))[1]
-    lasts = np.repeat((history.end - history.start)[here] / 5.0, 5)
-    answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
-    return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
-
-
-def sizes_of(states: Floats) -> Floats:
-    """Return the sizes of states; one that is 0, as a rest makes some, has none, and counts as it is."""
-    sizes = np.abs(states)
-    return np.where(sizes > NO_STATE, sizes, 1.0)
 
 
 @dataclass(frozen=True)
@@ -180,9 +149,8 @@ class Image:
 
     @cached_property
     def scale(self) -> Floats:
-        """The extents: sizes of the states, and how far the wave goes."""
-        place = self.place
-        return np.concatenate([sizes_of(place.states), np.full(len(place.wave), np.ptp(place.wave) + 1e-300)])
+        """The extents of its numbers and of its wave."""
+        return self.place.scale
 
     @cached_property
     def start(self) -> Floats:
@@ -225,17 +193,15 @@ def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
 
 
 def fitted_mesh(met: WaveReturn, share: float) -> WaveMesh:
-    """Return the mesh for the wave at a return that misses its start by a share (1): a finer one would resolve what is yet wrong."""
-    history, body = met.history, as_waves(met.history.problem.body)
-    resolved = max(RESOLVED, RESOLVED_OF_MISS * share)
-    return mesh_of(met.source, kinks(history, met.end, met.time, abs(body.front_reflection)), resolved)
+    """Return the mesh for the wave at a return that misses its start by a share (1), no finer than that is worth."""
+    return mesh_of(met.source, met.source.kinks(met.time), max(RESOLVED, RESOLVED_OF_MISS * share))
 
 
 def with_sharp_kinks(section: WaveSection, now: WaveReturn, share: float) -> WaveReturn:
     """Return the return of a return that misses its start by a share (1), whose wave has its kinks where the mesh has edges.
 
-    If it misses more it is not taken: the start is put on the new mesh. Where kinks no longer move and the mesh is fine, all stays as
-    it is.
+    If it misses more it is not taken: the start is put on the new mesh. Where kinks no longer move and the mesh is fine, all stays
+    as it is.
     """
     if share <= SAME_MESH and now.start.mesh.is_fine:
         return now
@@ -254,9 +220,14 @@ def even_mesh(trip: float) -> WaveMesh:
     return WaveMesh(np.linspace(0.0, trip, EVEN_PIECES + 1))
 
 
+def spread(place: WavePlace) -> WavePlace:
+    """Return a place with its wave at points that are evenly spread over a round trip."""
+    return place.on(even_mesh(float(place.mesh.edges[-1])))
+
+
 def coordinates(place: WavePlace) -> Floats:
-    """Return states and wave at points that are evenly spread over a round trip."""
-    return place.on(even_mesh(float(place.mesh.edges[-1]))).vector
+    """Return the numbers of a place and its wave at points that are evenly spread over a round trip."""
+    return spread(place).vector
 
 
 def missed_share(met: WaveReturn) -> float:
