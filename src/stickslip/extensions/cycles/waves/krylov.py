@@ -60,6 +60,14 @@ def solved(operator: Operator, right: Floats, accuracy: float, most: int) -> tup
     return found, left, count
 
 
+def largest(matrix: Floats, many: int, least: float) -> NDArray[Any]:
+    """Return up to `many` of the largest eigenvalues of a matrix, without those of a smaller size than `least` beyond the first."""
+    values = np.linalg.eigvals(matrix)
+    values = values[np.argsort(-np.abs(values), kind="stable")]
+    count = max(1, min(many, int(np.sum(np.abs(values) > least))))
+    return np.asarray(values[: count + (values[count - 1].imag > 0.0)], complex)
+
+
 def leading(operator: Operator, start: Floats, many: int, large: float, most: int) -> NDArray[Any]:
     """Return up to `many` of the largest eigenvalues.
 

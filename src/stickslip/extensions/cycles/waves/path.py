@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,10 +13,9 @@ from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, NOT_FOUND,
 from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
-from stickslip.extensions.cycles.waves.krylov import solved
+from stickslip.extensions.cycles.waves.bordered import Bordered
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
-    MOST_DIRECTIONS,
     SMALL_NUDGE,
     Image,
     WaveOrbit,
@@ -25,6 +24,7 @@ from stickslip.extensions.cycles.waves.orbit import (
     difference,
     even_mesh,
     missed_share,
+    slopes_at,
     with_sharp_kinks,
 )
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
@@ -36,6 +36,10 @@ NEWTON_ROUNDS = 8
 """Largest number of Newton's iterations in a step (1)."""
 CLOSED, STILL_CLOSED = 1e-8, 1e-6
 """A cycle of a branch closes to this share of its extent (1); where kinks forbid that, to the second."""
+MUCH_NEARER = 1e-2
+"""A step of Newton's iteration brings a return much nearer if what it misses is this share (1) of what it missed before."""
+MOST_SECTIONS = 8
+"""Number of sections that a path remembers (1)."""
 DIRECTION_SHARE = 1e-3
 """The direction of a branch is known to this share (1)."""
 
@@ -60,7 +64,17 @@ class WavePath(Path):
 
     def section(self, value: float) -> Any:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
-        return WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
+        known = self._sections
+        if value not in known:
+            if len(known) >= MOST_SECTIONS:
+                known.clear()
+            known[value] = WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
+        return known[value]
+
+    @cached_property
+    def _sections(self) -> dict[float, WaveSection]:
+        """Sections by their values: a problem is made and prepared once."""
+        return {}
 
     def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.
@@ -81,48 +95,51 @@ class WavePath(Path):
         return WavePlace.of(even_mesh(trip), target[:-1] * self.scales[:-1], self.counts)
 
     def _newton(self, now: WaveReturn, value: float, target: Floats, way: Floats) -> PlaceOnBranch:
-        """Return the cycle to which Newton's iteration leads from a return."""
+        """Return the cycle to which Newton's iteration leads from a return.
+
+        A derivative serves as long as steps with it bring the return much nearer to its start.
+        """
         share, last, runs = np.inf, np.inf, 0
+        bordered: Bordered | None = None
         for _ in range(NEWTON_ROUNDS):
             section = self.section(value)
             now = with_sharp_kinks(section, now, missed_share(now))
             off = self._off(coordinates(now.start), value, target, way)
-            last, share, image = share, max(missed_share(now), abs(off)), Image(now.start, now.time)
-            good = share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last)
-            along = self._derivative(image, value, way)
-            if good:
+            last, share = share, max(missed_share(now), abs(off))
+            if share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last):
                 break
-            missed = np.append(now.on(image.place.mesh).vector / image.scale - image.start, off)
-            step, _, _ = solved(along, -missed, LINEAR_SHARE, MOST_DIRECTIONS)
-            value += float(step[-1]) * self.range
-            now, runs = image.of(image.start + step[:-1], self.section(value))[1], runs + 1
+            if bordered is None or share > MUCH_NEARER * last:
+                bordered = self._bordered(now, value, way)
+            place, change = bordered.step(now, off, LINEAR_SHARE)
+            value += change * self.range
+            section = self.section(value)
+            now, runs = section.returned(place.over(section.problem.round_trip_time), now.time), runs + 1
         if share > STILL_CLOSED:
             raise NoCycleError("follow: Newton's iteration finds no cycle here")
-        orbit = checked(WaveOrbit(now, self.section(value), share, runs, 0.0))
-        ahead = np.zeros(len(image.start) + 1)
-        ahead[-1] = 1.0
-        grown, _, _ = solved(along, ahead, DIRECTION_SHARE, MOST_DIRECTIONS)
-        moved = image.place.moved_to(grown[:-1] * image.scale)
-        new = np.append(coordinates(moved) / self.scales[:-1], grown[-1])
+        bordered = self._bordered(now, value, way, exactly=True)
+        orbit = checked(WaveOrbit(now, section, share, runs, 0.0, bordered.slopes))
+        moved, change = bordered.ahead(DIRECTION_SHARE)
+        new = np.append(coordinates(moved) / self.scales[:-1], change)
         return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))
 
     def _off(self, place: Floats, value: float, target: Floats, way: Floats) -> float:
         """Return how far a start is from the plane through `target` across `way`."""
         return float((self.together(place, value) - target) @ way)
 
-    def _derivative(self, image: Image, value: float, way: Floats) -> Callable[[Floats], Floats]:
-        """Return the derivative of the miss of a return, and of the distance from the plane, by start and parameter."""
-        section = self.section(value)
-        missed = image.of(image.start, section)[0] - image.start
-        ends = [image.of(image.start, self.section(value + sign * SMALL_NUDGE * self.range))[0] for sign in (1.0, -1.0)]
-        by_value, grown = (ends[0] - ends[1]) / (2.0 * SMALL_NUDGE), difference(image, section, missed)
+    def _bordered(self, now: WaveReturn, value: float, way: Floats, *, exactly: bool = False) -> Bordered:
+        """Return the derivative of the miss of a return, and of the distance from the plane, by start and parameter.
 
-        def along(change: Floats) -> Floats:
-            here = grown(change[:-1]) if change[:-1].any() else np.zeros(len(missed))
-            moved = coordinates(image.place.moved_to(change[:-1] * image.scale)) / self.scales[:-1]
-            return np.append(here + change[-1] * by_value, np.append(moved, change[-1]) @ way)
-
-        return along
+        That by the parameter is a difference of two runs if `exactly`, else of one from the return.
+        """
+        image, count = Image(now.start, now.time), len(now.start.states)
+        here = now.landed.vector / image.scale
+        up = image.of(image.start, self.section(value + SMALL_NUDGE * self.range))[0]
+        low = image.of(image.start, self.section(value - SMALL_NUDGE * self.range))[0] if exactly else here
+        by_value = (up - low) / (SMALL_NUDGE * (1.0 + exactly))
+        mesh, weights = image.place.mesh, way[:-1] / self.scales[:-1]
+        by_start = np.append(weights[:count], weights[count:] @ mesh.matrix_at(even_mesh(float(mesh.edges[-1])).phases))
+        grown = difference(image, self.section(value), here - image.start)
+        return Bordered(image, slopes_at(now), grown, by_value, np.append(by_start * image.scale, way[-1]))
 
     def step(self, begin: PlaceOnBranch, length: float) -> PlaceOnBranch:
         """Return the cycle a step further along the branch. Raises NoCycleError."""
