@@ -22,7 +22,7 @@ SAME_RATE = 1e-6
 DRIVERS = ("rigid", "lossy")
 """Drivers that send a wave back as it is, or a share of it."""
 
-UNHINDERED = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
+UNHINDERED: Any = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
 """Numbers of a run without a lag that matters, without play, and without stops."""
 
 
