@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from typing import Any
 
 import numpy as np
 
@@ -24,14 +24,14 @@ SAME_RATE = 1e-6
 DRIVERS = ("rigid", "lossy")
 """Drivers that send a wave back as it is, or a share of it."""
 
+UNHINDERED: Any = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
+"""Numbers of a run without a lag that matters, without play, and without stops."""
+
 
 def is_known(met: WaveReturn) -> bool:
     """Return True if disturbances of a return are known from its run: else they are by differences of runs."""
     history, law = met.history, met.history.problem.friction
-    problem = history.problem
-    if problem.body.structure != "uniform" or problem.driver_kind not in DRIVERS:
-        return False
-    if law.depends_on_slip or history.store.bend.any():
+    if not met.source.is_one_wave or history.problem.driver_kind not in DRIVERS or law.depends_on_slip or history.store.bend.any():
         return False
     if law.states and history.rests[met.first : met.piece + 1].any():
         return False
@@ -51,8 +51,7 @@ def numbers_along(met: WaveReturn) -> WavesOfRun:
     history, problem, law = met.history, met.history.problem, numbers_of_law(met.history.problem.friction)
     body, store = as_waves(problem.body), history.store
     forces = 0.0, body.total_damping, body.inertia, problem.normal, problem.first_pull_rate
-    of_law = law.calls, law.constants, law.reverses, law.sticks, law.has_knots
-    run = RunNumbers(*store, *forces, *of_law, np.zeros(0), 0.0, 0.0, math.inf, -math.inf, 0.0)  # neither loop, play nor stop
+    run = RunNumbers(*store, *forces, law.calls, law.constants, law.reverses, law.sticks, law.has_knots, *UNHINDERED)
     lasts = np.array(store.speed)
     trip, back = history.round_trip_time, float(body.reflection)
     return WavesOfRun(run, history.start, lasts, trip, back, body.echo_impedance, met.first, int(met.at_onset))

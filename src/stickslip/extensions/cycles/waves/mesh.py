@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,21 +92,14 @@ class WaveSource:
 
     history: History
     end: float
+    is_one_wave: ClassVar[bool] = True
+    """True if this wave, with what moves the contact, is all that decides what follows."""
 
     def at(self, phases: Floats) -> Floats:
         """Return the wave 2 Z v - load, plus the reference strength (Pa), at phases (s)."""
         begin, history = self.end - self.history.round_trip_time, self.history
         where = history.find(begin + phases, "right")
         return np.asarray(2.0 * history.problem.body.echo_impedance * history.rate(where) - history.excess(where))
-
-    def pace_at(self, phases: Floats) -> Floats:
-        """Return how fast the wave changes (Pa/s) at phases (s)."""
-        history = self.history
-        where, store = history.find(self.end - history.round_trip_time + phases, "right"), history.store
-        series = 2.0 * history.problem.body.echo_impedance * store.rate[where.piece] - store.load[where.piece]
-        slopes = np.sum(series[:, 1:] * np.arange(1, TERMS) * where.xi[:, None] ** np.arange(TERMS - 1), axis=1)
-        lasts = store.speed[where.piece] + 2.0 * store.bend[where.piece] * where.xi
-        return np.asarray(slopes / lasts * (-as_waves(history.problem.body).front_reflection) ** where.leaped)
 
     def kinks(self, period: float) -> Floats:
         """Return the phases (s) of its kinks, the sharpest first, in a motion that repeats itself after a period (s)."""
@@ -132,6 +126,15 @@ class WaveSource:
         lasts = np.repeat((history.end - history.start)[here] / 5.0, 5)
         answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
         return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
+
+    def pace_at(self, phases: Floats) -> Floats:
+        """Return how fast the wave changes (Pa/s) at phases (s)."""
+        history = self.history
+        where, store = history.find(self.end - history.round_trip_time + phases, "right"), history.store
+        series = 2.0 * history.problem.body.echo_impedance * store.rate[where.piece] - store.load[where.piece]
+        slopes = np.sum(series[:, 1:] * np.arange(1, TERMS) * where.xi[:, None] ** np.arange(TERMS - 1), axis=1)
+        lasts = store.speed[where.piece] + 2.0 * store.bend[where.piece] * where.xi
+        return np.asarray(slopes / lasts * (-as_waves(history.problem.body).front_reflection) ** where.leaped)
 
 
 def changes_in(history: History, end: float, period: float) -> Floats:

@@ -193,7 +193,7 @@ def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
 
 
 def fitted_mesh(met: WaveReturn, share: float) -> WaveMesh:
-    """Return the mesh for the wave at a return that misses its start by a share (1), no finer than that is worth."""
+    """Return the mesh for the wave at a return that misses its start by a share (1): finer ones would resolve what is yet wrong."""
     return mesh_of(met.source, met.source.kinks(met.time), max(RESOLVED, RESOLVED_OF_MISS * share))
 
 

@@ -67,7 +67,7 @@ class WavePlace:
     def over(self, trip: float) -> WavePlace:
         """Return the same wave over a round trip that lasts so long (s)."""
         edges = self.mesh.edges
-        return self if edges[-1] == trip else replace(self, mesh=WaveMesh(edges * (trip / edges[-1]), self.mesh.resolved))
+        return self if edges[-1] == trip else replace(self, mesh=replace(self.mesh, edges=edges * (trip / edges[-1])))
 
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the same place on another mesh."""
