@@ -15,7 +15,7 @@ class Sides(ABC):
     has_ground: ClassVar[bool]
     """True if there is something under the contact that does not belong to a side."""
     resist: ClassVar[str]
-    """How they resist, in words, by which others answer for them."""
+    """How they resist, in words."""
 
     @abstractmethod
     def together(self, numbers: Sequence[float]) -> float:
