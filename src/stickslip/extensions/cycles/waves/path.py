@@ -55,8 +55,8 @@ class WavePath(Path):
     """Cycles of one scenario, cut at one kind of section, with one number of the problem as a parameter."""
 
     joins: ClassVar[bool] = False
-    same_step: float = 1e-7
-    """An edge within a step is found to this share of the step (1), which is what multipliers are known to."""
+    same_step: float = 1e-10
+    """An edge within a step is found to this share of the step (1): cycles close to little less, and multipliers follow."""
     level: float = 1.0
     """The slip rate on a section without rest, as a share of the pull rate (1)."""
     counts: tuple[int, int] = (0, 0)
@@ -99,16 +99,17 @@ class WavePath(Path):
 
         A derivative serves as long as steps with it bring the return much nearer to its start.
         """
-        share, last, runs = np.inf, np.inf, 0
+        share, last, runs, is_new = np.inf, np.inf, 0, True
         bordered: Bordered | None = None
         for _ in range(NEWTON_ROUNDS):
             section = self.section(value)
             now = with_sharp_kinks(section, now, missed_share(now))
             off = self._off(coordinates(now.start), value, target, way)
             last, share = share, max(missed_share(now), abs(off))
-            if share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last):
+            if share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last and is_new):
                 break
-            if bordered is None or share > MUCH_NEARER * last:
+            is_new = bordered is None or share > MUCH_NEARER * last
+            if bordered is None or is_new:
                 bordered = self._bordered(now, value, way)
             place, change = bordered.step(now, off, LINEAR_SHARE)
             value += change * self.range
