@@ -17,7 +17,7 @@ from benchmarks.house import House
 
 FLAGS = {
     *("has_waves", "is_uniform", "has_machine", "is_block", "is_driven_rigidly", "is_joined", "driver_changes"),
-    *("driver_may_change", "has_ground", "has_belt", "moves", "cells", "driven"),
+    *("driver_may_change", "has_ground", "moves", "cells", "driven"),
 }
 """Attributes that say what kind a body or a driver is."""
 OWNERS = {"cells": r"counts?$", "driven": r"counts?$", "moves": r"driver$"}

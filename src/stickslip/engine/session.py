@@ -74,6 +74,8 @@ class Session(Generic[Options]):
     """Checkpoint of the moment before the end of the run cut a piece or a leap; None if it has not yet done so."""
     forgotten: int = 0
     """Number of pieces of history that have been discarded."""
+    begun_with: Floats | None = None
+    """As in `History`."""
     end_is_ahead: bool = False
     """True if the next call must let the end of the run cut pieces and leaps."""
     is_short_of_memory: bool = False
@@ -113,19 +115,11 @@ class Session(Generic[Options]):
         run.restore(checkpoint)
         return run
 
-    def begin_with(self, edges: Floats, series: Floats, rate: float, states: Floats) -> None:
-        """Begin with a wave that left the contact of a uniform body, over a round trip before the start of its run.
-
-        It is 2 Z v - load, plus the reference strength (Pa), a polynomial in xi between each two phases (s) of `edges`. The contact
-        has the slip rate (m/s), rests at 0 if its law knows rest, and has states as formulas see them in forward slip.
-        """
-        from stickslip.engine.from_wave import put_wave  # of searches for periodic motion
-
-        self.reserve(len(series))
-        self.state.rate_now, self.count.piece = rate, int(self.problem.friction.piece_at(self.problem.law_slip, rate))
-        for n, value in enumerate(states.tolist()):
-            self.state.state_now[n] = value
-        put_wave(self.store, self.count, self.state, edges, series)
+    def begin_with_rows(self, rows: Floats) -> None:
+        """Begin a run of a body of layers with given rows of waves: see `History.begun_with`."""
+        self.begun_with, place = rows, rows.shape[1:]
+        self.waves = np.concatenate([np.zeros((FIRST_ROW, *place)), rows, np.zeros((FIRST_ROWS, *place))])
+        self._lend()
 
     def _lend(self) -> None:
         lend(self.memory, self.setup, self.store, self.echoes, self.waves)
@@ -164,7 +158,8 @@ class Session(Generic[Options]):
         """Return the history so far, without the leaps over creep."""
         kept, round_trip = at.trimmed(self.store, self.length), self.problem.round_trip_time
         reached = float(kept.trip[-1] * round_trip + kept.phase_to[-1]) if len(kept.pieces) else 0.0
-        return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached, forgotten=self.forgotten)
+        more = {"forgotten": self.forgotten, "begun_with": self.begun_with}
+        return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached, **more)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""

@@ -58,8 +58,11 @@ class Pictures:
     def check_problem(self, problem: Problem, command: str = "run") -> None:
         """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
-        if inside and not problem.body.has_waves:
-            raise InputError(f"{command}: {inside[0]} needs a slab or a string: a block is rigid and has no interior field")
+        if inside:
+            from stickslip.figures.runs.asked import DRAWN_KINDS
+
+            if not DRAWN_KINDS[problem.body.structure].has_inside:
+                raise InputError(f"{command}: {inside[0]} needs a slab or a string: a block is rigid and has no interior field")
         if self.path is not None:
             from stickslip.contact import uniqueness_of
 

@@ -111,6 +111,8 @@ class History:
     """
     forgotten: int = 0
     """Number of earlier pieces that a catalogue has discarded; pieces that are left need not follow on each other."""
+    begun_with: Floats | None = None
+    """Waves with which a body of layers began (Pa), if they are given: a series for each of the first pieces and each cell."""
 
     def seen_from(self, epoch: Epoch) -> History:
         """Return the same history with its times counted from another epoch."""

@@ -150,7 +150,7 @@ class MachineMotion(MotionInParts):
 def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMotion:
     """Return the motion of the machine of a problem, to h/c after the end of a run.
 
-    If the run has forgotten its first pieces, it is known from the first kept piece on whose source is kept, too.
+    If the run has forgotten its first pieces, or begins with a wave, it is known from the first piece on whose source is kept, too.
     """
     body, trip_time = problem.body, problem.round_trip_time
     machine = MachineNumbers(body.driver_inertia, body.driver_impedance + body.impedance, body.driver_integral_gain)
@@ -159,7 +159,7 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     rests = np.flatnonzero(gap > 1e-9 * trip_time)
     parts = parts.with_rests(rests, gap[rests])
     start, since = np.array(driver_of(problem).at_first(problem)), -math.inf
-    if store.trip[0] != 0 or store.phase_from[0] != 0.0:
+    if store.trip[0] != 0 or store.phase_from[0] != 0.0 or math.isnan(store.amplified[0]):  # the last begins with a wave
         start, since = _start_in(problem, store, machine)
         parts = parts.from_time(since)
     arrives, driven = parts.left + trip_time, inflow_of(problem)

@@ -45,8 +45,8 @@ class PointOnBranch(NamedTuple):
 
     @property
     def at_onset(self) -> bool:
-        """True if it is cut at an onset of slip."""
-        return not len(self.start)
+        """True if it is cut at an onset of slip, where a rest has left fewer coordinates than there are multipliers."""
+        return len(self.start) < len(self.multipliers)
 
     @property
     def stable(self) -> bool | None:

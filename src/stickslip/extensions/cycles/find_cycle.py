@@ -10,6 +10,7 @@ from typing import Any
 
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.lag import is_wound, loading_rate
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
@@ -17,6 +18,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
 from stickslip.problem import INITIAL_STATES, TOO_MANY, Problem
+from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
@@ -89,7 +91,7 @@ def cycle(
         begin = without_load(scenario.problem)
         if near is not None:
             return LimitCycle(_searched(begin, (float(NEAR.check("cycle", "near", near)),), rtol, tell), scenario)
-        wait = (scenario.problem.load - begin.load) / (begin.body.stiffness * begin.first_pull_rate)
+        wait = (scenario.problem.load - begin.load) / loading_rate(begin)
         lasts, kind = FIRST_NEAR * time_of_cycle(begin), CYCLE_KINDS[begin.body.structure]
         found = kind.settled(begin, (wait, lasts), rtol, tell)
         if found is None:
@@ -118,7 +120,8 @@ def time_of_cycle(problem: Problem) -> float:
     """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
     law = problem.friction
     falls = law.variation if law.states else min(law.variation, float(law.static_coefficient(0.0)))
-    return problem.body.round_trip_time + 2.0 * problem.normal * falls / (problem.body.stiffness * problem.first_pull_rate)
+    turn = as_on_spring(problem.body).period if is_wound(problem) else problem.body.round_trip_time
+    return float(turn + 2.0 * problem.normal * falls / loading_rate(problem))
 
 
 def _searched(problem: Problem, durations: Sequence[float], rtol: float, tell: TextProgress) -> FoundCycle:
@@ -140,7 +143,9 @@ def _searched(problem: Problem, durations: Sequence[float], rtol: float, tell: T
 
 def check_can_be_followed(problem: Problem, who: str) -> None:
     """Refuse a problem whose cycles are not looked for. Raises InputError, which begins with `who`."""
-    if why := CYCLE_KINDS[problem.body.structure].refusal(problem):
+    kind, pull = CYCLE_KINDS[problem.body.structure], problem.first_pull_rate
+    if why := kind.refusal(problem):
         raise InputError(f"{who}: {why}; {INSTEAD}")
-    if not problem.first_pull_rate > 0.0 or not math.isfinite(problem.first_pull_rate):
-        raise InputError(f"{who}: pull_rate must be above 0, got {problem.first_pull_rate:g} {problem.unit_of('pull_rate')}")
+    if not (pull > 0.0 or (kind.may_be_held and pull == 0.0)) or not math.isfinite(pull):
+        least = "0 or above" if kind.may_be_held else "above 0"
+        raise InputError(f"{who}: pull_rate must be {least}, got {pull:g} {problem.unit_of('pull_rate')}")

@@ -13,7 +13,9 @@ from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
 from stickslip.extensions.cycles.doubling import MOST_DOUBLED, end_of_doubling, first_doubled
 from stickslip.extensions.cycles.edges import (
     DOUBLING,
+    END_OF_HUNTING,
     FIRST_STICK,
+    GRAZING,
     LOSS_OF_STICK,
     NOT_FOUND,
     STEADY_END,
@@ -23,9 +25,12 @@ from stickslip.extensions.cycles.edges import (
     first_stick,
     loss_of_stick,
 )
+from stickslip.extensions.cycles.found import kind_of
+from stickslip.extensions.cycles.hunting import end_of_hunting
+from stickslip.extensions.cycles.lag import usual_rate
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import measures_of
-from stickslip.extensions.cycles.meeting import with_rest, without_rest
+from stickslip.extensions.cycles.meeting import with_other_impacts, with_rest, without_rest
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.reaching import STRAIGHT, at_end_of_range, between, first_place, past_end, range_of
 from stickslip.extensions.cycles.resuming import (
@@ -52,9 +57,9 @@ SHARE_OF_EXTENT = 0.25
 SAME_PERIOD = 0.3
 """A step is too long if the period changes by more than this share (1)."""
 VANISHING = 2e-3
-"""A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding."""
-JOINING = (LOSS_OF_STICK, FIRST_STICK)
-"""Edges behind which a part of a branch begins that is cut elsewhere."""
+"""A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding, or of a free slip at a set point."""
+JOINING = (LOSS_OF_STICK, FIRST_STICK, GRAZING)
+"""Edges behind which another part of a branch begins."""
 MOST_PARTS = 4
 """Largest number of parts of a branch (1), which alternately rest and do not."""
 
@@ -275,7 +280,7 @@ class _Following:
                 self._note(path, edge, self.doubled)
             length = min(LONGER * step, 2.0 / self.steps)
             self._add(path, new, length)
-            now, small = new, VANISHING * new.orbit.section.problem.first_pull_rate
+            now, small = new, VANISHING * usual_rate(new.orbit.section.problem)
             *_, before, last = [np.inf, *self._recent().amplitudes]
             if last < min(small, before):
                 return self._at_end(path, now)
@@ -294,7 +299,7 @@ class _Following:
             return None
         same = (shortest and path.at_onset) or abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
         straight = abs(float(new.way @ now.way)) >= STRAIGHT
-        if not (same and straight) or new.orbit.sticks != now.orbit.sticks:
+        if not (same and straight) or kind_of(new.orbit) != kind_of(now.orbit):
             return None
         return new if new.way @ now.way > 0.0 else replace(new, way=-new.way)
 
@@ -312,12 +317,17 @@ class _Following:
         if end is not None:
             self._edge(end)
             return None
-        if path.at_onset:
+        gone, sizes = end_of_hunting(path, now), self._recent().amplitudes
+        if gone is not None and sizes[-1] < sizes[0]:
+            self._edge(CycleEdge(END_OF_HUNTING, gone, now.orbit))
+            return None
+        if path.at_onset or now.orbit.section.problem.body.has_stops:
             beyond = now.value + np.sign(now.way[-1]) * max(2.0 * SHORTEST, 1.0 / self.steps) * self.span
             end = past_end(float(beyond), self.ends)
             edge, last = loss_of_stick(path, now, float(beyond) if end is None else end)
-            self._edge(edge)
-            return without_rest(path, edge, last)
+            if path.at_onset or edge.name == GRAZING:
+                self._edge(edge)
+                return (with_other_impacts if edge.name == GRAZING else without_rest)(path, edge, last)
         found = end_in_steady_sliding(path, *self._recent())
         if found is not None:
             self._edge(CycleEdge(STEADY_END, found, now.orbit))

@@ -92,3 +92,8 @@ class FoundCycle(Protocol):
 
     def run_of_it(self) -> Solution:
         """Return the run of one period."""
+
+
+def kind_of(motion: Any) -> tuple[bool, int]:
+    """Return whether a cycle, or a return, rests, and how often it meets a hard stop: cycles of one kind change smoothly."""
+    return motion.sticks, getattr(motion, "impacts", 0)

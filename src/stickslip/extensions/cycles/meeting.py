@@ -8,6 +8,7 @@ import numpy as np
 
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.edges import CycleEdge
+from stickslip.extensions.cycles.found import kind_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.section import coordinates, passages
 from stickslip.extensions.cycles.tangent import values_at
@@ -52,6 +53,21 @@ def with_rest(path: Path, edge: CycleEdge, last: PlaceOnBranch, *, came_up: bool
                 continue
             if _is_next_to(edge, found, at_onset=True):
                 return other, found if found.way[-1] * sign > 0.0 else replace(found, way=-found.way)
+    return None
+
+
+def with_other_impacts(path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
+    """Return where cycles begin that meet hard stops more or less often, at an edge where a stop is grazed; None: not found."""
+    ahead = 1.0 if last.way[-1] > 0.0 else -1.0
+    for share in NEXT_TO_EDGE:
+        for sign in (ahead, -ahead):
+            try:
+                found = path.at_value(edge.value + sign * share * path.range, last.orbit.place, last.orbit.period)
+            except NoCycleError:
+                continue
+            near = abs(found.orbit.period - edge.orbit.period) <= CLOSE_PERIOD * edge.orbit.period
+            if near and kind_of(found.orbit) != kind_of(last.orbit):
+                return path, found if found.way[-1] * sign > 0.0 else replace(found, way=-found.way)
     return None
 
 

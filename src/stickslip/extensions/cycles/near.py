@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.engine import History
+from stickslip.extensions.cycles.lag import section_rate
 from stickslip.extensions.cycles.newton import Miss, closed, closed_beyond, roughly
 from stickslip.extensions.cycles.orbit import Orbit, extent_of, missed_share
 from stickslip.extensions.cycles.section import Crossings, Return, Section, crossings, onsets, places_of
@@ -39,18 +40,18 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
             "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes the pull rate twice:"
             " give a longer run (near), or another start"
         )
-    if at_onset:
-        return closed(Section(problem, at_onset, rtol), np.zeros(0), float(met.time[-1] - met.time[-2]))
     section = Section(problem, at_onset, rtol)
-    met, begin = with_start(history, met)
-    places, extent = places_of(history, met), extent_of(history, False, len(history) - 1)
+    met, begin = (met, 0) if at_onset else with_start(history, met)
+    places, extent = places_of(history, met, at_onset), extent_of(history, at_onset, len(history) - 1)
+    if not len(places):
+        return closed(section, np.zeros(0), float(met.time[-1] - met.time[-2]))
     every = meetings(places[:, begin:], extent, CLOSES) or 1
     leads = Leads(section, places, met.time, extent, every)
     try:
         found = closed_beyond(section, leads.at_limit() or leads.at_last(), leads.period, leads.misses)
     except InputError:
         found = closed(section, places[:, -1], leads.period)
-    if problem.friction.states or not found.sticks:
+    if at_onset or problem.friction.states or not found.sticks:
         return found
     return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
 
@@ -132,7 +133,7 @@ def with_start(history: History, met: Crossings) -> tuple[Crossings, int]:
     A stiff contact that starts a little off its slow motion passes the pull rate again at once: that is not a meeting of its own.
     """
     problem = history.problem
-    if not problem.has_initial_rate or float(problem.initial_rate or 0.0) != problem.first_pull_rate:
+    if not problem.has_initial_rate or float(problem.initial_rate or 0.0) != section_rate(problem):
         return met, 0
     later = met.time > SOON * (met.time[-1] - met.time[-2])
     if later.all() and not pace_at(history, 0, 0.0)[RATE_ROW] > 0.0:

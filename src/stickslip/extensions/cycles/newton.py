@@ -101,7 +101,7 @@ def _once_round(orbit: Orbit) -> Orbit:
     met = crossings(orbit.closed.history, orbit.section.at_onset)
     if met.time[0] >= (1.0 - SAME_TIME) * orbit.period:
         return orbit
-    away = np.abs(places_of(orbit.closed.history, met) - orbit.place[:, None]) / orbit.extent[:, None]
+    away = np.abs(places_of(orbit.closed.history, met, orbit.section.at_onset) - orbit.place[:, None]) / orbit.extent[:, None]
     earlier = met.time[(away.max(axis=0) <= SAME_PLACE) & (met.time < (1.0 - SAME_TIME) * orbit.period)]
     if not len(earlier):
         return orbit

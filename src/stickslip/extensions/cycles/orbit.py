@@ -61,6 +61,11 @@ class Orbit:
         return self.closed.sticks
 
     @property
+    def impacts(self) -> int:
+        """How often the body meets a hard stop in a period."""
+        return self.closed.impacts
+
+    @property
     def grazes(self) -> bool:
         """True if the contact rests for an instant only: what follows from a disturbance then depends on its sign."""
         end, history = self.closed, self.closed.history
@@ -70,7 +75,7 @@ class Orbit:
     @property
     def forgets_all(self) -> bool:
         """True if each rest ends all disturbances, because only the load is left then."""
-        return self.section.at_onset
+        return self.section.at_onset and not len(self.place)
 
     @property
     def is_kept(self) -> bool:
@@ -115,9 +120,11 @@ class Orbit:
     @cached_property
     def multipliers(self) -> NDArray[Any]:
         """What a return multiplies disturbances by, the largest first: one less than there are load, slip rate and states."""
-        if self.section.at_onset:
+        if self.forgets_all:
             return np.array([np.nan if self.grazes else 0.0])
         found = np.linalg.eigvals(self.closed.slopes())
+        if self.section.at_onset:  # the rest has left no more than these
+            found = np.append(found, 0.0)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
 

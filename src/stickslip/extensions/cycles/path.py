@@ -5,13 +5,13 @@ Source: Keller 1977, in Applications of Bifurcation Theory (ed. Rabinowitz), 359
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, time_of_cycle
-from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.found import FoundCycle, kind_of
 from stickslip.extensions.cycles.orbit import Orbit, extent_of
 from stickslip.extensions.cycles.section import Return, Section
 from stickslip.foundation.arrays import Floats
@@ -55,8 +55,8 @@ class Path:
     rtol: float
     scales: Floats
     """Sizes of the coordinates of the start; the last is the range of the parameter."""
-    sizes: Floats = field(default_factory=lambda: np.zeros(0))
-    """Extent of load and states on the first cycle: the sizes of the start where it is not at an onset."""
+    sizes: tuple[Floats, ...] = ()
+    """Sizes of the start, from the extent of the first cycle: where it is not at an onset, and where it is."""
     joins: ClassVar[bool] = True
     """True: cycles with and without rest that meet are parts of one branch."""
     same_step: float = 1e-13
@@ -81,7 +81,7 @@ class Path:
         """Return the path of cycles that are cut at an onset, or that are not."""
         if at_onset == self.at_onset:
             return self
-        return replace(self, at_onset=at_onset, scales=np.append(np.zeros(0) if at_onset else self.sizes, self.range))
+        return replace(self, at_onset=at_onset, scales=np.append(self.sizes[at_onset], self.range))
 
     def orbit_at(self, value: float, start: Floats, period: float) -> Orbit:
         """Return the cycle with a start that is known to rounding, by one run. Raises InputError if it does not come back."""
@@ -128,7 +128,7 @@ class Path:
             with np.errstate(over="ignore"):  # far from a cycle a state may overflow, which the problem refuses
                 section = self.section(value)
                 # The first return to an onset is the period, however much longer than that of the cycle before.
-                lasts = max(guess, time_of_cycle(section.problem)) if self.at_onset else guess
+                lasts = max(guess, time_of_cycle(section.problem)) if not len(place) else guess
                 now = section.returned(place, lasts, TRIES)
         except InputError as error:
             raise NoCycleError(str(error)) from None
@@ -158,12 +158,12 @@ class Path:
         raise NoCycleError("follow: no run beside this one is of its kind")
 
     def _nudged(self, now: Return, place: Floats, value: float) -> Floats | None:
-        """Return the end of a run at a value next to another; None if it does not return, or rests as that does not."""
+        """Return the end of a run at a value next to another; None if it does not return, or is of another kind."""
         try:
             found = self.section(value).returned(place, now.time, TRIES)
         except InputError:
             return None
-        return found.end if found.sticks == now.sticks else None
+        return found.end if kind_of(found) == kind_of(now) else None
 
     def at(self, target: Floats, way: Floats, guess: float) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError."""
@@ -197,5 +197,5 @@ def path_of(orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: fl
     """Return the path of a cycle, with its extent as the scale of its start."""
     closed = orbit.closed
     scales: Any = np.append(orbit.extent, span)
-    sizes = extent_of(closed.history, at_onset=False, last=closed.piece)
+    sizes = tuple(extent_of(closed.history, at_onset=one, last=closed.piece) for one in (False, True))
     return Path(scenario, parameter, orbit.section.at_onset, orbit.section.rtol, scales, sizes)

@@ -48,6 +48,9 @@ from stickslip.solution.observables.field import (
     many_places,  # Return how often, at most, another piece may begin to hold between two times (s): see `WaveInterval`.
     slab_of,  # Return the slab or the string of a problem.
 )
+from stickslip.solution.observables.layers import (
+    LayerWaves,  # The waves in a body of layers at any time of a history.
+)
 from stickslip.solution.observables.predictability import (
     LOST,  # A disturbance of this share of the waves that slip sends out changes an event into another one: it ends the horizon.
     Predictability,  # The result of `predictability`, at the start times (s) of pieces of the history, or of slip events.
@@ -83,6 +86,7 @@ __all__ = [
     "PULSE_COLUMNS",
     "EventStream",
     "HistoryPlace",
+    "LayerWaves",
     "Look",
     "OfWave",
     "Predictability",

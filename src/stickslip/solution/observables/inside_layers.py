@@ -59,7 +59,7 @@ def _widths(waves: LayerWaves, side: int) -> Floats:
 def _field(waves: LayerWaves, slip: Floats, t: Floats, side: Side, *, cell: Integers, away: Floats) -> Floats:
     moments, which = np.unique(t, return_inverse=True)
     trip, phase = waves.placed(beside(waves, moments, moments, side))
-    base = np.maximum(trip - 1, -1)
+    base = np.maximum(trip - 1, waves.first)
     inside = _Totals(waves, base)
     now, before = inside.at(trip, phase), inside.at(*waves.earlier(trip, phase))
     passed = np.zeros((len(moments), len(waves.is_away) + 1))

@@ -87,11 +87,13 @@ class LayerWaves:
         self._before = np.array(cells.inflow_before[self.last], float)
         self._pulled = np.array(cells.pulled[self.last], float)
         self._is_pulled = np.array(body.is_pulled, float)
+        self.first = -1 if history.begun_with is None else 0
+        """The first round trip whose waves are known."""
         trips = np.unique(self.contact.trip)
-        self._steps = np.union1d(trips, trips + 1)
+        self._steps = np.union1d(trips, trips + 1)[self.first + 1 :]
 
     def placed(self, time: Floats) -> tuple[Integers, Floats]:
-        """Return round trips and phases (s) of times (s since the history's epoch), at least one round trip before the start."""
+        """Return round trips and phases (s) of times (s since the history's epoch), none before the first that is known."""
         epoch = self.history.epoch
         since = time + epoch.offset
         trips = np.floor(since / self.round)
@@ -99,8 +101,8 @@ class LayerWaves:
         return self.clipped(epoch.trip + trips.astype(np.int64), phase)
 
     def clipped(self, trip: Integers, phase: Floats) -> tuple[Integers, Floats]:
-        """Return the same places, or the first that is known, one round trip before the start."""
-        return np.maximum(trip, -1), np.where(trip < -1, 0.0, phase)
+        """Return the same places, or the first that is known, one round trip before the start unless the run began with waves."""
+        return np.maximum(trip, self.first), np.where(trip < self.first, 0.0, phase)
 
     def earlier(self, trip: Integers, phase: Floats) -> tuple[Integers, Floats]:
         """Return the places in time one cell earlier."""
@@ -183,15 +185,27 @@ class LayerWaves:
         return rows, sums
 
     def _at_first(self, phase: Floats, levels: int) -> FollowedWaves:
-        """Return the place one round trip before the start."""
+        """Return the first place that is known."""
         phase = self._with_changes(phase, levels)
         wave, growth, many = self.ladder.wave[:, None], self.ladder.growth[:, None] * phase, len(phase)
-        both = [wave + growth, (wave + 0.5 * growth) * phase]
+        both = [wave + growth, (wave + 0.5 * growth) * phase] if self.first < 0 else self._begun_with(phase)
         sums, slip = (np.zeros((number, many)) for number in (SUMS, 2))
         return FollowedWaves(
-            *(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([-1, 0, 0]), phase),
+            *(np.array(both[:levels]), sums, np.zeros_like(sums), np.zeros(many), slip, np.array([self.first, 0, 0]), phase),
             *(np.zeros(1), np.zeros(many)),
         )
+
+    def _begun_with(self, phase: Floats) -> list[Floats]:
+        """Return given waves in each cell (axis 0), and their integrals since the start of the first round trip."""
+        store, given = self.history.store, self.history.begun_with
+        assert given is not None
+        piece = np.searchsorted(store.phase_from[1 : len(given)], phase, side="right")
+        powers, width = np.arange(given.shape[-1]), store.speed[: len(given)]
+        xi = ((phase - store.phase_from[piece]) / width[piece])[:, None]
+        total = given / (powers + 1.0) * width[:, None, None]
+        before = np.cumsum(total.sum(axis=2), axis=0) - total.sum(axis=2)
+        value, since = np.einsum("pck,pk->cp", given[piece], xi**powers), np.einsum("pck,pk->cp", total[piece], xi ** (powers + 1))
+        return [value, before[piece].T + since]
 
     def _with_changes(self, phase: Floats, levels: int) -> Floats:
         """Return phases (s) with those of changes of the driver behind them, if integrals are followed."""

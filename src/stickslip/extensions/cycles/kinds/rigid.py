@@ -22,7 +22,7 @@ class CyclesOfRigid(CycleKind):
         if problem.body.is_free:
             return "without a spring nothing brings the body back"
         if as_on_spring(problem.body).has_stops:
-            return "cycles against hard stops are not found"
+            return "a steady pull carries the body to its stop, where it stays, or away from it, so that nothing repeats itself"
         return not_steady(problem)
 
     def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> Orbit | None:

@@ -12,11 +12,25 @@ from stickslip.problem.bodies import as_waves
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
 OF_DRIVERS = {
-    "machine": "cycles behind a machine with a motion of its own are not found",
     "damper": "cycles of a column that is damped are not found",
     "changing": "the driver changes in time",
 }
 """Why no cycle is looked for, by kind of driver."""
+
+
+def not_repeated(problem: Problem) -> str:
+    """Return why nothing repeats itself, or each moment by itself, in a body with waves; empty if there is no such reason."""
+    law = problem.friction
+    if why := not_steady(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
+        return why
+    if problem.far_stress_rate != 0.0:
+        return "the far stress grows, so that nothing repeats itself"
+    if not problem.body.has_inertia and not law.states:
+        return (
+            f"without a mass at the contact and under {type(law).__name__}, which has no states, each moment of the round trip"
+            " moves by itself, and chaotically where r (1 - 2 Z / g') is above 1 in size"
+        )
+    return ""
 
 
 class CyclesOfUniform(CycleKind):
@@ -27,16 +41,9 @@ class CyclesOfUniform(CycleKind):
 
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle is looked for."""
-        body, law = as_waves(problem.body), problem.friction
-        if why := not_steady(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
+        body = as_waves(problem.body)
+        if why := not_repeated(problem):
             return why
-        if problem.far_stress_rate != 0.0:
-            return "the far stress grows, so that nothing repeats itself"
-        if not body.has_inertia and not law.states:
-            return (
-                f"without a mass at the contact and under {type(law).__name__}, which has no states, each moment of the round trip"
-                " moves by itself, and chaotically where r (1 - 2 Z / g') is above 1 in size"
-            )
         if body.front_reflection == 1.0:
             return "a dead load holds the body nowhere"
         if body.has_inertia and abs(body.front_reflection) >= 1.0:

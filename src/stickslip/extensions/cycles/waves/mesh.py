@@ -1,7 +1,8 @@
 """The wave of a round trip on a mesh: polynomials between its kinks, which events of the cycle leave in it.
 
 What left the contact up to a moment, over one round trip before it, decides with the contact's own state all that follows. Phases
-count from the beginning of that round trip.
+count from the beginning of that round trip. A body of layers has a wave in each cell (`waves.layers`): their values stand one cell
+after the other.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.engine import TERMS, History
+from stickslip.engine import TERMS, History, Positions
 from stickslip.foundation.arrays import Floats
+from stickslip.problem.bodies import as_waves
 
 NODES = 10
 """Points of Gauss and Legendre on each piece of the mesh (1): none is at a kink, which a disturbance moves."""
@@ -49,16 +51,18 @@ class WaveMesh:
         return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * MESH_PLACES).ravel())
 
     def series(self, values: Floats) -> Floats:
-        """Return the polynomials of a wave with these values at the points, one for each piece."""
-        found = np.zeros((len(self.edges) - 1, TERMS))
+        """Return the polynomials of a wave with these values at the points, one for each piece; of several waves for each cell."""
+        pieces = len(self.edges) - 1
+        found = np.zeros((len(values) // NODES, TERMS))
         found[:, :NODES] = values.reshape(-1, NODES) @ TERMS_OF_VALUES.T @ POWERS_OF_TERMS.T
-        return found
+        return found if len(found) == pieces else np.ascontiguousarray(found.reshape(-1, pieces, TERMS).swapaxes(0, 1))
 
     def at(self, values: Floats, phases: Floats) -> Floats:
         """Return a wave with these values at the points, at phases (s)."""
         piece = np.clip(np.searchsorted(self.edges, phases, side="right") - 1, 0, len(self.edges) - 2)
         xi = (phases - self.edges[piece]) / (self.edges[piece + 1] - self.edges[piece])
-        return np.asarray(np.sum(self.series(values)[piece, :NODES] * xi[:, None] ** np.arange(NODES), axis=1))
+        terms = self.series(values)[piece].reshape(len(phases), -1, TERMS)[..., :NODES]
+        return np.einsum("pck,pk->cp", terms, xi[:, None] ** np.arange(NODES)).ravel()
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,40 @@ class WaveSource:
         where = history.find(begin + phases, "right")
         return np.asarray(2.0 * history.problem.body.echo_impedance * history.rate(where) - history.excess(where))
 
+    def kinks(self, period: float) -> Floats:
+        """Return the phases (s) of its kinks, the sharpest first, in a motion that repeats itself after a period (s)."""
+        return kinks(self.history, self.end, period, abs(as_waves(self.history.problem.body).front_reflection))
+
+    def sharp_factor(self, begin: float) -> float:
+        """Return what a disturbance that lasts an instant is multiplied by (1) on its ways from a time (s) to the end, in the mean.
+
+        Each way multiplies it by r (1 - 2 Z / g'), where g' = D + S dmu/dv is how the contact resists at once: mass or rest resist
+        whole.
+        """
+        history, end = self.history, self.end
+        problem, trip = history.problem, history.round_trip_time
+        body, law = as_waves(problem.body), problem.friction
+        back = (end - begin) / trip * math.log(max(abs(body.front_reflection), 1e-300))
+        if body.has_inertia:
+            return math.exp(back)
+        first, last = np.searchsorted(history.start, [begin, end])
+        here = np.arange(first, last)
+        here = here[history.store.mode[here] != 0]
+        piece, xi = np.repeat(here, 5), np.tile(np.linspace(0.1, 0.9, 5), len(here))
+        at = Positions.inside(piece, xi)
+        by_rate = law.slopes(0.0, np.abs(history.rate(at)), history.state(at))[1]
+        lasts = np.repeat((history.end - history.start)[here] / 5.0, 5)
+        answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
+        return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
+
+
+def changes_in(history: History, end: float, period: float) -> Floats:
+    """Return the times (s) of events in the period up to an end (s) that leave kinks in waves: onsets, arrests, ends of rests."""
+    mode, trip = history.store.mode, history.round_trip_time
+    here = 1 + np.flatnonzero(np.diff(mode) != 0)
+    changes = np.concatenate([history.start[here], history.end[:-1][history.rests[:-1]]])
+    return np.unique(changes[(changes > end - period - 1e-9 * trip) & (changes <= end)])
+
 
 def kinks(history: History, end: float, period: float, share: float) -> Floats:
     """Return the phases (s) of kinks of the wave up to a time (s), the sharpest first.
@@ -81,10 +119,7 @@ def kinks(history: History, end: float, period: float, share: float) -> Floats:
     Each event of the last period leaves one, whose echo is smaller by a `share` (1) after each round trip, in a motion that repeats
     itself after a period (s).
     """
-    mode, trip = history.store.mode, history.round_trip_time
-    here = 1 + np.flatnonzero(np.diff(mode) != 0)
-    changes = np.concatenate([history.start[here], history.end[:-1][history.rests[:-1]]])
-    changes = np.unique(changes[(changes > end - period - 1e-9 * trip) & (changes <= end)])
+    changes, trip = changes_in(history, end, period), history.round_trip_time
     echoes = min(math.ceil(math.log(FADED) / math.log(share)) if 0.0 < share < 1.0 else 1, MOST_ECHOES)
     times = changes[None, :] + trip * np.arange(echoes + 1)[:, None] - (end - trip)
     shifts = np.arange(math.ceil((trip * echoes + period) / period) + 1)
@@ -106,8 +141,8 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
     edges = np.append(np.concatenate(divided), trip)
     while True:
         mesh = WaveMesh(edges)
-        values = source.at(mesh.phases).reshape(-1, NODES)
-        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=1) > RESOLVED * np.ptp(values)
+        values = source.at(mesh.phases).reshape(-1, len(edges) - 1, NODES)
+        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=(0, 2)) > RESOLVED * np.ptp(values)
         rough &= np.diff(edges) > FINEST * trip
         if not rough.any() or len(edges) + rough.sum() > MOST_PIECES:
             return mesh

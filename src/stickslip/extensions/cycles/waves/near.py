@@ -6,13 +6,13 @@ import numpy as np
 
 from stickslip.engine import History
 from stickslip.extensions.cycles.section import onsets
-from stickslip.extensions.cycles.waves.mesh import WaveSource, kinks, mesh_of
+from stickslip.extensions.cycles.waves.mesh import mesh_of
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit, closed
 from stickslip.extensions.cycles.waves.section import WaveSection, place_in
+from stickslip.extensions.cycles.waves.sources import source_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
-from stickslip.problem.bodies import as_waves
 
 MOST_MEETINGS, CLOSES = 16, 3e-2
 """A run is compared with itself so many meetings with the section ago (1); it closes where it comes as close (1) as this."""
@@ -29,7 +29,8 @@ def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
         )
     every = _meetings(history, met.time)
     end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
-    mesh = mesh_of(WaveSource(history, end), kinks(history, end, period, abs(as_waves(problem.body).front_reflection)))
+    source = source_of(history, end)
+    mesh = mesh_of(source, source.kinks(period))
     return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
 
 
@@ -43,8 +44,8 @@ def _mean_rate(history: History) -> float:
 def _meetings(history: History, times: Floats) -> int:
     """Return after how many meetings with the section the run comes back best, judged by its wave."""
     phases = np.linspace(0.0, history.round_trip_time, 129, endpoint=False)
-    last = WaveSource(history, float(times[-1])).at(phases)
+    last = source_of(history, float(times[-1])).at(phases)
     most = min(MOST_MEETINGS, int(np.sum(times > 1.001 * history.round_trip_time)) - 1)
-    missed = [np.abs(WaveSource(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
+    missed = [np.abs(source_of(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
     close = np.flatnonzero(np.array(missed) <= CLOSES * np.ptp(last))
     return 1 + int(close[0] if len(close) else np.argmin(missed))

@@ -16,16 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine import History, Positions
+from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
 from stickslip.extensions.cycles.waves.krylov import Operator, leading, solved
-from stickslip.extensions.cycles.waves.mesh import WaveMesh, kinks, mesh_of
+from stickslip.extensions.cycles.waves.mesh import WaveMesh, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
-from stickslip.problem.bodies import as_waves
 from stickslip.solution import Solution
 
 SMALL_NUDGE, FINE_NUDGE = 1e-6, 5e-6
@@ -107,19 +106,18 @@ class WaveOrbit:
 
     @property
     def place(self) -> Floats:
-        """Where the cycle meets the section: the states, and the wave at points that are evenly spread over a round trip."""
+        """Where the cycle meets the section: numbers, and the wave at points that are evenly spread over a round trip."""
         return coordinates(self.closed.start)
 
     @property
     def extent(self) -> Floats:
         """Sizes of the states, and how far the wave goes, for each of these."""
-        place, count = self.place, len(self.closed.start.states)
-        return np.append(np.abs(place[:count]) + 1e-300, np.full(len(place) - count, np.ptp(place[count:])))
+        return spread(self.closed.start).scale
 
     @cached_property
     def sharp_waves(self) -> float:
         """What a period multiplies the sharpest waves by (1): all that is not among the multipliers fades at least so fast."""
-        return sharp_factor(self.closed.history, self.closed.begin, self.closed.end)
+        return self.closed.source.sharp_factor(self.closed.begin)
 
     @cached_property
     def multipliers(self) -> NDArray[Any]:
@@ -127,31 +125,10 @@ class WaveOrbit:
         place = self.closed.start
         image = Image(place, self.period)
         phases = place.mesh.phases / self.closed.begin
-        start = np.concatenate([np.ones(len(place.states)), sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))])
+        swing: Any = sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))
+        start = np.concatenate([np.ones(sum(place.counts)), np.resize(swing, len(place.wave))])
         large = max(LEAST_LARGE, math.sqrt(self.sharp_waves))
         return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
-
-
-def sharp_factor(history: History, begin: float, end: float) -> float:
-    """Return what a disturbance that lasts an instant is multiplied by (1) on its ways between two times (s), in the mean.
-
-    Each way multiplies it by r (1 - 2 Z / g'), where g' = D + S dmu/dv is how the contact resists at once: mass or rest resist
-    whole.
-    """
-    problem, trip = history.problem, history.round_trip_time
-    body, law = as_waves(problem.body), problem.friction
-    back = (end - begin) / trip * math.log(max(abs(body.front_reflection), 1e-300))
-    if body.has_inertia:
-        return math.exp(back)
-    first, last = np.searchsorted(history.start, [begin, end])
-    here = np.arange(first, last)
-    here = here[history.store.mode[here] != 0]
-    piece, xi = np.repeat(here, 5), np.tile(np.linspace(0.1, 0.9, 5), len(here))
-    at = Positions.inside(piece, xi)
-    by_rate = law.slopes(0.0, np.abs(history.rate(at)), history.state(at))[1]
-    lasts = np.repeat((history.end - history.start)[here] / 5.0, 5)
-    answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
-    return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
 
 
 @dataclass(frozen=True)
@@ -163,9 +140,8 @@ class Image:
 
     @cached_property
     def scale(self) -> Floats:
-        """The extents: sizes of the states, and how far the wave goes."""
-        place = self.place
-        return np.concatenate([np.abs(place.states) + 1e-300, np.full(len(place.wave), np.ptp(place.wave) + 1e-300)])
+        """The extents of its numbers and of its wave."""
+        return self.place.scale
 
     @cached_property
     def start(self) -> Floats:
@@ -203,8 +179,7 @@ def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
 
 def fitted_mesh(met: WaveReturn) -> WaveMesh:
     """Return the mesh for the wave at a return."""
-    history, body = met.history, as_waves(met.history.problem.body)
-    return mesh_of(met.source, kinks(history, met.end, met.time, abs(body.front_reflection)))
+    return mesh_of(met.source, met.source.kinks(met.time))
 
 
 def with_sharp_kinks(section: WaveSection, now: WaveReturn, share: float) -> WaveReturn:
@@ -229,9 +204,14 @@ def even_mesh(trip: float) -> WaveMesh:
     return WaveMesh(np.linspace(0.0, trip, EVEN_PIECES + 1))
 
 
+def spread(place: WavePlace) -> WavePlace:
+    """Return a place with its wave at points that are evenly spread over a round trip."""
+    return place.on(even_mesh(float(place.mesh.edges[-1])))
+
+
 def coordinates(place: WavePlace) -> Floats:
-    """Return states and wave at points that are evenly spread over a round trip."""
-    return place.on(even_mesh(float(place.mesh.edges[-1]))).vector
+    """Return the numbers of a place and its wave at points that are evenly spread over a round trip."""
+    return spread(place).vector
 
 
 def missed_share(met: WaveReturn) -> float:

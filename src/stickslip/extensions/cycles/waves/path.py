@@ -55,6 +55,8 @@ class WavePath(Path):
     """An edge within a step is found to this share of the step (1), which is what multipliers are known to."""
     level: float = 1.0
     """The slip rate on a section without rest, as a share of the pull rate (1)."""
+    counts: tuple[int, int] = (0, 0)
+    """How many states there are, and how many numbers the driver keeps (1)."""
 
     def section(self, value: float) -> Any:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
@@ -76,10 +78,7 @@ class WavePath(Path):
 
     def _spread(self, target: Floats, trip: float) -> WavePlace:
         """Return the place with the coordinates of a target, over a round trip that lasts so long (s)."""
-        mesh = even_mesh(trip)
-        vector = target[:-1] * self.scales[:-1]
-        count = len(vector) - len(mesh.phases)
-        return WavePlace(mesh, vector[:count], vector[count:])
+        return WavePlace.of(even_mesh(trip), target[:-1] * self.scales[:-1], self.counts)
 
     def _newton(self, now: WaveReturn, value: float, target: Floats, way: Floats) -> PlaceOnBranch:
         """Return the cycle to which Newton's iteration leads from a return."""
@@ -177,5 +176,5 @@ def _name_of_end(orbit: FoundCycle) -> str:
 def path_of(orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
     """Return the path of a cycle, with its extent as the scale of its start: the root of the mean square is what counts."""
     scales: Any = np.append(orbit.extent * np.sqrt(len(orbit.place)), span)
-    section = orbit.section
-    return WavePath(scenario, parameter, section.at_onset, section.rtol, scales, level=section.level)
+    section, counts = orbit.section, orbit.closed.start.counts
+    return WavePath(scenario, parameter, section.at_onset, section.rtol, scales, level=section.level, counts=counts)

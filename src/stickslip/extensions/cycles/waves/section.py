@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
+from stickslip.extensions.cycles.waves.begin import begin_with
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
+from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
+from stickslip.extensions.cycles.waves.sources import source_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem import Problem, Stop
+from stickslip.problem import Problem, Stop, driver_of
 from stickslip.problem.scenarios import Scenario
 from stickslip.run import CallOptions, ExactRun
 from stickslip.solution import Solution
@@ -26,30 +28,48 @@ PASSES = 20_000
 
 @dataclass(frozen=True)
 class WavePlace:
-    """A place on a section: the states of the law, and the wave at the points of a mesh."""
+    """A place on a section: the states of the law, what the driver keeps, and the wave at the points of a mesh."""
 
     mesh: WaveMesh
     states: Floats
+    kept: Floats
+    """Stresses (Pa) that a driver with a motion of its own keeps, half a round trip before (`waves.of_driver`); none of others."""
     wave: Floats
 
     @property
     def vector(self) -> Floats:
-        """States and wave together."""
-        return np.concatenate([self.states, self.wave])
+        """States, what the driver keeps, and wave together."""
+        return np.concatenate([self.states, self.kept, self.wave])
+
+    @property
+    def scale(self) -> Floats:
+        """Their extents: sizes of the states, and how far the wave goes, for what the driver keeps as well."""
+        sizes, reach = np.abs(self.states), np.full(len(self.kept) + len(self.wave), np.ptp(self.wave))
+        return np.concatenate([sizes, reach]) + 1e-300
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """How many states there are, and how many numbers the driver keeps (1)."""
+        return len(self.states), len(self.kept)
+
+    @classmethod
+    def of(cls, mesh: WaveMesh, vector: Floats, counts: tuple[int, int]) -> WavePlace:
+        """Return the place with these numbers and this wave, all in one."""
+        states, kept, wave = np.split(vector, np.cumsum(counts))
+        return cls(mesh, states, kept, wave)
 
     def moved_to(self, vector: Floats) -> WavePlace:
-        """Return the place with other states and another wave on the same mesh."""
-        count = len(self.states)
-        return WavePlace(self.mesh, vector[:count], vector[count:])
+        """Return the place with other numbers and another wave on the same mesh."""
+        return WavePlace.of(self.mesh, vector, self.counts)
 
     def over(self, trip: float) -> WavePlace:
         """Return the same wave over a round trip that lasts so long (s)."""
         edges = self.mesh.edges
-        return self if edges[-1] == trip else WavePlace(WaveMesh(edges * (trip / edges[-1])), self.states, self.wave)
+        return self if edges[-1] == trip else replace(self, mesh=WaveMesh(edges * (trip / edges[-1])))
 
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the same place on another mesh."""
-        return WavePlace(mesh, self.states, self.mesh.at(self.wave, mesh.phases))
+        return replace(self, mesh=mesh, wave=self.mesh.at(self.wave, mesh.phases))
 
 
 @dataclass(frozen=True)
@@ -83,17 +103,21 @@ class WaveReturn:
     @property
     def source(self) -> WaveSource:
         """The wave of the last round trip before the return."""
-        return WaveSource(self.history, self.end)
+        return source_of(self.history, self.end)
 
     @cached_property
     def states(self) -> Floats:
         """The states of the law at the return."""
-        at = Positions.inside(self.piece, self.place)
-        return np.array([one[0] for one in self.history.states(at)])
+        return states_at(self.history, self.piece, self.place)
+
+    @cached_property
+    def kept(self) -> Floats:
+        """What the driver keeps at the return (Pa)."""
+        return kept_by_driver(self.history, self.end, rate_and_push(self.history.problem, self.start.kept))
 
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the place of the return, on a mesh."""
-        return WavePlace(mesh, self.states, self.source.at(mesh.phases))
+        return WavePlace(mesh, self.states, self.kept, self.source.at(mesh.phases))
 
     @cached_property
     def sticks(self) -> bool:
@@ -127,7 +151,8 @@ class WaveSection:
     def run_from(self, place: WavePlace, lasts: float) -> tuple[ExactRun, int]:
         """Return the run from a place that lasts so long (s), and the code of its end."""
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
-        run.begin_with(place.mesh.edges, place.mesh.series(place.wave), self.rate, place.states)
+        beside = np.concatenate([place.states, rate_and_push(self.problem, place.kept)])
+        begin_with(run, place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
         while True:
             code = run.advance(PASSES)
             if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
@@ -161,8 +186,14 @@ class WaveSection:
         return replace(self, problem=problem)
 
 
+def states_at(history: History, piece: int, place: float) -> Floats:
+    """Return the states of the law at a place (1) in a piece of a history."""
+    return np.array([one[0] for one in history.states(Positions.inside(piece, place))])
+
+
 def place_in(history: History, met: Crossings, n: int, mesh: WaveMesh) -> WavePlace:
-    """Return the place where a run meets a section for the n-th time."""
-    at = Positions.inside(met.piece[n], met.place[n])
-    states: Any = [one[0] for one in history.states(at)]
-    return WavePlace(mesh, np.array(states), WaveSource(history, float(met.time[n])).at(mesh.phases))
+    """Return the place where a run that begins as its problem says meets a section for the n-th time."""
+    time, problem = float(met.time[n]), history.problem
+    kept = kept_by_driver(history, time, np.array(driver_of(problem).at_first(problem)))
+    states = states_at(history, int(met.piece[n]), float(met.place[n]))
+    return WavePlace(mesh, states, kept, source_of(history, time).at(mesh.phases))

@@ -133,7 +133,7 @@ class LayerEnergy:
         for low in range(0, len(places), together):
             here = places[low : low + together]
             trips = trip[:, None] - (here > phase[:, None])
-            found = waves.powers(np.maximum(trips, -1).ravel(), np.tile(here, moments)).reshape(*trips.shape, SUMS)
+            found = waves.powers(np.maximum(trips, waves.first).ravel(), np.tile(here, moments)).reshape(*trips.shape, SUMS)
             sums += np.einsum("mpk,p->mk", found, weights[low : low + together])
         return sums
 
