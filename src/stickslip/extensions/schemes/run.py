@@ -20,7 +20,7 @@ from stickslip.extensions.schemes.sbp import SummationByParts
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction import FrictionLaw
 from stickslip.problem import Problem, driver_of, features
 from stickslip.problem.bodies import ElasticSlab, as_slab
 
