@@ -35,7 +35,7 @@ NUMPY = TYPER | {"numpy", "numpy.polynomial", "numpy.typing"}
 SHOWN = NUMPY | {"rich"}
 ENGINE = SHOWN | {"llvmlite", "platformdirs", "numpy.ma"}
 """What machine code needs; `numpy.unique` asks whether arrays are masked."""
-FILES = {"h5netcdf", "h5py", "packaging", "tomli_w"}
+FILES = {"h5py", "tomli_w"}
 """What writes a run; h5py alone reads it."""
 MATPLOTLIB = {
     *("PIL", "contourpy", "cycler", "dateutil", "fontTools", "kiwisolver", "matplotlib", "mpl_toolkits", "packaging"),

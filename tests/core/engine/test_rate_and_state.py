@@ -93,3 +93,15 @@ def test_bad_laws_are_refused_in_one_line() -> None:
         ss.friction.SlipPlusRate(ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1), LAW)
     with pytest.raises(ss.InputError, match=r"^state: Coulomb has no state variable$"):
         ss.simulate(ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0), ss.friction.Coulomb(0.6, 0.5), initial_load=0.0), 1.0).state(0.5)
+
+
+def test_waves_merged_in_a_crowd_are_met_in_time_by_a_contact_with_a_state() -> None:
+    """Two tolerances agree to 1e-8 where one run merges and the other does not; loads in the root of time were 6e-3 off."""
+    law = ss.friction.RateAndState(0.6, 0.01, 0.015, 0.01, 1e-6)
+    slab = ss.ElasticSlab(2800, 3500, 1000, NORMAL, driver_impedance=1e8, driver_integral_gain=1e8)
+    problem = ss.Problem(slab, law, pull_rate=0.02, initial_load=6.2e7, initial_state=2.0)
+    merged, alone = (ss.simulate(problem, 23.5, rtol) for rtol in (1e-13, 1e-10))
+    assert "merged" in merged.rounding_note
+    assert "merged" not in alone.rounding_note
+    times = np.linspace(22.3, 23.4, 12)
+    assert merged.slip_rate(times) == pytest.approx(alone.slip_rate(times), rel=1e-8)

@@ -6,7 +6,8 @@ else from time to time, the waves of the next one are expanded anew as they come
 in xi can describe in every cell are brought as one piece of load. Jumps of the load, and folds, stay where they are.
 
 Up to a fold the slip rate goes as the root of the time left. Steps that come to it in another variable get shorter and shorter;
-the waves are then written in that root, up to the jump where such steps end. `waves.merged_series` makes the series.
+the waves are then written in that root, up to the jump where such steps end. `waves.merged_series` makes the series. A contact with
+mass or states has no folds, and its implicit steps know no such variable.
 
 Where a round trip has too many pieces even so, because the load has as many jumps, short pieces are lumped: the waves of a group
 that is as long as the shortest event are replaced by their means.
@@ -46,7 +47,7 @@ LOOSER = 10.0
 HALVINGS_OF_GROUP = 8
 """Halve a group of pieces at most this many times (1), until one series describes it."""
 SHORTER = 0.125
-"""Steps that come to a fold are at least this much (1) shorter at its end than at first."""
+"""Steps that come to a fold, as only an algebraic contact has it, are at least this much (1) shorter at its end than at first."""
 LARGEST_TURN = 1.0
 """A tone in the loading is a polynomial to rounding up to this phase (rad)."""
 
@@ -140,7 +141,7 @@ def merge_ahead(run: Run, source: int) -> None:
     if counts.smooth_to <= source + 1:
         counts.smooth_to = source + smooth_ahead(run, source)
     many = fitting_tone(run, source, counts.smooth_to - source)
-    leads_to_fold = many > 1 and width_of(run, source + many - 1) < SHORTER * width_of(run, source)
+    leads_to_fold = counts.is_algebraic == 1 and many > 1 and width_of(run, source + many - 1) < SHORTER * width_of(run, source)
     if leads_to_fold and keep_merged(run, WaveGroup(source, many, TO_FOLD)):
         return
     many = min(many, counts.merge_guess)

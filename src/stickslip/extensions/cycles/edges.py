@@ -128,7 +128,7 @@ def first_stick(path: Path, last: PlaceOnBranch) -> tuple[CycleEdge, PlaceOnBran
 
 
 def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[CycleEdge, PlaceOnBranch]:
-    """Return where cycles of one kind end that rest or meet stops, between a last one and a value (SI) without one, by bisection."""
+    """Return where cycles of one kind end, with rest or stops, between a last one and a value (SI) without one, by bisection."""
     good, bad, kind = last, beyond, kind_of(last.orbit)
     while abs(bad - good.value) > max(SMALLEST_BISECTED * path.range, 4.0 * np.spacing(abs(bad))):
         middle = 0.5 * (good.value + bad)

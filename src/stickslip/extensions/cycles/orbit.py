@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.section import Return, Section, coordinates
+from stickslip.extensions.cycles.section import Return, Section, coordinates, crossings
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
@@ -21,6 +21,10 @@ from stickslip.solution import Solution
 
 INSTANT = 1e-6
 """A rest shorter than this share (1) of the period is an instant."""
+HALVES_ALIKE = 2e-3
+"""Cycles whose halves are closer than this share (1) of the extent are of half the period."""
+NEAR_HALF = 0.1
+"""How far (1, share of the period) from half of it the middle of a doubled cycle may be."""
 STEADY_SHARE = 1e-9
 """A slip rate that varies by less than this share (1) of the pull rate is steady sliding."""
 
@@ -72,6 +76,26 @@ class Orbit:
     def forgets_all(self) -> bool:
         """True if each rest ends all disturbances, because only the load is left then."""
         return self.section.at_onset and not len(self.place)
+
+    @property
+    def is_kept(self) -> bool:
+        """True: tables keep load and states where it starts."""
+        return True
+
+    @cached_property
+    def is_of_half(self) -> bool:
+        """True if it is back where it began after half of its period already."""
+        history, section = self.closed.history, self.section
+        met = crossings(history, section.at_onset)
+        if not len(met.time):
+            return False
+        away = np.abs(met.time - 0.5 * self.period)
+        nearest = int(away.argmin())
+        if away[nearest] > NEAR_HALF * self.period:
+            return False
+        at = Positions.inside(met.piece[nearest : nearest + 1], met.place[nearest : nearest + 1])
+        place = coordinates(values_at(history, at), section.at_onset)[:, 0]
+        return bool(np.all(np.abs(place - self.place) <= HALVES_ALIKE * self.extent))
 
     @property
     def certainty(self) -> str:

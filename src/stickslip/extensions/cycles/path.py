@@ -55,6 +55,8 @@ class Path:
     rtol: float
     scales: Floats
     """Sizes of the coordinates of the start; the last is the range of the parameter."""
+    sizes: tuple[Floats, ...] = ()
+    """Sizes of the start, from the extent of the first cycle: where it is not at an onset, and where it is."""
     joins: ClassVar[bool] = True
     """True: cycles with and without rest that meet are parts of one branch."""
     same_step: float = 1e-13
@@ -74,6 +76,17 @@ class Path:
     def range(self) -> float:
         """The range of the parameter, SI."""
         return float(self.scales[-1])
+
+    def cut(self, *, at_onset: bool) -> Path:
+        """Return the path of cycles that are cut at an onset, or that are not."""
+        if at_onset == self.at_onset:
+            return self
+        return replace(self, at_onset=at_onset, scales=np.append(self.sizes[at_onset], self.range))
+
+    def orbit_at(self, value: float, start: Floats, period: float) -> Orbit:
+        """Return the cycle with a start that is known to rounding, by one run. Raises InputError if it does not come back."""
+        now = self.section(value).returned(start, period)
+        return Orbit(now, extent_of(now.history, self.at_onset, now.piece), 1, 0.0)
 
     def together(self, place: Floats, value: float) -> Floats:
         """Return start and parameter over their scales."""
@@ -182,5 +195,7 @@ class Path:
 
 def path_of(orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: float) -> Path:
     """Return the path of a cycle, with its extent as the scale of its start."""
+    closed = orbit.closed
     scales: Any = np.append(orbit.extent, span)
-    return Path(scenario, parameter, orbit.section.at_onset, orbit.section.rtol, scales)
+    sizes = tuple(extent_of(closed.history, at_onset=one, last=closed.piece) for one in (False, True))
+    return Path(scenario, parameter, orbit.section.at_onset, orbit.section.rtol, scales, sizes)

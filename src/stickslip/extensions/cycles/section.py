@@ -17,6 +17,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem import INITIAL_STATES, Problem
+from stickslip.problem.bodies import as_on_spring
 
 SPARE_TIME, MOST_TRIES = 1.1, 6
 """A run to a return lasts longer than the guessed period by this factor (1), and is doubled so often if it has no return."""
@@ -99,8 +100,9 @@ class Section:
         """Return the problem that starts at a place on the section."""
         states: dict[str, Any] = dict.fromkeys(INITIAL_STATES)
         loads = {"initial_load": None if self.at_onset else float(place[0]), "initial_excess": 0.0 if self.at_onset else None}
-        if is_wound(self.problem):
-            loads = at_lag(self.problem, float(place[-1]), loads["initial_load"])
+        if is_wound(self.problem) or as_on_spring(self.problem.body).reference_step != 0.0:  # the step is behind it
+            lag = float(place[-1]) if is_wound(self.problem) else 0.0
+            loads = at_lag(self.problem, lag, loads["initial_load"])
         if self.at_onset:
             return replace(self.problem, initial_rate=None, **loads, **states)
         law = self.problem.friction

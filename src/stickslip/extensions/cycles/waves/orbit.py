@@ -84,6 +84,16 @@ class WaveOrbit:
         """False: waves outlast a rest."""
         return False
 
+    @property
+    def is_kept(self) -> bool:
+        """False: a wave is too much for a table."""
+        return False
+
+    @property
+    def is_of_half(self) -> bool:
+        """False: cycles of twice the period are not followed."""
+        return False
+
     def problem_on_it(self, problem: Problem) -> Problem:
         """Return the problem itself: no number of a problem says which wave it begins with."""
         return problem
