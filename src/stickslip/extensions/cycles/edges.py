@@ -20,6 +20,7 @@ from stickslip.foundation.errors import InputError
 FOLD, DOUBLING, TORUS = "fold of cycles", "period doubling", "Neimark-Sacker"
 HALVING, END_OF_HUNTING = "end of doubling", "end of hunting"
 LOSS_OF_STICK, FIRST_STICK, STEADY_END, GRAZING = "loss of stick", "first stick", "steady sliding", "grazing"
+CORNER = "corner"
 NOT_FOUND = "not followed further"
 MEANING = {
     FOLD: "a multiplier is +1: a stable and an unstable cycle meet and vanish",
@@ -31,6 +32,7 @@ MEANING = {
     STEADY_END: "the amplitude is 0: the cycle vanishes in steady sliding, which changes its stability there (Hopf)",
     END_OF_HUNTING: "the amplitude is 0 and rests last for ever: hunting dies out beyond it, about a set point at rest",
     GRAZING: "rest, slip or a hard stop is touched elsewhere in the period: beyond it another slip, rest or impact begins there",
+    CORNER: "an event meets another, or an echo of one: beyond it the branch goes on in another direction",
     NOT_FOUND: "Newton's iteration finds no cycle beyond",
 }
 """The edges by name, and what happens there."""

@@ -60,8 +60,8 @@ VANISHING = 2e-3
 """A cycle whose amplitude is below this share (1) of the pull rate ends in steady sliding, or of a free slip at a set point."""
 JOINING = (LOSS_OF_STICK, FIRST_STICK, GRAZING)
 """Edges behind which another part of a branch begins."""
-MOST_PARTS = 4
-"""Largest number of parts of a branch (1), which alternately rest and do not."""
+MOST_PARTS = 8
+"""Largest number of parts of a branch (1), between corners and edges where stick is lost or begins."""
 
 
 @for_users
@@ -315,8 +315,9 @@ class _Following:
         """Say why a part of the branch ends, and return where the next one begins; None if none does."""
         end = path.end_beyond(now)
         if end is not None:
-            self._edge(end)
-            return None
+            self._edge(end.edge)
+            onward: tuple[Path, PlaceOnBranch] | None = end.onward
+            return onward
         gone, sizes = end_of_hunting(path, now), self._recent().amplitudes
         if gone is not None and sizes[-1] < sizes[0]:
             self._edge(CycleEdge(END_OF_HUNTING, gone, now.orbit))
@@ -337,6 +338,6 @@ class _Following:
             if touched is not None:
                 self._edge(touched[0])
                 came_up = bool(np.all(np.diff([one.value for one in self.points[-2:]]) >= 0.0))
-                return with_rest(path, *touched, came_up=came_up) if path.joins else None
+                return with_rest(path, *touched, came_up=came_up) if path.joins else path.rest_begun(touched[0])
         self._edge(CycleEdge(NOT_FOUND, now.value, now.orbit))
         return None

@@ -192,6 +192,10 @@ class Path:
         """Return None: where cycles with rest end is found by bisection (`edges.loss_of_stick`)."""
         return None
 
+    def rest_begun(self, edge: Any) -> Any:
+        """Return None: where cycles with rest begin is found by `meeting.with_rest`."""
+        return None
+
 
 def path_of(orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: float) -> Path:
     """Return the path of a cycle, with its extent as the scale of its start."""

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.engine import Positions
-from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, NOT_FOUND, CycleEdge
-from stickslip.extensions.cycles.found import FoundCycle
-from stickslip.extensions.cycles.measures import measures_of
+from stickslip.extensions.cycles.edges import CycleEdge
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.bordered import Bordered
+from stickslip.extensions.cycles.waves.ends import EndOfPart, end_of_rests, with_rest
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
     SMALL_NUDGE,
@@ -42,12 +40,6 @@ MOST_SECTIONS = 8
 """Number of sections that a path remembers (1)."""
 DIRECTION_SHARE = 1e-3
 """The direction of a branch is known to this share (1)."""
-
-FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
-"""First step towards an end (1), the number of steps, halved without a cycle, and by what share (1) a period may change there."""
-SHORT_REST, TOUCHES = 1e-2, 1e-3
-"""A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch; slip rate and load touch rest and
-strength where they come as near (1, of their extent) as the second."""
 
 
 @dataclass(frozen=True)
@@ -159,40 +151,18 @@ class WavePath(Path):
             raise NoCycleError(str(error)) from None
         return self.at(target, begin.way, orbit.period, moved.over(trip))
 
-    def end_beyond(self, last: PlaceOnBranch) -> CycleEdge | None:
-        """Return the edge where cycles with rest end, beyond the last place of a branch, by steps that become shorter."""
-        if not self.at_onset:
-            return None
-        length = FIRST_SHORT
-        for _ in range(MOST_SHORT):
-            try:
-                new = self.step(last, length)
-                if abs(new.orbit.period - last.orbit.period) > SAME_MOTION * last.orbit.period:
-                    raise NoCycleError("follow: this is another cycle")
-                last = new if new.way @ last.way >= 0.0 else replace(new, way=-new.way)
-            except NoCycleError:
-                length *= 0.5
-        return CycleEdge(_name_of_end(last.orbit), last.value, last.orbit)
+    def end_beyond(self, last: PlaceOnBranch) -> EndOfPart | None:
+        """Return the edge where cycles with rest end, beyond the last place of a branch, and where the branch goes on."""
+        return end_of_rests(self, last) if self.at_onset else None
+
+    def rest_begun(self, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
+        """Return where cycles with rest begin, at an edge where the slip rate touches 0."""
+        return with_rest(self, edge)
 
     def longest_step(self, begin: PlaceOnBranch, share: float) -> float:
         """Return the longest step that moves the start by no more than a share (1) of the extent of the cycle."""
         moves = np.abs(begin.way[:-1]) * np.sqrt(len(begin.way) - 1.0)
         return float(np.min(share / np.maximum(moves, 1e-300), initial=np.inf))
-
-
-def _name_of_end(orbit: FoundCycle) -> str:
-    """Return what happens next to the end of a branch of cycles with rest."""
-    if measures_of(orbit).stick_share < SHORT_REST:
-        return LOSS_OF_STICK
-    end = orbit.closed
-    pieces = np.arange(end.first, end.piece)
-    at = Positions.inside(np.repeat(pieces, 9), np.tile(np.linspace(0.0, 1.0, 9), len(pieces)))
-    rests, rate, load = end.history.mode(at) == 0, end.history.rate(at), end.history.excess(at)
-    inside = (rests[1:-1] == rests[:-2]) & (rests[1:-1] == rests[2:])
-    low = ~rests[1:-1] & (rate[1:-1] <= rate[:-2]) & (rate[1:-1] <= rate[2:]) & (rate[1:-1] < TOUCHES * rate.max())
-    high = rests[1:-1] & (load[1:-1] >= load[:-2]) & (load[1:-1] >= load[2:]) & (load[1:-1] > -TOUCHES * np.ptp(load))
-    moves = (np.diff(load)[:-1] != 0.0) & (np.diff(load)[1:] != 0.0)  # two pieces share a place
-    return GRAZING if np.any(inside & moves & (low | high)) else NOT_FOUND
 
 
 def path_of(orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
