@@ -315,7 +315,8 @@ class _Following:
         """Say why a part of the branch ends, and return where the next one begins; None if none does."""
         end = path.end_beyond(now)
         if end is not None:
-            self._edge(end.edge)
+            if end.edge is not None:
+                self._edge(end.edge)
             onward: tuple[Path, PlaceOnBranch] | None = end.onward
             return onward
         gone, sizes = end_of_hunting(path, now), self._recent().amplitudes

@@ -24,6 +24,8 @@ FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
 """First step towards an end (1), the number of steps, halved without a cycle, and by what share (1) a period may change there."""
 GOES_ON = 5
 """A branch whose last steps towards an end have all found a cycle, so many (1), goes on behind a corner."""
+NEAR_MEAN = 0.05
+"""A cycle without rest is cut about where it passes its mean slip rate, if off it by less than this share (1) of its amplitude."""
 SHORTEST_AWAY, MOST_AWAY = 2e-7, 40
 """First step away from an edge (1), and the largest number of such steps, until they are as long as others."""
 SHORT_REST, TOUCHES = 1e-2, 1e-3
@@ -36,7 +38,8 @@ LOOKED_AT = 33
 class EndOfPart(NamedTuple):
     """Where a part of a branch ends, and where the next one begins, if one does."""
 
-    edge: CycleEdge
+    edge: CycleEdge | None
+    """None if only the section is another from there on."""
     onward: tuple[Path, PlaceOnBranch] | None
 
 
@@ -73,17 +76,45 @@ def _name_of_end(orbit: FoundCycle) -> str:
     return GRAZING if np.any(inside & moves & (low | high)) else NOT_FOUND
 
 
-def _without_rest(path: Path, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
-    """Return where cycles without rest begin, at an edge where stick is lost: they are cut where they pass their mean slip rate."""
-    closed, problem = edge.orbit.closed, edge.orbit.section.problem
-    level = measures_of(edge.orbit).slip / edge.orbit.period / problem.first_pull_rate
-    met = WaveSection(problem, False, path.rtol, level).met(closed.history)
+def cut_anew(path: Any, last: PlaceOnBranch) -> EndOfPart | None:
+    """Return the last place of a branch without rest, cut where it passes its mean slip rate; None if it is cut about there.
+
+    The mean changes along a branch, and a small cycle no longer passes what was the mean of a large one.
+    """
+    found, level = measures_of(last.orbit), _mean_level(last.orbit)
+    place = _at_level(path, last.orbit, level)
+    if abs(level - path.level) * last.orbit.section.problem.first_pull_rate < NEAR_MEAN * found.amplitude or place is None:
+        return None
+    other, target = _other(path, place, at_onset=False, level=level)
+    try:
+        new = other.at(other.together(target, last.value), np.eye(len(other.scales))[-1], last.orbit.period, place)
+    except NoCycleError:
+        return None
+    return EndOfPart(None, (other, new if new.way[-1] * last.way[-1] >= 0.0 else replace(new, way=-new.way)))
+
+
+def _mean_level(orbit: FoundCycle) -> float:
+    """Return the mean slip rate of a cycle, as a share of the pull rate (1)."""
+    level: float = measures_of(orbit).slip / orbit.period / orbit.section.problem.first_pull_rate
+    return level
+
+
+def _at_level(path: Path, orbit: FoundCycle, level: float) -> WavePlace | None:
+    """Return the place of a cycle where its slip rate last passes a share (1) of the pull rate; None if it does not."""
+    closed = orbit.closed
+    met = WaveSection(orbit.section.problem, False, path.rtol, level).met(closed.history)
     before = np.flatnonzero(met.time < closed.end)
     if not len(before):
         return None
     n = int(before[-1])
-    place = _place_at(closed, (int(met.piece[n]), float(met.place[n])), float(met.time[n]))
-    return _next_to(path, edge, place, at_onset=False, level=level)
+    return _place_at(closed, (int(met.piece[n]), float(met.place[n])), float(met.time[n]))
+
+
+def _without_rest(path: Path, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
+    """Return where cycles without rest begin, at an edge where stick is lost: they are cut where they pass their mean slip rate."""
+    level = _mean_level(edge.orbit)
+    place = _at_level(path, edge.orbit, level)
+    return None if place is None else _next_to(path, edge, place, at_onset=False, level=level)
 
 
 def with_rest(path: Path, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
@@ -106,14 +137,20 @@ def _place_at(closed: Any, where: tuple[int, float], time: float) -> WavePlace:
     return WavePlace(mesh, states_at(history, *where), kept, source.at(mesh.phases))
 
 
+def _other(path: Any, place: WavePlace, *, at_onset: bool, level: float) -> tuple[Any, Floats]:
+    """Return the path of cycles that are cut elsewhere, and the coordinates of a place there."""
+    even: Floats = spread(place).scale
+    scales = np.append(even * np.sqrt(len(even)), path.range)
+    return replace(path, at_onset=at_onset, level=level, scales=scales), coordinates(place)
+
+
 def _next_to(path: Any, edge: CycleEdge, place: WavePlace, *, at_onset: bool, level: float) -> tuple[Path, PlaceOnBranch] | None:
     """Return the path of the other cycles that meet at an edge, and the first one, which leads away from it."""
-    even: Floats = spread(place).scale
-    other = replace(path, at_onset=at_onset, level=level, scales=np.append(even * np.sqrt(len(even)), path.range))
+    other, begin = _other(path, place, at_onset=at_onset, level=level)
     across = np.eye(len(other.scales))[-1]
     for share in NEXT_TO_EDGE:
         for sign in (1.0, -1.0):
-            target = other.together(coordinates(place), edge.value + sign * share * path.range)
+            target = other.together(begin, edge.value + sign * share * path.range)
             try:
                 found = other.at(target, across, edge.orbit.period, place)
             except NoCycleError:
@@ -125,7 +162,7 @@ def _next_to(path: Any, edge: CycleEdge, place: WavePlace, *, at_onset: bool, le
 
 
 def _led_away(path: Path, now: PlaceOnBranch) -> PlaceOnBranch:
-    """Return a place on a branch that leads away from its first one, next to an edge: steps there become longer from the shortest."""
+    """Return a place on a branch that leads away from its first one, next to an edge, where steps are as long as others."""
     length = SHORTEST_AWAY
     for _ in range(MOST_AWAY):
         try:

@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.extensions.cycles.edges import CycleEdge
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.bordered import Bordered
-from stickslip.extensions.cycles.waves.ends import EndOfPart, end_of_rests, with_rest
+from stickslip.extensions.cycles.waves.ends import EndOfPart, cut_anew, end_of_rests, with_rest
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
     SMALL_NUDGE,
@@ -153,7 +153,7 @@ class WavePath(Path):
 
     def end_beyond(self, last: PlaceOnBranch) -> EndOfPart | None:
         """Return the edge where cycles with rest end, beyond the last place of a branch, and where the branch goes on."""
-        return end_of_rests(self, last) if self.at_onset else None
+        return end_of_rests(self, last) if self.at_onset else cut_anew(self, last)
 
     def rest_begun(self, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
         """Return where cycles with rest begin, at an edge where the slip rate touches 0."""
