@@ -75,7 +75,7 @@ LOWER = "run `python -m benchmarks.rooms --lower`"
 
 def numbers(house: House) -> dict[str, int]:
     """Return the numbers that may only fall."""
-    asks = functions_that_ask(house.trees)
+    asks = functions_that_ask(house.nodes)
     return house.numbers() | {
         "functions that ask a kind": len(asks),
         "conditions that ask a kind": sum(map(len, asks.values())),

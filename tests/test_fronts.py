@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import stickslip
+from tests.source import HOUSE
 
 PACKAGE = Path(stickslip.__file__).parent
 USERS = {"", "studies", "figures", "friction", "loading"}
@@ -52,12 +53,12 @@ def test_a_front_loads_what_is_asked_for_and_nothing_else() -> None:
 def test_other_rooms_take_from_the_front_what_stands_there() -> None:
     known = {(home, name): folder for folder, stub in FRONTS.items() for name, home in homes(stub).items()}
     around = []
-    for file in sorted(PACKAGE.rglob("*.py")):
-        room = file.relative_to(PACKAGE).parts[0]
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for file, nodes in HOUSE.nodes.items():
+        room = file.partition("/")[0]
+        for node in nodes:
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("stickslip."):
                 for alias in node.names:
                     front = known.get((str(node.module), alias.name))
                     if front and front.split("/")[0] != room and node.module != f"stickslip.{front.replace('/', '.')}":
-                        around.append(f"{file.relative_to(PACKAGE)}: {alias.name} is taken from {node.module}, not from {front}")
+                        around.append(f"{file}: {alias.name} is taken from {node.module}, not from {front}")
     assert around == []

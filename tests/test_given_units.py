@@ -214,6 +214,21 @@ def test_a_record_of_the_ground_in_g_is_shown_in_g(tmp_path: Path) -> None:
     assert values == pytest.approx([9.80665 * float(row.split(",")[1]) for row in rows], rel=1e-12)
 
 
+@pytest.mark.parametrize("head", ["slip (in),friction (-)", "slip,friction\nin,-", "slip,friction\nin,[-]"])
+def test_points_of_a_law_in_inches_are_shown_in_inches(head: str, tmp_path: Path) -> None:
+    """By their heading or by a row of units; a sign in place of a unit of friction, which has none, is none."""
+    (tmp_path / "points.csv").write_text(f"{head}\n0,0.7\n0.1,0.65\n1,0.6\n")
+    text = Scenario(block(pull_rate=0.0), 1.0).to_toml()
+    table = text[text.index("[friction]") : text.index("[loading]")]
+    (tmp_path / "mine.toml").write_text(text.replace(table, '[friction]\nkind = "table"\nfile = "points.csv"\n\n'))
+    scenario = ss.load_scenario(tmp_path / "mine.toml")
+    assert units_given(scenario.problem)["m"] == ("in", 0.0254)
+    assert scenario.problem.friction.slip == pytest.approx([0.0, 0.00254, 0.0254], rel=1e-15)
+    again = read_scenario(scenario.to_toml(), "again")
+    assert again.problem == scenario.problem
+    assert units_given(again.problem) == units_given(scenario.problem)
+
+
 SLIDER = ss.Problem(
     ss.SpringBlock(mass="210 lb", stiffness="4500 lbf/inch", normal_force="300 lbf"), LAW, pull_rate="2 inch/min", initial_load=0.0
 )

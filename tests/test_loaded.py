@@ -17,12 +17,10 @@ from benchmarks.loaded import THINGS, lines_of, loaded
 import stickslip
 
 PACKAGE = Path(stickslip.__file__).parent
-MOST = {"simulate": 25_100, "uniqueness": 15_500}
+MOST = {"simulate": 25_000, "uniqueness": 15_000}
 """Largest number of lines of the package that may be loaded. Most of them are those of the engine's loop, of the law and of the
 body: what few runs need is imported when it is used. Uniqueness loads kernels since its proofs are compiled (13 600 before),
-and the kinds of drivers, by which a body says how it is ended. A run loads 170 lines more since rigid bodies may lack a spring,
-meet stops and be pushed, and friction may differ by direction: fields of `Problem` and of its body, and branches of the loop.
-And 27 for the front of the extension of cycles: each run asks every extension for its solvers."""
+and the kinds of drivers, by which a body says how it is ended."""
 BELOW = ("foundation", "friction", "problem", "contact")
 """Rooms below the engine, all of whose files must do without it and without the compiler."""
 ABOVE = (
@@ -37,7 +35,7 @@ NUMPY = TYPER | {"numpy", "numpy.polynomial", "numpy.typing"}
 SHOWN = NUMPY | {"rich"}
 ENGINE = SHOWN | {"llvmlite", "platformdirs", "numpy.ma"}
 """What machine code needs; `numpy.unique` asks whether arrays are masked."""
-FILES = {"h5netcdf", "h5py", "packaging", "tomli_w"}
+FILES = {"h5py", "tomli_w"}
 """What writes a run; h5py alone reads it."""
 MATPLOTLIB = {
     *("PIL", "contourpy", "cycler", "dateutil", "fontTools", "kiwisolver", "matplotlib", "mpl_toolkits", "packaging"),

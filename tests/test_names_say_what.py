@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 from collections import defaultdict
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "src/stickslip"
+from tests.source import HOUSE
+
 MOST_MODULES = 3
 ASKED_BY_NAME = {"ANSWERS", "EXTENSION"}
 """What every kind and every extension is asked for by this name."""
@@ -27,19 +27,18 @@ def targets(statement: ast.stmt) -> Iterator[str]:
 VARIABLES = {"TypeVar", "ParamSpec"}
 
 
-def words_of_modules(texts: dict[str, str]) -> dict[str, list[str]]:
+def words_of_modules(trees: dict[str, ast.Module]) -> dict[str, list[str]]:
     """Return the constants of one word, each with the modules where it stands."""
     found = defaultdict(set)
-    for module, text in texts.items():
-        for name in (name for statement in ast.parse(text).body for name in targets(statement)):
+    for module, tree in trees.items():
+        for name in (name for statement in tree.body for name in targets(statement)):
             if name.isupper() and "_" not in name.strip("_"):
                 found[name].add(module)
     return {name: sorted(modules) for name, modules in found.items() if name not in ASKED_BY_NAME}
 
 
 def test_a_constant_of_one_word_stands_in_three_modules_at_most() -> None:
-    texts = {str(path.relative_to(PACKAGE)): path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
-    found = words_of_modules(texts)
+    found = words_of_modules(HOUSE.trees)
     assert len(found) > 500
     assert {name: modules for name, modules in found.items() if len(modules) > MOST_MODULES} == {}
 
@@ -57,11 +56,10 @@ def test_a_constant_of_one_word_stands_in_three_modules_at_most() -> None:
     ],
 )
 def test_every_way_to_write_a_constant_is_counted(line: str, names: set[str]) -> None:
-    assert set(words_of_modules({"one.py": line})) == names
+    assert set(words_of_modules({"one.py": ast.parse(line)})) == names
 
 
 def test_a_function_that_draws_says_what() -> None:
-    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
-    functions = {path: [one.name for one in tree.body if isinstance(one, ast.FunctionDef)] for path, tree in trees.items()}
+    functions = {file: [one.name for one in tree.body if isinstance(one, ast.FunctionDef)] for file, tree in HOUSE.trees.items()}
     assert sum(name.startswith("draw_") for names in functions.values() for name in names) > 15
     assert [path for path, names in functions.items() if {"draw", "data"} & set(names)] == []

@@ -8,14 +8,14 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from benchmarks.house import CORE, EXTENSIONS, House
+from benchmarks.house import CORE, EXTENSIONS
 from benchmarks.rooms import BOUNDS, Bounds
 
 import stickslip
 from stickslip.engine.history.status import RUN_CODE
+from tests.source import HOUSE
 
 PACKAGE = Path(stickslip.__file__).parent
-HOUSE = House(PACKAGE)
 FACES = {"__init__.py", "__main__.py", "extension.py", "loading", "studies"}
 """What stands in no room: the public names, the start of the command line, and what the core knows of extensions."""
 HEAVY = {

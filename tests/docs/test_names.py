@@ -58,7 +58,7 @@ def unknown(text: str) -> list[str]:
     """Return the names in a text that the code does not have; calls and beginnings of names, as `peak_`, are not looked at."""
     names = [code for code in CODE.findall(text) if re.fullmatch(r"[A-Za-z_][\w.]*[A-Za-z0-9]", code)]
     parts = [part for name in names for part in name.split(".")]
-    return [part for part in parts if len(part) >= SHORTEST and part not in words() | MAY_COME]
+    return [part for part in parts if len(part) >= SHORTEST and part not in words() and part not in MAY_COME]
 
 
 @pytest.mark.parametrize("page", OF_CODE, ids=lambda page: page.stem)

@@ -96,11 +96,8 @@ def test_every_independent_solution_is_in_the_reference() -> None:
 
 @pytest.fixture(scope="module")
 def tests_there_are() -> set[str]:
-    found: set[str] = set()
-    for path in (ROOT / "tests").rglob("test_*.py"):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        found |= {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
-    return found
+    texts = (path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
+    return {name for text in texts for name in re.findall(r"^def (test_\w+)\(", text, re.MULTILINE)}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -116,28 +116,26 @@ def typed_values(texts: Iterable[str], where: str, example: str) -> dict[str, fl
 
     Raises InputError, whose message begins with `where` and shows the example.
     """
-    values: dict[str, float | str] = {}
-    for text in texts:
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not equals or not name or not value:
-            raise InputError(f"{where} must be NAME=VALUE, as {example}, got {shown(text)}")
-        if name in values:
-            raise InputError(f"{where}: {shown(name)} is given twice")
-        values[name] = typed_number(_without_quotes(value))
-    return values
+    typed = _by_name(texts, where, f"NAME=VALUE, as {example}")
+    return {name: typed_number(_without_quotes(value)) for name, value in typed.items()}
 
 
 def typed_columns(texts: Iterable[str] | None, where: str) -> dict[str, str]:
     """Return headings that were typed, each as NAME=HEADING, by the column that they are. Raises InputError."""
-    columns: dict[str, str] = {}
-    for text in texts or ():
-        name, equals, heading = (part.strip() for part in text.partition("="))
-        if not equals or not name or not heading:
-            raise InputError(f'{where} must be NAME=HEADING, as load_point="Vert_disp (micron)", got {shown(text)}')
-        if name in columns:
+    return _by_name(texts or (), where, 'NAME=HEADING, as load_point="Vert_disp (micron)"')
+
+
+def _by_name(texts: Iterable[str], where: str, form: str) -> dict[str, str]:
+    """Return what was typed behind each name and "=". Raises InputError, which shows the form."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise InputError(f"{where} must be {form}, got {shown(text)}")
+        if name in found:
             raise InputError(f"{where}: {shown(name)} is given twice")
-        columns[name] = heading
-    return columns
+        found[name] = value
+    return found
 
 
 def _without_quotes(value: str) -> str:

@@ -67,16 +67,29 @@ class RunResults(Results):
 
 
 @dataclass(frozen=True)
-class WholeRun(RunResults):
-    """A run with its whole history."""
+class RunToShow(RunResults):
+    """A run that has a status and a table of its own."""
 
     scenario: Scenario
-    solution: Solution
+    solution: Any
 
     @property
     @override
     def status(self) -> Status:
-        return self.solution.status
+        found: Status = self.solution.status
+        return found
+
+    @override
+    def to_csv(self, path: Path) -> Path:
+        """Write its table, and return the path."""
+        return Path(self.solution.to_csv(path))
+
+
+@dataclass(frozen=True)
+class WholeRun(RunToShow):
+    """A run with its whole history."""
+
+    solution: Solution
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
@@ -91,11 +104,6 @@ class WholeRun(RunResults):
     @override
     def draw(self, pictures: Pictures) -> list[Path]:
         return pictures.draw(self.solution)
-
-    @override
-    def to_csv(self, path: Path) -> Path:
-        """Write the curves at evenly spaced times, and return the path."""
-        return self.solution.to_csv(path)
 
 
 @dataclass(frozen=True)
@@ -113,8 +121,7 @@ class PlainRun(RunResults):
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
-        if others := [option for option in pictures.wanted if option != "--figure"]:
-            raise InputError(f"{where}: a run of this kind has --figure: leave out {', '.join(others)}")
+        pictures.check_only(where, "a run of this kind has --figure", "--figure")
 
     @override
     def summarise(self, *, everything: bool = False) -> None:

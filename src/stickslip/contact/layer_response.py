@@ -140,9 +140,13 @@ class SidesApart(SidesJoined):
         return SteadyDrive(whole, whole * held, tuple(whole / one for one in resists))
 
 
+SIDES_BY_WORDS = {"side by side": SidesJoined(), "in series": SidesApart()}
+"""How sides act together, by the words for how they resist (`Sides.resist`)."""
+
+
 def sides_of(body: OfLayers) -> SidesJoined:
     """Return how the sides of a body act together."""
-    return SidesJoined() if body.has_ground else SidesApart()
+    return SIDES_BY_WORDS[body.sides_together.resist]
 
 
 def driven_steadily(body: OfLayers) -> SteadyDrive:

@@ -33,7 +33,7 @@ from stickslip.contact.steady_friction import SteadyFriction
 from stickslip.contact.steady_proof import ChangeBetween, proven_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.problem import LoadingHistory, Problem, Resistance
+from stickslip.problem import LoadingHistory, Problem, Resistance, driver_of
 from stickslip.problem.bodies import BodyOnCharacteristics
 
 CRAWL, SAME = 1e-300, 1e-9
@@ -180,7 +180,7 @@ class _Steady:
         """Return why nothing slides steadily, "" if something may."""
         problem, law = self.problem, self.problem.friction
         first = " at first" if problem.loading_varies else ""
-        if problem.far_stress_rate and not problem.is_driven_rigidly:
+        if problem.far_stress_rate and "far_stress_rate" not in driver_of(problem).unfelt:
             return "the far stress keeps changing"
         if not_sought := self.kind.not_sought(problem.body):
             return not_sought

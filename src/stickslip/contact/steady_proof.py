@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.friction import FrictionLaw
 from stickslip.friction.formula import (
     RATE,
     SLIP,
@@ -29,7 +30,6 @@ from stickslip.friction.formula import (
     slope_formula,
     value_and_slopes,
 )
-from stickslip.friction.law import FrictionLaw
 
 CELLS_OF_DECADE = 64
 """Number of cells in a decade of slip rates, before any is halved."""

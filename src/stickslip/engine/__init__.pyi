@@ -61,12 +61,17 @@ from stickslip.engine.history.turning_points import (
 from stickslip.engine.on_demand import (
     lend_part,  # Write the address of a part into a run's memory, by default of the part that the engine has asked for.
 )
+from stickslip.engine.series.step_size import (
+    quick_exp2,  # Return 2^x to 0.3 %, limited to between 2^-1000 and 2^1000.
+    quick_log2,  # Return log2 |x| to 0.09, straight from its bits; -1023 for zero.
+)
 from stickslip.engine.session import (
     # Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more.
     SPARE,
     Session,  # The options, the setup, the state and the history of a run between two calls of the engine; `ExactRun` is the run.
 )
 from stickslip.engine.state.layout import (
+    STATES,  # Largest number of states of a law (1); there is room for as many everywhere.
     TERMS,  # Coefficients of every polynomial and series (1): the orders 0 to ORDER.
     Cause,  # Name what makes the slip rate jump.
     Floats,  # An array of float64.
@@ -74,6 +79,10 @@ from stickslip.engine.state.layout import (
     Integers,  # An array of int64.
     LadderCell,  # Hold one cell of a body of layers (`waves.ladder`); loads are minus the reference strength.
     Store,  # Hold a history.
+)
+from stickslip.engine.waves.interface import (
+    cross,  # `crossed`, inlined in kernels.
+    crossed,  # Return what leaves the place towards the contact and away from it (Pa), of waves that come from there.
 )
 
 __all__ = [
@@ -85,6 +94,7 @@ __all__ = [
     "SHOCK_COLUMNS",
     "SPARE",
     "START",
+    "STATES",
     "TERMS",
     "Cause",
     "Checkpoint",
@@ -107,10 +117,14 @@ __all__ = [
     "compile_formula",
     "creep_note",
     "creep_table",
+    "cross",
+    "crossed",
     "engine_key",
     "history_table",
     "largest_of",
     "lend_part",
+    "quick_exp2",
+    "quick_log2",
     "reach_of",
     "rest_of",
     "rule_in_force",

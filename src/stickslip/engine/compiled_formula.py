@@ -13,8 +13,8 @@ from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import ORDER, SIDE_BY_SIDE, SIGNATURES, FormulaWriter
 from stickslip.engine.series import ball_radii
 from stickslip.engine.series.sine import sine, versine
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.kernels.lock import LOCK, made_once
-from stickslip.foundation.kernels.memory.records import Floats
 from stickslip.foundation.kernels.memory.simd import fused
 from stickslip.foundation.kernels.uncompiled import MATHS, UNCOMPILED, as_python, handle_of
 from stickslip.friction.formula import OPERATIONS, Expression

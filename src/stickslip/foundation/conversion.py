@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.given import as_given
-from stickslip.foundation.meant import probably_meant
 from stickslip.foundation.units import LONGEST_TEXT, split_quantity, to_si
 
 LARGEST_INTEGER = 10**300
@@ -158,8 +157,9 @@ def _in_one_of(number: Any, unit: str, wanted: str) -> Any:
 def _hint(text: str) -> str:
     if len(text) > LONGEST_TEXT:
         return f": longer than {LONGEST_TEXT} characters"
-    meant = probably_meant(text)
-    if meant:
+    from stickslip.foundation.meant import probably_meant  # patterns that only a mistyped number needs
+
+    if meant := probably_meant(text):
         return f": write {meant}"
     try:
         float(text)

@@ -71,6 +71,8 @@ def as_given(number: float, amount: float, unit: str, si: str) -> float:
 
 def column_given(numbers: list[float], unit: str, si: str) -> list[float]:
     """Return the numbers (in `si`) of a column that was given in a unit; one of them remembers it, for all."""
+    if si == "1":
+        return numbers  # its unit may be a sign, as in "friction (-)"
     with suppress(InputError):
         size = float(si_factor(unit, si))
         for i, number in enumerate(numbers):

@@ -42,21 +42,19 @@ class Backwards(LoadingHistory):
         return Tone(-amplitude, frequency, phase)
 
 
-def ground_of_belt(velocity: float | LoadingHistory) -> Ground | None:
-    """Return the motion of the ground that is a belt with a velocity (m/s) or a history of it; None if it runs steadily."""
+def ground_of_belt(body: str, velocity: float | LoadingHistory, given: str) -> Ground | None:
+    """Return the motion of the ground that is a belt with a velocity (m/s) or a history of it; None if it runs steadily.
+
+    `body` is the name of its class, and `given` that of a field with another motion of the ground, "" for none. Raises InputError
+    if there is one, and for a belt that moves as no body can follow it.
+    """
+    if given:
+        why = f"the ground of a {body} is the belt, whose velocity is pull_rate"
+        raise InputError(f"Problem: {given}: {why}: leave {given} out")
     if not isinstance(velocity, LoadingHistory) or (velocity.is_stepped and velocity.lowest == velocity.highest):
         return None
-    return Ground.of(Backwards(velocity), None)
-
-
-def check_belt(body: str, belt: Ground | None, other: str) -> None:
-    """Raise InputError if a belt (None if it runs steadily) moves as no body can follow it, or if it is not the only ground.
-
-    `body` is the name of its class, and `other` that of a field with another motion of the ground; "" for none.
-    """
-    if other:
-        why = f"the ground of a {body} is the belt, whose velocity is pull_rate"
-        raise InputError(f"Problem: {other}: {why}: leave {other} out")
+    belt = Ground.of(Backwards(velocity), None)
     if belt is not None and belt.velocity_jumps:
         why = "a belt whose velocity jumps makes the slip rate jump, which that of a mass does not here"
         raise InputError(f"Problem: pull_rate jumps: {why}: join the steps by short ramps (piecewise-linear)")
+    return belt

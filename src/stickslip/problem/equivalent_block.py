@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from stickslip.foundation.errors import InputError
+from stickslip.problem.features import DRIVER_THAT_CHANGES, refuse
 from stickslip.problem.problem import Problem
 
 
@@ -13,6 +13,5 @@ def block_for(problem: Problem) -> Problem:
 
     Raises InputError if the body is a block, or if the driver of the slab is not rigid, or not for ever.
     """
-    if problem.driver_changes:
-        raise InputError("analogy: a block has no driver that changes: leave driver_reflection out")
+    refuse("analogy", problem, {DRIVER_THAT_CHANGES: "has no counterpart beside a block"})
     return replace(problem, body=problem.body.equivalent_block())

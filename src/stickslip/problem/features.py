@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.problem.bodies import MACHINE
-from stickslip.problem.fields import ProblemFields
 
 
 class Feature(NamedTuple):
@@ -43,12 +42,3 @@ def refuse(where: str, problem: Any, not_followed: Mapping[Feature, str]) -> Non
     for feature, why in not_followed.items():
         if feature.is_in(problem):
             raise InputError(f"{where}: {feature.words} {why}: {feature.cure}")
-
-
-OF_FINITE_DRIVER = ("far_stress", "far_stress_rate", "driver_inertia", "driver_integral_gain")
-"""Fields, of a problem and of its body, that only a driver of finite impedance feels."""
-
-
-def unfelt(problem: ProblemFields) -> tuple[str, ...]:
-    """Return the names of the fields that nothing feels, because the driver is rigid throughout."""
-    return OF_FINITE_DRIVER if problem.is_driven_rigidly else ()

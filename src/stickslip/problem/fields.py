@@ -20,7 +20,6 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.bodies import BODIES, BodyOnCharacteristics
 from stickslip.problem.loading import VARYING, LoadingHistory, Sinusoidal
-from stickslip.problem.normal_load import begun_with_body, check_normal_load
 from stickslip.problem.selection_rule import SelectionRule, checked
 
 if TYPE_CHECKING:
@@ -112,6 +111,8 @@ class ProblemFields(CheckedArguments):
 
             object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         if isinstance(self.normal_load, LoadingHistory):
+            from stickslip.problem.normal_load import begun_with_body
+
             object.__setattr__(self, "normal_load", begun_with_body(self.normal_load, self.body))
         self._check_varying()
         if self.force is not None or self.body.is_free:
@@ -159,13 +160,10 @@ class ProblemFields(CheckedArguments):
             getattr(self, name).check()
         self._check_two_drivers()
         if self.normal_load is not None:
-            check_normal_load(self.normal_load, self.body)
-        if self.body.has_belt:
-            from stickslip.problem.belt import check_belt
+            from stickslip.problem.normal_load import check_normal_load
 
-            other = next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
-            check_belt(type(self.body).__name__, self.ground, other)
-        elif self.ground is not None:
+            check_normal_load(self.normal_load, self.body)
+        if self.ground is not None and self._given_ground:
             from stickslip.problem.rare_checks import check_ground
 
             check_ground(self.body, self.ground, [getattr(self, name) for name in self._varying if name in PULLS])
@@ -346,15 +344,17 @@ class ProblemFields(CheckedArguments):
     @cached_property
     def ground(self) -> Ground | None:
         """The motion of the ground; None if it is at rest."""
-        if self.body.has_belt:
-            from stickslip.problem.belt import ground_of_belt  # few problems have one
-
-            return ground_of_belt(self.pull_rate)
-        if self.ground_velocity is None and self.ground_acceleration is None:
-            return None
+        belt: Ground | None = self.body.belt_as_ground(self.pull_rate, self._given_ground)
+        if not self._given_ground:
+            return belt
         from stickslip.problem.ground import Ground
 
         return Ground.of(self.ground_velocity, self.ground_acceleration)
+
+    @property
+    def _given_ground(self) -> str:
+        """The name of the field with a motion of the ground; "" if there is none."""
+        return next((name for name in ("ground_velocity", "ground_acceleration") if getattr(self, name) is not None), "")
 
     @cached_property
     def contact_law(self) -> FrictionLaw:

@@ -16,7 +16,6 @@ from stickslip.foundation.show import BRIEF_DIGITS, NamedLine, ShownAsTable, bri
 from stickslip.problem import Problem, RunOptions, Status, check_event_rate, default_event_rate, in_given_units
 from stickslip.problem.scenarios import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
-from stickslip.solution.account import Account, events_in_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
 
     from stickslip.engine import Checkpoint, History, Reach
     from stickslip.foundation.place import Place
+    from stickslip.solution.account import Account
     from stickslip.solution.observables.predictability import Predictability
     from stickslip.solution.observables.proof_of_run import ProofOfRun
     from stickslip.solution.observables.rule_influence import RuleInfluence
@@ -242,11 +242,15 @@ class Solution(Exports, ShownAsTable):
 
     def events_in_words(self, digits: int = BRIEF_DIGITS) -> str:
         """Return the number of slip events, and what the largest did, with so many digits."""
+        from stickslip.solution.account import events_in_words
+
         return events_in_words(self.events, self.problem, digits)
 
     @property
     def account(self) -> Account:
         """What is said of the run: how it went, and what is noted of it."""
+        from stickslip.solution.account import Account
+
         notes = {
             "reach": self.reach_note,
             "creep": self.creep_note,

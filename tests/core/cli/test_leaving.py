@@ -34,7 +34,7 @@ main({arguments!r})
         ("numpy", ["run", "fig6-slab"]),
         ("stickslip.run.check.examine", ["check", "fig6-slab"]),
         ("numba", ["run", "fig6-slab"]),
-        ("h5netcdf", ["run", "fig6-slab", "--out", "a.nc"]),
+        ("h5py", ["run", "fig6-slab", "--out", "a.nc"]),
     ],
 )
 def test_ctrl_c_during_imports_is_quiet(tmp_path: Path, module: str, arguments: list[str]):

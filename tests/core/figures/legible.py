@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -16,6 +17,7 @@ BLOCK = ss.SpringBlock(mass=2.8e12, stiffness=3.43e13, normal_force=1e14)
 LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
 SLAB_PROBLEM = ss.Problem(SLAB, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
 BLOCK_PROBLEM = ss.Problem(BLOCK, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initial_load=60e6)
 
 
 SIZES = {"year": ss.YEAR, "day": 86_400.0, "s/m": 1.0} | {

@@ -3,67 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import regime_map
 from stickslip.contact.steady import steady_traction
-from stickslip.figures.contact import admissible, regimes, resistance, systems
-from stickslip.figures.runs import comparison
+from stickslip.figures.contact import admissible, regimes
 from stickslip.figures.runs.run import draw_run
-from stickslip.figures.style import INK, image
+from stickslip.figures.style import INK
 from stickslip.foundation.axis import Axis
-from tests.core.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, illegible, labels, size_of
-
-LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initial_load=60e6)
-
-
-def test_systems_show_the_papers_symbols() -> None:
-    figure = systems.draw_systems(systems.systems_data(BLOCK_PROBLEM, SLAB_PROBLEM))
-    shown = {text.get_text() for axes in figure.axes for text in axes.texts}
-    assert {"$m$", "$K$", "$S$", "$V$", "$h$", r"$\tau$", "$u(t)$", "$u(0,t)$", "$D_0+Vt$", "$u(h,t)=D_0+Vt$"} <= shown
-
-
-def test_laws_have_a_panel_each() -> None:
-    dataset = systems.laws_data({"slip": ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)}, {"rate": LAW}, 2.0, 10.0)
-    assert float(dataset.coefficient_along_rate[0, 0]) == pytest.approx(0.8, rel=1e-15)
-    figure = systems.draw_laws(dataset)
-    assert len(labels(figure)) == 4
-    assert all(has_unit(text) for text in labels(figure))
-
-
-def test_corners_of_an_irregular_contact_have_their_closed_form() -> None:
-    found = resistance.corners(SLAB_PROBLEM, 6.0)
-    assert found["A"] == (0.0, 8e7)
-    assert found["B"][0] == pytest.approx(4.10204081633, rel=1e-11)
-    assert found["C"][1] == pytest.approx(64471887.242, rel=1e-11)
-    assert found["D"] == (0.0, found["C"][1])
-
-
-def test_a_regular_contact_has_no_corners() -> None:
-    regular = replace(SLAB_PROBLEM, friction=replace(LAW, alpha=0.1))
-    assert resistance.corners(regular, 6.0) == {}
-    figure = resistance.draw_resistance(resistance.resistance_data({"regular": regular, "irregular": SLAB_PROBLEM}, 6.0))
-    dashed = [sum(line.get_linestyle() == "--" for line in axes.lines) for axes in figure.axes]
-    assert dashed == [0, 1]
-
-
-def test_the_run_follows_the_loop_up_and_down() -> None:
-    dataset = resistance.loop_data(ss.simulate(LOOP, 5.7))
-    up, down = dataset.run_load[: int(dataset.run_turn) + 1], dataset.run_load[int(dataset.run_turn) :]
-    last_digit = 1e-15 * float(dataset.run_load.max())
-    assert (np.diff(up) >= -last_digit).all()
-    assert (np.diff(down) <= last_digit).all()
-    assert float(dataset.run_load.max()) == pytest.approx(60e6 + SLAB.impedance * 2.6, rel=1e-9)
-    figure = resistance.draw_hysteresis(dataset)
-    assert all(has_unit(text) for text in labels(figure))
-    assert {"A", "B", "C", "D", "E", "to O"} <= {text.get_text() for text in figure.axes[0].texts}
+from tests.core.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, LOOP, SLAB, SLAB_PROBLEM, has_unit, illegible, labels, size_of
 
 
 def lines_of(figure: Figure) -> dict[str, np.ndarray]:
@@ -195,54 +148,17 @@ def test_the_map_of_regimes_marks_the_problem() -> None:
     assert ratios == pytest.approx(1000.0 ** (np.array([0.5, 1, 1, 1, 1, 0.5]) / 5), rel=1e-12), "halfway in equal ratios"
 
 
-@pytest.fixture(scope="module")
-def side_by_side() -> xr.Dataset:
-    solutions = {"block": ss.simulate(BLOCK_PROBLEM, 7.0), "slab": ss.simulate(SLAB_PROBLEM, 7.0)}
-    return comparison.comparison_data(solutions, 7.0)
-
-
-def test_comparison_draws_the_shock_at_the_start(side_by_side: xr.Dataset) -> None:
-    rate = side_by_side.slab_slip_rate
-    assert rate[0] == 0.0
-    assert float(rate[1]) == pytest.approx(4.10204081633, rel=1e-11)
-    assert side_by_side.slab_time[0] == side_by_side.slab_time[1] == 0.0
-
-
-def test_systems_are_compared_over_the_same_time_in_the_same_units(side_by_side: xr.Dataset) -> None:
-    figure = comparison.draw_comparison(side_by_side)
-    assert len({axes.get_xlim() for axes in figure.axes}) == 1
-    assert figure.axes[0].get_ylabel() == figure.axes[1].get_ylabel() == "slip $u$ (m)"
-    assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(d)", "(b)", "(e)", "(c)", "(f)"]
-    small = side_by_side.assign(block_slip=1e-6 * side_by_side.block_slip.assign_attrs(side_by_side.block_slip.attrs))
-    small["block_slip"].attrs = side_by_side.block_slip.attrs
-    assert comparison.draw_comparison(small).axes[0].get_ylabel() == "slip $u$ (µm)"
-
-
-def test_figures_are_legible_and_name_their_units(side_by_side: xr.Dataset) -> None:
-    for figure, shown in ((comparison.draw_comparison(side_by_side), 8), (draw_run(ss.simulate(SLAB_PROBLEM, 7.0)), 4)):
-        assert len(labels(figure)) == shown
-        assert all(has_unit(text) for text in labels(figure))
-        assert illegible(figure) == []
-
-
-@pytest.mark.slow
-def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: Path) -> None:
-    side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
-    again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
-    assert image(comparison.draw_comparison(side_by_side), "png", 50.0) == image(comparison.draw_comparison(again), "png", 50.0)
+def test_a_run_is_legible_and_names_its_units() -> None:
+    figure = draw_run(ss.simulate(SLAB_PROBLEM, 7.0))
+    assert len(labels(figure)) == 4
+    assert all(has_unit(text) for text in labels(figure))
+    assert illegible(figure) == []
 
 
 def test_years_are_shown_as_years() -> None:
     figure = draw_run(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
     assert figure.axes[2].get_xlabel().endswith("(year)")
     assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
-
-
-@pytest.mark.slow
-def test_the_same_figure_gives_the_same_bytes() -> None:
-    dataset = systems.systems_data(BLOCK_PROBLEM, SLAB_PROBLEM)
-    for kind in ("png", "svg"):
-        assert image(systems.draw_systems(dataset), kind) == image(systems.draw_systems(dataset), kind)
 
 
 @pytest.mark.sampled(every=2)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import stickslip as ss
-from stickslip.problem import features
+from stickslip.problem import driver_of, features
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e3, 1e8)
 STILL = ss.Problem(SLAB, ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1), pull_rate=0.03, initial_load=5e7)
@@ -32,6 +32,6 @@ def test_a_problem_with_one_feature_is_refused_for_it_alone(feature: features.Fe
 
 def test_only_a_driver_that_is_rigid_throughout_feels_no_far_stress() -> None:
     unchanged = replace(STILL, far_stress=1.0, driver_reflection=ss.loading.Steps([0.0, 1.0], [-1.0, -1.0]))
-    assert "far_stress" in features.unfelt(STILL)
-    assert "far_stress" in features.unfelt(unchanged)
-    assert features.unfelt(WITH[features.DRIVER_THAT_CHANGES]) == features.unfelt(WITH[features.DRIVEN_BY_MACHINE]) == ()
+    assert "far_stress" in driver_of(STILL).unfelt
+    assert "far_stress" in driver_of(unchanged).unfelt
+    assert driver_of(WITH[features.DRIVER_THAT_CHANGES]).unfelt == driver_of(WITH[features.DRIVEN_BY_MACHINE]).unfelt == ()

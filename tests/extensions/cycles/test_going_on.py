@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.cycles import follow as following
 from tests.command_line import Command
 from tests.extensions.cycles.problems import BRAKE, coulomb, stribeck
 
@@ -58,24 +59,56 @@ class Stop:
             raise KeyboardInterrupt
 
 
-@pytest.mark.slow
-def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: Path) -> None:
-    """While the contact rests, from the table, and while it does not, from the branch: the same edges, to 1e-9."""
+@pytest.mark.parametrize("after", [1, 3, pytest.param(9, marks=pytest.mark.slow), pytest.param(12, marks=pytest.mark.slow)])
+def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(after: int, tmp_path: Path) -> None:
+    """While the contact rests, and while it does not: the same cycles, not one more, from its table; and the same edges: to 1e-9.
+
+    Next to an edge, where the share of rest grows as a root, its rounding is one of 1e-6.
+    """
     start = ss.studies.cycle(stribeck(0.1, initial_load=0.0))
-    given: Any = {"along": "pull_rate", "to": 0.5, "steps": 5}
+    given: Any = {"along": "pull_rate", "to": 0.5, "steps": 3}
     whole = ss.studies.follow(start, **given)
-    for after in (3, 9):
-        part = ss.studies.follow(start, **given, progress=Stop(after))
-        assert part.interrupted
-        assert "interrupted at loading.pull_rate" in repr(part)
-        again = ss.studies.follow(start, **given, resume=part if after > 3 else part.to_csv(tmp_path / "branch.csv"))
-        assert not again.interrupted
-        assert [edge.name for edge in again.edges] == [edge.name for edge in whole.edges]
-        assert [edge.value for edge in again.edges] == pytest.approx([edge.value for edge in whole.edges], rel=1e-9)
-        assert again.edges[0].orbit.period == pytest.approx(whole.edges[0].orbit.period, rel=1e-6)
-        assert len(again.points) > len(part.points)
-        kept = [one.value for one in part.points if not one.edge]
-        assert [one.value for one in again.points if not one.edge][: len(kept)] == pytest.approx(kept, rel=1e-12)
+    part = ss.studies.follow(start, **given, progress=Stop(after))
+    assert part.interrupted
+    assert len(part.points) == after
+    assert "interrupted at loading.pull_rate" in repr(part)
+    again = ss.studies.follow(start, **given, resume=part.to_csv(tmp_path / "branch.csv"))
+    assert not again.interrupted
+    pd.testing.assert_frame_equal(again.table.drop(columns="stick_share"), whole.table.drop(columns="stick_share"), rtol=1e-9)
+    assert again.table["stick_share"].tolist() == pytest.approx(whole.table["stick_share"].tolist(), abs=1e-6)
+    assert [edge.name for edge in again.edges] == [edge.name for edge in whole.edges]
+    assert [edge.value for edge in again.edges] == pytest.approx([edge.value for edge in whole.edges], rel=1e-9)
+
+
+def test_a_branch_of_too_many_cycles_ends_with_those_it_has_and_goes_on_from_its_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With no more than two at once, twice, it is the branch without that limit, bit for bit."""
+    start = ss.studies.cycle(coulomb())
+    given: Any = {"along": "pull_rate", "to": 0.2, "steps": 4}
+    whole = ss.studies.follow(start, **given)
+    monkeypatch.setattr(following, "MOST_POINTS", 2)
+    part = ss.studies.follow(start, **given)
+    assert part.is_full
+    assert not part.interrupted
+    assert part.table["loading.pull_rate"].tolist() == whole.table["loading.pull_rate"].tolist()[:2]
+    said = "with as many cycles as are followed at once: give fewer steps or a nearer end (to), or the branch can go on there"
+    assert said in repr(part)
+    for _ in range(2):
+        part = ss.studies.follow(start, **given, resume=part.to_csv(tmp_path / "branch.csv"))
+    assert not part.is_full
+    pd.testing.assert_frame_equal(part.table, whole.table, check_exact=True)
+
+
+def test_the_command_writes_a_branch_of_too_many_cycles(tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(following, "MOST_POINTS", 3)
+    (tmp_path / "brake.toml").write_text(BRAKE, encoding="utf-8")
+    table = tmp_path / "a.csv"
+    given = "cycle", str(tmp_path / "brake.toml"), "--along", "pull_rate", "--to", "0.3", "--out", str(table)
+    done = command(*given, "--steps", "8")
+    assert done.code == 0
+    assert "Ended at loading.pull_rate" in done.out
+    assert len(pd.read_csv(table, comment="#")) == 3
 
 
 @pytest.mark.parametrize(("pull", "to"), [(0.28, 0.35), (0.28, 0.3), (0.14, 0.4)])
@@ -127,15 +160,20 @@ def test_resume_refuses_what_is_no_table_of_this_branch(tmp_path: Path) -> None:
     (tmp_path / "b.csv").write_text("a,b\n1,2\n", encoding="utf-8")
     damaged = tmp_path / "c.csv"
     damaged.write_text(table.read_text(encoding="utf-8").replace(",0,0", ",x,0"), encoding="utf-8")
+    no_step = tmp_path / "d.csv"
+    pd.read_csv(table, comment="#").assign(ahead=0.0).to_csv(no_step, index=False)
     for file, cycle, along, said in (
         (table, other, "pull_rate", r"a.csv: begins at loading.pull_rate = 0.1 m/s with a period of .* it is another branch"),
         (table, start, "body.mass", "a.csv: holds a branch along loading.pull_rate, not along body.mass"),
         (tmp_path / "b.csv", start, "pull_rate", "b.csv: is no table of a branch that can go on: it has no column 'period'"),
         (tmp_path / "none.csv", start, "pull_rate", "none.csv: cannot be read"),
         (damaged, start, "pull_rate", "c.csv: a row of it is damaged"),
+        (no_step, start, "pull_rate", "d.csv: a row of it is damaged"),
     ):
         with pytest.raises(ss.InputError, match=said):
             ss.studies.follow(cycle, along, to=0.3, resume=file)
+    with pytest.raises(ss.InputError, match=r"a.csv: has come to loading.pull_rate = 0.2 m/s, beyond to = 0.15 m/s: give one that"):
+        ss.studies.follow(start, "pull_rate", to=0.15, resume=table)
 
 
 def test_the_command_goes_on_with_the_table_that_it_left(tmp_path: Path, command: Command) -> None:

@@ -101,7 +101,7 @@ def test_static_friction_that_is_no_larger_than_dynamic_gives_no_multiplier() ->
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5)}, "sharp waves back whole"),
         ({"body": HEAVY_DRIVER}, "machine"),
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5, driver_impedance=0.0)}, "dead load"),
-        ({"body": ss.SpringBlock(MASS, STIFFNESS, NORMAL, stop_ahead=1.0)}, "hard stops"),
+        ({"body": ss.SpringBlock(MASS, STIFFNESS, NORMAL, stop_ahead=1.0)}, "to its stop"),
         ({"body": ss.SpringBlock(MASS, 0.0, NORMAL, driver_damping=1.0)}, "spring"),
         ({"friction": F.SinusoidalSlip(1.0, 0.5, 5.0)}, "changes with slip"),
         ({"force": 1.0}, "must be steady"),

@@ -20,7 +20,7 @@ from tests.pictures import blank
 def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, ClaimVerdict]]:
     """The folder that the command on the page about the paper writes, and its verdicts; the other examples of the page run, too.
 
-    Pictures are left blank: `tests/core/figures` draws such figures, and with the slow tests those of the page are drawn, too.
+    Pictures are left blank: `test_figures_of_paper.py` draws them, and with the slow tests those of the page are drawn, too.
     """
     home, steps, found = tmp_path_factory.mktemp("page"), list[str](), dict[int, ClaimVerdict]()
 

@@ -58,8 +58,11 @@ class Pictures:
     def check_problem(self, problem: Problem, command: str = "run") -> None:
         """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
-        if inside and not problem.body.has_waves:
-            raise InputError(f"{command}: {inside[0]} needs a slab or a string: a block is rigid and has no interior field")
+        if inside:
+            from stickslip.figures.runs.asked import DRAWN_KINDS
+
+            if not DRAWN_KINDS[problem.body.structure].has_inside:
+                raise InputError(f"{command}: {inside[0]} needs a slab or a string: a block is rigid and has no interior field")
         if self.path is not None:
             from stickslip.contact import uniqueness_of
 
@@ -67,11 +70,14 @@ class Pictures:
                 what = "a slab or a string without a mass at its contact: with inertia the slip rate is a state, there is no set K"
                 raise InputError(f"{command}: --path needs {what}")
 
+    def check_only(self, where: str, has: str, *options: str) -> None:
+        """Refuse all figures but those of some options; `has` says so in words. Raises InputError, which begins with `where`."""
+        if others := [option for option in self.wanted if option not in options]:
+            raise InputError(f"{where}: {has}: leave out {', '.join(others)}")
+
     def check_events(self, where: str) -> None:
         """Refuse, before the run, all figures but the one that a catalogue of slip events has. Raises InputError."""
-        others = [option for option in self.wanted if option != "--catalogue-figure"]
-        if others:
-            raise InputError(f"{where}: a catalogue keeps slip events only, no history: leave out {', '.join(others)}")
+        self.check_only(where, "a catalogue keeps slip events only, no history", "--catalogue-figure")
 
     def draw_events(self, table: pd.DataFrame, title: str, load_unit: str) -> list[Path]:
         """Draw the figure of a catalogue, of a body whose loads have this unit, if it is wanted and there is an event.

@@ -14,7 +14,7 @@ from stickslip.cli.kinds import KindOfRun
 from stickslip.cli.output.files import drawing, write_files
 from stickslip.cli.output.pictures import Pictures
 from stickslip.cli.output.show import console, say, titled
-from stickslip.cli.results import RunResults
+from stickslip.cli.results import RunResults, RunToShow
 from stickslip.extensions.chains.summary import lines_of, proof_of
 from stickslip.foundation.errors import InputError
 from stickslip.run import progress_line
@@ -22,8 +22,6 @@ from stickslip.run import progress_line
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
     from stickslip.extensions.chains.run import ChainRun
-    from stickslip.problem import Status
-    from stickslip.problem.scenarios import Scenario
 
 CHAIN_PICTURES: Sequence[str] = ("--figure", "--catalogue-figure", "--energy-figure", "--space-time")
 """The pictures that these runs have: the catalogue (twice), energies, and the rupture of the largest event."""
@@ -32,20 +30,14 @@ TYPED = ("--events",)
 
 
 @dataclass(frozen=True)
-class ChainResults(RunResults):
+class ChainResults(RunToShow):
     """A run of a chain."""
 
-    scenario: Scenario
     solution: ChainRun
     took: float | None = None
     """Wall-clock time of the run, s; None if it comes from a folder."""
     steps_before: int = 0
     """Steps of blocks that it had when that time began."""
-
-    @property
-    @override
-    def status(self) -> Status:
-        return self.solution.status
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
@@ -69,16 +61,10 @@ class ChainResults(RunResults):
             (pictures.space_time, drawing(plot.rupture, pictures.look)),
         )
 
-    @override
-    def to_csv(self, path: Path) -> Path:
-        """Write the events, and return the path."""
-        return self.solution.to_csv(path)
-
 
 def check_pictures(pictures: Pictures, where: str) -> None:
     """Refuse figures that a chain does not have. Raises InputError."""
-    if others := [option for option in pictures.wanted if option not in CHAIN_PICTURES]:
-        raise InputError(f"{where}: a [chain] has {', '.join(CHAIN_PICTURES)}: leave out {', '.join(others)}")
+    pictures.check_only(where, f"a [chain] has {', '.join(CHAIN_PICTURES)}", *CHAIN_PICTURES)
 
 
 class KindOfChain(KindOfRun):

@@ -26,6 +26,9 @@ class CycleKind(ABC):
     may_be_cut: bool = False
     """True if that run may end when it has them."""
 
+    may_be_held: bool = False
+    """True if a body moves in cycles whose pull rate is 0, too."""
+
     @abstractmethod
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle of a problem is looked for, in words; empty if there is no reason."""

@@ -40,11 +40,13 @@ class PointOnBranch(NamedTuple):
     """How often its period has doubled (1) since the first cycle."""
     start: Floats = np.zeros(0)
     """Where the section is met, as the path counts it; nothing at an onset of slip, or where a branch cannot go on."""
+    ahead: Floats = np.zeros(0)
+    """The next step along the branch, of start and parameter in SI; nothing at an edge, or where a branch cannot go on."""
 
     @property
     def at_onset(self) -> bool:
-        """True if it is cut at an onset of slip."""
-        return not len(self.start)
+        """True if it is cut at an onset of slip, where a rest has left fewer coordinates than there are multipliers."""
+        return len(self.start) < len(self.multipliers)
 
     @property
     def stable(self) -> bool | None:
@@ -58,7 +60,8 @@ class BranchOfCycles(Study):
 
     `table` has a row for each: the parameter, then the columns of `LimitCycle.table`, and edge, the name of an edge or "", in SI;
     part counts the parts that begin at period doublings, doubled how often the period has doubled, and start_1 and so on are load
-    and inner states where the cycle begins; `follow` goes on from them.
+    and inner states where the cycle begins; `follow` goes on from them, by a step of `ahead` along the parameter and of ahead_1 and
+    so on along them.
     """
 
     start: LimitCycle
@@ -69,6 +72,8 @@ class BranchOfCycles(Study):
     to: float = np.nan
     interrupted: bool = False
     """True if Ctrl-C ended it before its end: `follow(..., resume=branch)` goes on."""
+    is_full: bool = False
+    """True if it ends because no more cycles are followed at once: `follow(..., resume=branch)` goes on."""
 
     @property
     def problem(self) -> Problem:
@@ -84,7 +89,9 @@ class BranchOfCycles(Study):
             if one.edge in ON_THE_CIRCLE:
                 row["stable"] = NOT_KNOWN
             row |= {"edge": one.edge, "part": one.part, "doubled": one.doubled}
-            rows.append(row | {f"start_{n}": value for n, value in enumerate(one.start.tolist(), 1)})
+            row |= {f"start_{n}": value for n, value in enumerate(one.start.tolist(), 1)}
+            *others, last = one.ahead.tolist() or [np.nan]
+            rows.append(row | {"ahead": last} | {f"ahead_{n}": value for n, value in enumerate(others, 1)})
         return pd.DataFrame(rows)
 
     @cached_property
@@ -109,13 +116,15 @@ class BranchOfCycles(Study):
 
     @property
     def interrupted_text(self) -> str:
-        """Say in one sentence where Ctrl-C ended it; "" if it did not."""
-        at = brief(self.points[-1].value, self.parameter.unit)
-        return (
-            f"interrupted at {self.parameter.name} = {at}: the branch can go on there, from its table (--resume)"
-            if self.interrupted
-            else ""
-        )
+        """Say in one sentence where it ended before its end, and why; "" if it did not."""
+        at = f"{self.parameter.name} = {brief(self.points[-1].value, self.parameter.unit)}"
+        goes_on = "the branch can go on there, from its table (--resume)"
+        if self.is_full:
+            cure = "give fewer steps or a nearer end (to)" + (f", or {goes_on}" if self.start.orbit.is_kept else "")
+            return f"ended at {at} with as many cycles as are followed at once: {cure}"
+        if not self.interrupted:
+            return ""
+        return f"interrupted at {at}" + (f": {goes_on}" if self.start.orbit.is_kept else "")
 
     @property
     def text(self) -> str:

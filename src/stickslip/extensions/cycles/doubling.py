@@ -1,27 +1,18 @@
-"""Cycles of twice the period: where they begin at an edge of a branch, and whether a cycle is one of half its period."""
+"""Cycles of twice the period: where they begin at an edge of a branch, and where they end in one of half their period."""
 
 from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
-from stickslip.engine import Positions
 from stickslip.extensions.cycles.edges import HALVING, CycleEdge
-from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
-from stickslip.extensions.cycles.section import coordinates, crossings
-from stickslip.extensions.cycles.tangent import values_at
 
 BESIDE_DOUBLING = (1e-2, 3e-2, 3e-3)
 """Distances (1, shares of the extent) from an edge, along the disturbance that a period reverses, where a cycle is looked for."""
-HALVES_ALIKE = 2e-3
-"""Cycles whose halves are closer than this share (1) of the extent are of half the period."""
-NEAR_HALF = 0.1
-"""How far (1, share of the period) from half of it the middle of a doubled cycle may be."""
 MOST_DOUBLED = 3
 """How often the period may double (1) on branches that are followed."""
 
@@ -37,7 +28,7 @@ def first_doubled(path: Path, edge: CycleEdge) -> PlaceOnBranch | None:
             found = path.at(path.together(orbit.place, edge.value) + share * along, along, 2.0 * orbit.period)
         except NoCycleError:
             continue
-        if abs(found.orbit.period - 2.0 * orbit.period) < 0.5 * orbit.period and not is_of_half(found.orbit):
+        if abs(found.orbit.period - 2.0 * orbit.period) < 0.5 * orbit.period and not found.orbit.is_of_half:
             return found if found.way @ along > 0.0 else replace(found, way=-found.way)
     return None
 
@@ -47,7 +38,7 @@ def end_of_doubling(path: Path, now: PlaceOnBranch, new: PlaceOnBranch) -> Cycle
 
     There the cycle of half the period has the multiplier -1.
     """
-    if not is_of_half(new.orbit) or is_of_half(now.orbit):
+    if not new.orbit.is_of_half or now.orbit.is_of_half:
         return None
     last = new.orbit
 
@@ -60,20 +51,3 @@ def end_of_doubling(path: Path, now: PlaceOnBranch, new: PlaceOnBranch) -> Cycle
         found = float(brentq(beyond, new.value, now.value, xtol=1e-13 * path.range, rtol=1e-13))
         return CycleEdge(HALVING, found, last)
     return None
-
-
-def is_of_half(orbit: Any) -> bool:
-    """Return True if a cycle of a rigid body is back where it began after half of its period already."""
-    if not isinstance(orbit, Orbit):
-        return False
-    history = orbit.closed.history
-    met = crossings(history, orbit.section.at_onset)
-    if not len(met.time):
-        return False
-    away = np.abs(met.time - 0.5 * orbit.period)
-    nearest = int(away.argmin())
-    if away[nearest] > NEAR_HALF * orbit.period:
-        return False
-    at = Positions.inside(met.piece[nearest : nearest + 1], met.place[nearest : nearest + 1])
-    place = coordinates(values_at(history, at), orbit.section.at_onset)[:, 0]
-    return bool(np.all(np.abs(place - orbit.place) <= HALVES_ALIKE * orbit.extent))

@@ -9,15 +9,18 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stickslip.contact import steady_slidings
-from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.found import FoundCycle, kind_of
+from stickslip.extensions.cycles.lag import usual_rate
 from stickslip.extensions.cycles.measures import least_rate
+from stickslip.extensions.cycles.near_stops import touches_stop
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
 FOLD, DOUBLING, TORUS = "fold of cycles", "period doubling", "Neimark-Sacker"
-HALVING = "end of doubling"
+HALVING, END_OF_HUNTING = "end of doubling", "end of hunting"
 LOSS_OF_STICK, FIRST_STICK, STEADY_END, GRAZING = "loss of stick", "first stick", "steady sliding", "grazing"
+CORNER = "corner"
 NOT_FOUND = "not followed further"
 MEANING = {
     FOLD: "a multiplier is +1: a stable and an unstable cycle meet and vanish",
@@ -27,7 +30,9 @@ MEANING = {
     LOSS_OF_STICK: "the arrest is grazed: the contact no longer comes to rest",
     FIRST_STICK: "the slip rate touches 0: the contact begins to rest",
     STEADY_END: "the amplitude is 0: the cycle vanishes in steady sliding, which changes its stability there (Hopf)",
-    GRAZING: "rest or slip is touched elsewhere in the period: beyond it another slip or rest begins there",
+    END_OF_HUNTING: "the amplitude is 0 and rests last for ever: hunting dies out beyond it, about a set point at rest",
+    GRAZING: "rest, slip or a hard stop is touched elsewhere in the period: beyond it another slip, rest or impact begins there",
+    CORNER: "an event meets another, or an echo of one: beyond it the branch goes on in another direction",
     NOT_FOUND: "Newton's iteration finds no cycle beyond",
 }
 """The edges by name, and what happens there."""
@@ -101,7 +106,7 @@ def first_stick(path: Path, last: PlaceOnBranch) -> tuple[CycleEdge, PlaceOnBran
     """
     here, step = last, path.longest_step(last, 1e-3)
     rate = least_rate(here.orbit)
-    whole = last.orbit.section.problem.first_pull_rate
+    whole = usual_rate(last.orbit.section.problem)
     before: tuple[float, float] | None = None
     for _ in range(MOST_NEARER):
         try:
@@ -125,15 +130,18 @@ def first_stick(path: Path, last: PlaceOnBranch) -> tuple[CycleEdge, PlaceOnBran
 
 
 def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[CycleEdge, PlaceOnBranch]:
-    """Return where a branch ends whose cycles rest, between its last place and a value (SI) without a cycle, by bisection."""
-    good, bad = last, beyond
+    """Return where cycles of one kind end, with rest or stops, between a last one and a value (SI) without one, by bisection."""
+    good, bad, kind = last, beyond, kind_of(last.orbit)
     while abs(bad - good.value) > max(SMALLEST_BISECTED * path.range, 4.0 * np.spacing(abs(bad))):
         middle = 0.5 * (good.value + bad)
         try:
-            good = path.at_value(middle, good.orbit.place, good.orbit.period)
+            found = path.at_value(middle, good.orbit.place, good.orbit.period)
         except NoCycleError:
             bad = middle
-    return CycleEdge(LOSS_OF_STICK, 0.5 * (good.value + bad), good.orbit), good
+            continue
+        good, bad = (found, bad) if kind_of(found.orbit) == kind else (good, middle)
+    name = GRAZING if touches_stop(good.orbit) else LOSS_OF_STICK
+    return CycleEdge(name, 0.5 * (good.value + bad), good.orbit), good
 
 
 def end_in_steady_sliding(path: Path, values: Floats, amplitudes: Floats) -> float | None:
@@ -141,7 +149,7 @@ def end_in_steady_sliding(path: Path, values: Floats, amplitudes: Floats) -> flo
 
     The square of the amplitude goes to 0 in proportion to the distance from it.
     """
-    if len(values) < 2 or not amplitudes[-1] < min(amplitudes[-2], SMALL * path.section(float(values[-1])).problem.first_pull_rate):
+    if len(values) < 2 or not amplitudes[-1] < min(amplitudes[-2], SMALL * usual_rate(path.section(float(values[-1])).problem)):
         return None
     squares = amplitudes[-2:] ** 2
     expected = float(values[-1] - squares[1] * (values[-2] - values[-1]) / (squares[0] - squares[1]))

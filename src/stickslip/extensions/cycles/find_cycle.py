@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.lag import is_wound, loading_rate
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
@@ -16,6 +18,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
 from stickslip.problem import INITIAL_STATES, TOO_MANY, Problem
+from stickslip.problem.bodies import as_on_spring
 from stickslip.problem.scenarios import Scenario, read_source
 from stickslip.run import TextProgress, telling, uninterrupted
 from stickslip.run.simulate import simulate
@@ -84,20 +87,25 @@ def cycle(
     scenario = Scenario(problem, 1.0) if isinstance(problem, Problem) else read_source("cycle", problem)
     check_can_be_followed(scenario.problem, "cycle")
     TOLERANCE_OF_RUNS.check("cycle", "rtol", rtol)
-    first, attempts = _first_run(scenario, near, given=not isinstance(problem, Problem)), 1 if near is not None else ATTEMPTS
     with telling(progress, "cycle") as tell:
         begin = without_load(scenario.problem)
-        wait = (scenario.problem.load - begin.load) / (begin.body.stiffness * begin.first_pull_rate)
-        times, kind = (wait, FIRST_NEAR * time_of_cycle(begin)), CYCLE_KINDS[begin.body.structure]
-        early = kind.settled(begin, times, rtol, tell) if near is None else None
-        return LimitCycle(early or _searched(begin, first, attempts, rtol, tell), scenario)
+        if near is not None:
+            return LimitCycle(_searched(begin, (float(NEAR.check("cycle", "near", near)),), rtol, tell), scenario)
+        wait = (scenario.problem.load - begin.load) / loading_rate(begin)
+        lasts, kind = FIRST_NEAR * time_of_cycle(begin), CYCLE_KINDS[begin.body.structure]
+        found = kind.settled(begin, (wait, lasts), rtol, tell)
+        if found is None:
+            first = lasts if isinstance(problem, Problem) else scenario.duration
+            found = _searched(begin, _durations(first, lasts), rtol, tell)
+        return LimitCycle(found, scenario)
 
 
-def _first_run(scenario: Scenario, near: float | str | WithUnit | None, *, given: bool) -> float:
-    """Return the duration (s) of the first run."""
-    if near is not None:
-        return float(NEAR.check("cycle", "near", near))
-    return scenario.duration if given else FIRST_NEAR * time_of_cycle(scenario.problem)
+def _durations(first: float, least: float) -> list[float]:
+    """Return the durations (s) of runs at whose end a cycle is looked for, from the first one on."""
+    found = [first]
+    for _ in range(ATTEMPTS - 1):
+        found.append(max(LONGER * found[-1], least))
+    return found
 
 
 def without_load(problem: Problem) -> Problem:
@@ -112,13 +120,14 @@ def time_of_cycle(problem: Problem) -> float:
     """Return about how long (s) a cycle may take: a free oscillation, and the time to load the contact."""
     law = problem.friction
     falls = law.variation if law.states else min(law.variation, float(law.static_coefficient(0.0)))
-    return problem.body.round_trip_time + 2.0 * problem.normal * falls / (problem.body.stiffness * problem.first_pull_rate)
+    turn = as_on_spring(problem.body).period if is_wound(problem) else problem.body.round_trip_time
+    return float(turn + 2.0 * problem.normal * falls / loading_rate(problem))
 
 
-def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: TextProgress) -> FoundCycle:
-    """Return the cycle near the end of a run, which is made longer where none is found. Raises InputError."""
+def _searched(problem: Problem, durations: Sequence[float], rtol: float, tell: TextProgress) -> FoundCycle:
+    """Return the cycle near the end of a run, of the next duration (s) where none is found. Raises InputError."""
     kind = CYCLE_KINDS[problem.body.structure]
-    for attempt in range(attempts):
+    for lasts in durations:
         run = uninterrupted(simulate(problem, lasts, rtol, max_pieces=kind.most_pieces))
         tell(f"run of {brief(lasts, 's')}")
         full = not run.status.ok
@@ -127,15 +136,16 @@ def _searched(problem: Problem, lasts: float, attempts: int, rtol: float, tell: 
         try:
             return kind.near_end(run.history, problem, rtol)
         except InputError:
-            if attempt == attempts - 1 or full:
+            if lasts == durations[-1] or full:
                 raise
-        lasts = max(LONGER * lasts, FIRST_NEAR * time_of_cycle(problem))
-    raise AssertionError("there is at least one attempt")
+    raise AssertionError("there is at least one duration")
 
 
 def check_can_be_followed(problem: Problem, who: str) -> None:
     """Refuse a problem whose cycles are not looked for. Raises InputError, which begins with `who`."""
-    if why := CYCLE_KINDS[problem.body.structure].refusal(problem):
+    kind, pull = CYCLE_KINDS[problem.body.structure], problem.first_pull_rate
+    if why := kind.refusal(problem):
         raise InputError(f"{who}: {why}; {INSTEAD}")
-    if not problem.first_pull_rate > 0.0 or not math.isfinite(problem.first_pull_rate):
-        raise InputError(f"{who}: pull_rate must be above 0, got {problem.first_pull_rate:g} {problem.unit_of('pull_rate')}")
+    if not (pull > 0.0 or (kind.may_be_held and pull == 0.0)) or not math.isfinite(pull):
+        least = "0 or above" if kind.may_be_held else "above 0"
+        raise InputError(f"{who}: pull_rate must be {least}, got {pull:g} {problem.unit_of('pull_rate')}")

@@ -72,6 +72,14 @@ class FoundCycle(Protocol):
         """True if each rest ends all disturbances."""
 
     @property
+    def is_kept(self) -> bool:
+        """True if tables keep where it starts, so that branches go on from there, and to cycles of twice the period."""
+
+    @property
+    def is_of_half(self) -> bool:
+        """True if it is back where it began after half of its period already."""
+
+    @property
     def multipliers(self) -> NDArray[Any]:
         """What a period multiplies disturbances by (1), the largest first."""
 
@@ -84,3 +92,8 @@ class FoundCycle(Protocol):
 
     def run_of_it(self) -> Solution:
         """Return the run of one period."""
+
+
+def kind_of(motion: Any) -> tuple[bool, int]:
+    """Return whether a cycle, or a return, rests, and how often it meets a hard stop: cycles of one kind change smoothly."""
+    return motion.sticks, getattr(motion, "impacts", 0)

@@ -8,9 +8,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from stickslip.extensions.cycles.asked import CYCLE_KINDS
+from stickslip.extensions.cycles.disturbed.growth_of_pair import growth_of_pair
 from stickslip.extensions.cycles.exponent import LOST_SHARE, LyapunovExponent, MeasuredGrowth
 from stickslip.extensions.cycles.growth_along_returns import growth_of_rigid
-from stickslip.extensions.cycles.growth_of_echoes import growth_of_echoes
+from stickslip.extensions.cycles.growth_of_echoes import growth_of_echoes, tell_growth
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
@@ -42,23 +44,14 @@ class PartedRuns(Protocol):
     events: int
 
 
-def _refused(what: str) -> Callable[..., MeasuredGrowth]:
-    def refuse(*_: Any) -> MeasuredGrowth:
-        raise InputError(
-            f"lyapunov: how disturbances of a {what} grow is not followed; ss.studies.compare puts two runs side by side"
-        )
-
-    return refuse
-
-
-BY_STRUCTURE: dict[str, Callable[..., MeasuredGrowth]] = {
-    "rigid": growth_of_rigid,
-    "belt": growth_of_rigid,
-    "loop": growth_of_rigid,
-    "uniform": growth_of_echoes,
-    "layered": _refused("body of layers"),
-}
-"""How disturbances are followed, by kind of body."""
+def way_of(problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
+    """Return how disturbances of a problem are followed: by the equation for them where there is one, else by two runs."""
+    kind = problem.body.structure
+    if kind == "uniform":
+        return growth_of_echoes if tell_growth(problem, rtol) else growth_of_pair
+    if kind == "layered" or CYCLE_KINDS[kind].refusal(problem) or not problem.first_pull_rate > 0.0:
+        return growth_of_pair
+    return growth_of_rigid
 
 
 @for_users
@@ -122,7 +115,7 @@ def lyapunov(
         if special_solver_of(source) is not None:
             return LyapunovExponent(source, _of_parted_runs(source, given, skip))
         left_out = skipped_of(source.duration, skip)
-        follow = BY_STRUCTURE[source.problem.body.structure]
+        follow = way_of(source.problem, rtol)
         return LyapunovExponent(source.problem, follow(source.problem, left_out, source.duration, rtol, tell))
 
 

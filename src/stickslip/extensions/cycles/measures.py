@@ -51,10 +51,10 @@ def measures_of(orbit: FoundCycle) -> Measures:
     strength, slowest = history.problem.strength, rates[0]
     if orbit.sticks and abs(slowest) <= ROUNDING * rates[1]:
         slowest = 0.0
-    begin = Positions.inside(end.first, 0.0)
+    slipped = history.slipped_since(Positions.inside(end.first, 0.0), Positions.inside(end.piece, end.place))
     return Measures(
         period=orbit.period,
-        slip=float(history.slipped_since(begin, Positions.inside(end.piece, end.place))[0]),
+        slip=float(slipped[0]) if history.problem.first_pull_rate != 0.0 else 0.0,  # about a set point at rest, but for rounding
         greatest_rate=rates[1],
         least_rate=slowest,
         greatest_traction=strength + tractions[1],

@@ -8,7 +8,7 @@ import numpy as np
 
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.edges import CycleEdge
-from stickslip.extensions.cycles.orbit import extent_of
+from stickslip.extensions.cycles.found import kind_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.section import coordinates, passages
 from stickslip.extensions.cycles.tangent import values_at
@@ -26,7 +26,7 @@ def without_rest(path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path
         return None
     at = values_at(last.orbit.closed.history, Positions.inside(met.piece[:1], met.place[:1]))
     place = coordinates(at, at_onset=False)[:, 0]
-    other = _other(path, edge, at_onset=False)
+    other = path.cut(at_onset=False)
     along = np.eye(len(other.scales))[0]  # the load where the pull rate is passed is the largest: less of it does not graze
     for share in NEXT_TO_EDGE:
         target = other.together(place, edge.value) - share * along
@@ -43,7 +43,7 @@ def with_rest(path: Path, edge: CycleEdge, last: PlaceOnBranch, *, came_up: bool
     """Return where cycles with rest begin, at an edge where the slip rate touches 0; under laws with states none is found."""
     if last.orbit.section.problem.friction.states:
         return None
-    other = _other(path, edge, at_onset=True)
+    other = path.cut(at_onset=True)
     for share in NEXT_TO_EDGE:
         for sign in (1.0, -1.0) if came_up else (-1.0, 1.0):
             value = edge.value + sign * share * path.range
@@ -56,10 +56,19 @@ def with_rest(path: Path, edge: CycleEdge, last: PlaceOnBranch, *, came_up: bool
     return None
 
 
-def _other(path: Path, edge: CycleEdge, *, at_onset: bool) -> Path:
-    """Return the path of cycles next to an edge that are cut at the other section."""
-    extent = extent_of(edge.orbit.closed.history, at_onset, edge.orbit.closed.piece)
-    return replace(path, at_onset=at_onset, scales=np.append(extent, path.range))
+def with_other_impacts(path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
+    """Return where cycles begin that meet hard stops more or less often, at an edge where a stop is grazed; None: not found."""
+    ahead = 1.0 if last.way[-1] > 0.0 else -1.0
+    for share in NEXT_TO_EDGE:
+        for sign in (ahead, -ahead):
+            try:
+                found = path.at_value(edge.value + sign * share * path.range, last.orbit.place, last.orbit.period)
+            except NoCycleError:
+                continue
+            near = abs(found.orbit.period - edge.orbit.period) <= CLOSE_PERIOD * edge.orbit.period
+            if near and kind_of(found.orbit) != kind_of(last.orbit):
+                return path, found if found.way[-1] * sign > 0.0 else replace(found, way=-found.way)
+    return None
 
 
 def _is_next_to(edge: CycleEdge, found: PlaceOnBranch, *, at_onset: bool) -> bool:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, time_of_cycle
-from stickslip.extensions.cycles.found import FoundCycle
+from stickslip.extensions.cycles.found import FoundCycle, kind_of
 from stickslip.extensions.cycles.orbit import Orbit, extent_of
 from stickslip.extensions.cycles.section import Return, Section
 from stickslip.foundation.arrays import Floats
@@ -55,6 +55,8 @@ class Path:
     rtol: float
     scales: Floats
     """Sizes of the coordinates of the start; the last is the range of the parameter."""
+    sizes: tuple[Floats, ...] = ()
+    """Sizes of the start, from the extent of the first cycle: where it is not at an onset, and where it is."""
     joins: ClassVar[bool] = True
     """True: cycles with and without rest that meet are parts of one branch."""
     same_step: float = 1e-13
@@ -74,6 +76,17 @@ class Path:
     def range(self) -> float:
         """The range of the parameter, SI."""
         return float(self.scales[-1])
+
+    def cut(self, *, at_onset: bool) -> Path:
+        """Return the path of cycles that are cut at an onset, or that are not."""
+        if at_onset == self.at_onset:
+            return self
+        return replace(self, at_onset=at_onset, scales=np.append(self.sizes[at_onset], self.range))
+
+    def orbit_at(self, value: float, start: Floats, period: float) -> Orbit:
+        """Return the cycle with a start that is known to rounding, by one run. Raises InputError if it does not come back."""
+        now = self.section(value).returned(start, period)
+        return Orbit(now, extent_of(now.history, self.at_onset, now.piece), 1, 0.0)
 
     def together(self, place: Floats, value: float) -> Floats:
         """Return start and parameter over their scales."""
@@ -115,7 +128,7 @@ class Path:
             with np.errstate(over="ignore"):  # far from a cycle a state may overflow, which the problem refuses
                 section = self.section(value)
                 # The first return to an onset is the period, however much longer than that of the cycle before.
-                lasts = max(guess, time_of_cycle(section.problem)) if self.at_onset else guess
+                lasts = max(guess, time_of_cycle(section.problem)) if not len(place) else guess
                 now = section.returned(place, lasts, TRIES)
         except InputError as error:
             raise NoCycleError(str(error)) from None
@@ -145,12 +158,12 @@ class Path:
         raise NoCycleError("follow: no run beside this one is of its kind")
 
     def _nudged(self, now: Return, place: Floats, value: float) -> Floats | None:
-        """Return the end of a run at a value next to another; None if it does not return, or rests as that does not."""
+        """Return the end of a run at a value next to another; None if it does not return, or is of another kind."""
         try:
             found = self.section(value).returned(place, now.time, TRIES)
         except InputError:
             return None
-        return found.end if found.sticks == now.sticks else None
+        return found.end if kind_of(found) == kind_of(now) else None
 
     def at(self, target: Floats, way: Floats, guess: float) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError."""
@@ -179,8 +192,14 @@ class Path:
         """Return None: where cycles with rest end is found by bisection (`edges.loss_of_stick`)."""
         return None
 
+    def rest_begun(self, edge: Any) -> Any:
+        """Return None: where cycles with rest begin is found by `meeting.with_rest`."""
+        return None
+
 
 def path_of(orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: float) -> Path:
     """Return the path of a cycle, with its extent as the scale of its start."""
+    closed = orbit.closed
     scales: Any = np.append(orbit.extent, span)
-    return Path(scenario, parameter, orbit.section.at_onset, orbit.section.rtol, scales)
+    sizes = tuple(extent_of(closed.history, at_onset=one, last=closed.piece) for one in (False, True))
+    return Path(scenario, parameter, orbit.section.at_onset, orbit.section.rtol, scales, sizes)

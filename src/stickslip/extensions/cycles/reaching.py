@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed
+from stickslip.extensions.cycles.found import kind_of
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.foundation.conversion import WithUnit
@@ -65,7 +66,7 @@ def at_end_of_range(path: Path, now: PlaceOnBranch, step: float, ends: Sequence[
         last = path.at_value(end, guess, now.orbit.period, now.way)
     except NoCycleError:
         return None
-    return last if last.orbit.sticks == now.orbit.sticks and last.way @ now.way >= STRAIGHT else None
+    return last if kind_of(last.orbit) == kind_of(now.orbit) and last.way @ now.way >= STRAIGHT else None
 
 
 def between(path: Path, now: PlaceOnBranch, new: PlaceOnBranch, ends: Sequence[float]) -> PlaceOnBranch | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -15,9 +14,7 @@ from stickslip.extensions.cycles.branch import BranchOfCycles, PointOnBranch
 from stickslip.extensions.cycles.edges import GRAZING, HALVING, MEANING, NOT_FOUND, STEADY_END, CycleEdge
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.measures import Measures
-from stickslip.extensions.cycles.orbit import Orbit, extent_of
 from stickslip.extensions.cycles.path import Path, PlaceOnBranch
-from stickslip.extensions.cycles.section import Section
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem.scenarios import ParameterPath
@@ -34,13 +31,13 @@ BESIDE_EDGE = (-1e-11, 1e-11, -1e-9, 1e-9)
 
 def check_can_be_kept(cycle: LimitCycle, *, double: bool, resume: bool) -> None:
     """Refuse what needs the start of a cycle in a few numbers where that is a wave. Raises InputError."""
-    if (double or resume) and not isinstance(cycle.orbit, Orbit):
+    if (double or resume) and not cycle.orbit.is_kept:
         what = "double: cycles of twice the period are followed" if double else "resume: a branch goes on"
         raise InputError(f"follow: {what} for rigid bodies only, and this is a body of waves: leave it out")
 
 
 def points_to_go_on(
-    earlier: BranchOfCycles | str | os.PathLike[str], cycle: LimitCycle, parameter: ParameterPath, begin: float
+    earlier: BranchOfCycles | str | os.PathLike[str], cycle: LimitCycle, parameter: ParameterPath, ends: tuple[float, float]
 ) -> list[PointOnBranch]:
     """Return the cycles of an earlier branch, up to the last one that is no edge unless nothing is behind an edge.
 
@@ -55,6 +52,7 @@ def points_to_go_on(
         raise InputError(f"{where}: holds a branch along {name}, not along {parameter.name}")
     if not points:
         raise InputError(f"{where}: holds no cycle: leave out resume")
+    begin, last = ends[0], points[-1].value
     same_value = abs(points[0].value - begin) <= SAME_CYCLE * max(abs(begin), abs(points[0].value))
     if not same_value or abs(points[0].measures.period - cycle.period) > SAME_CYCLE * cycle.period:
         found, wanted = (
@@ -62,6 +60,9 @@ def points_to_go_on(
             for value, period in ((points[0].value, points[0].measures.period), (begin, cycle.period))
         )
         raise InputError(f"{where}: begins at {parameter.name} = {found}, and this cycle is at {wanted}: it is another branch")
+    if not min(ends) <= last <= max(ends):
+        at, given = (brief(one, parameter.unit) for one in (last, ends[1]))
+        raise InputError(f"{where}: has come to {parameter.name} = {at}, beyond to = {given}: give one that is farther")
     while points[-1].edge and points[-1].edge not in NOTHING_BEHIND:
         points.pop()
     return points
@@ -82,7 +83,7 @@ def _read(path: FilePath, where: str, parameter: ParameterPath) -> tuple[str, li
         raise InputError(f"{where}: cannot be read: give the table (.csv) of a branch") from None
     except (ValueError, pd.errors.ParserError):
         raise InputError(f"{where}: is no table of a branch") from None
-    if missing := [one for one in (*Measures._fields, "edge", "part", "doubled") if one not in table]:
+    if missing := [one for one in (*Measures._fields, "edge", "part", "doubled", "ahead") if one not in table]:
         raise InputError(f"{where}: is no table of a branch that can go on: it has no column {missing[0]!r}")
     name = str(table.columns[0])
     try:
@@ -98,10 +99,13 @@ def _point(row: dict[Any, Any], name: str) -> PointOnBranch:
     sizes = _numbered(row, "multiplier_{}"), _numbered(row, "multiplier_{}_imaginary")
     multipliers: Any = sizes[0] if not np.any(sizes[1]) else sizes[0] + 1j * sizes[1]
     measures = Measures(*(float(row[one]) for one in Measures._fields))
-    start = _numbered(row, "start_{}")
-    return PointOnBranch(
-        float(row[name]), measures, multipliers, measures.stick_share > 0.0, edge, int(row["part"]), int(row["doubled"]), start
-    )
+    start, ahead = _numbered(row, "start_{}"), np.append(_numbered(row, "ahead_{}"), float(row["ahead"]))
+    if edge:
+        ahead = np.zeros(0)
+    elif len(ahead) != len(start) + 1 or not 0.0 < np.abs(ahead).max() < np.inf:
+        raise ValueError(ahead)
+    parts = int(row["part"]), int(row["doubled"])
+    return PointOnBranch(float(row[name]), measures, multipliers, measures.stick_share > 0.0, edge, *parts, start, ahead)
 
 
 def _numbered(row: dict[Any, Any], name: str) -> Any:
@@ -117,33 +121,26 @@ def _numbered(row: dict[Any, Any], name: str) -> Any:
     return np.array(found)
 
 
-def orbit_of(point: PointOnBranch, cycle: LimitCycle, parameter: ParameterPath) -> Orbit:
-    """Return the cycle of a place on a branch, by a run of one period. Raises InputError if it does not come back."""
-    problem = cycle.scenario.problem.parameters[parameter.name].put(point.value)
-    at_onset = not len(point.start)
-    now = Section(problem, at_onset, cycle.orbit.section.rtol).returned(point.start, point.measures.period)
-    return Orbit(now, extent_of(now.history, at_onset, now.piece), 1, 0.0)
-
-
-def edge_of(point: PointOnBranch, cycle: LimitCycle, parameter: ParameterPath) -> CycleEdge:
+def edge_of(point: PointOnBranch, path: Path) -> CycleEdge:
     """Return the edge at a place on a branch, with the cycle there or, where it just ceased to be, next to it.
 
     Raises InputError.
     """
     for share in (0.0, *BESIDE_EDGE):
         with suppress(InputError):
-            beside = point._replace(value=point.value * (1.0 + share))
-            return CycleEdge(point.edge, point.value, orbit_of(beside, cycle, parameter))
-    raise InputError(f"follow: resume: the cycle at {parameter.name} = {brief(point.value, parameter.unit)} does not come back")
+            orbit = path.orbit_at(point.value * (1.0 + share), point.start, point.measures.period)
+            return CycleEdge(point.edge, point.value, orbit)
+    at = f"{path.parameter.name} = {brief(point.value, path.parameter.unit)}"
+    raise InputError(f"follow: resume: the cycle at {at} does not come back")
 
 
-def place_to_go_on(path: Path, start: PlaceOnBranch, points: list[PointOnBranch]) -> PlaceOnBranch:
-    """Return the last of some cycles on a path, with the way that leads on; `start` is the first cycle. Raises NoCycleError."""
-    *others, last = points
-    before = [one for one in others if not one.edge and one.part == last.part and one.at_onset == last.at_onset]
-    way = np.append(np.zeros(len(last.start)), np.sign(start.way[-1]))
-    if before:
-        way = path.together(last.start, last.value) - path.together(before[-1].start, before[-1].value)
-    way /= np.linalg.norm(way)
-    found = path.at(path.together(last.start, last.value), way, last.measures.period)
-    return found if found.way @ way > 0.0 else replace(found, way=-found.way)
+def step_to_go_on(path: Path, last: PointOnBranch) -> tuple[Path, PlaceOnBranch, float]:
+    """Return the path and the place of the last cycle of a branch, with its way on, and the length (1) of the next step.
+
+    Raises InputError if the cycle does not come back.
+    """
+    here = path.cut(at_onset=last.at_onset)
+    ahead = last.ahead / here.scales
+    length = float(np.linalg.norm(ahead))
+    orbit = here.orbit_at(last.value, last.start, last.measures.period)
+    return here, PlaceOnBranch(last.value, orbit, ahead / length), length

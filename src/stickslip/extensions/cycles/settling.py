@@ -1,4 +1,4 @@
-"""Let a run settle under a law with states, part by part, and look for the stable cycle next to it as soon as it comes back."""
+"""Let a run settle under a law with states, and look for the stable cycle to which it leads as soon as it comes nearer to one."""
 
 from __future__ import annotations
 
@@ -6,58 +6,81 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.limit_cycle import is_stable
-from stickslip.extensions.cycles.orbit import Orbit, closed, meetings, places_of
-from stickslip.extensions.cycles.section import Crossings, Section, coordinates, passages
+from stickslip.extensions.cycles.near import NEAR_THE_RUN, Leads, meetings
+from stickslip.extensions.cycles.newton import closed_beyond
+from stickslip.extensions.cycles.orbit import Orbit
+from stickslip.extensions.cycles.section import Crossings, Section, coordinates, passages, places_of
+from stickslip.extensions.cycles.short_runs import ROUGH, advanced, begun
 from stickslip.extensions.cycles.tangent import values_at
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
-from stickslip.problem import Problem
-from stickslip.run import TextProgress, uninterrupted
-from stickslip.run.simulate import simulate
+from stickslip.problem import Problem, Stop
+from stickslip.run import TextProgress
 from stickslip.run.study import MAX_PIECES
 
-PARTS = 4
-"""Largest number of parts of the run (1); each lasts twice as long as the one before it."""
-NEARLY_CLOSES = 0.03
-"""From this close (1, share of its extent) Newton's iteration is tried."""
-NEAR_THE_RUN = 0.25
-"""A cycle is that to which a run settles if it is no farther (1, share of its extent) from the end of the run."""
+SHARE_OF_FIRST, MOST_LOOKS = 0.5, 30
+"""A run is looked at each time it has gone on for this share (1) of the time of its first part, at most so often."""
+NEARLY_CLOSES, SURELY_CLOSES = 0.03, 1e-3
+"""A run that comes back this close (1, share of its extent) is taken to close there; with the second it need not come nearer."""
+MOST_STEPS = 4.0
+"""The cycle to which a run leads is no farther from there than a share of the extent, or than so many of its last steps (1)."""
+PASSES_BETWEEN = 16
+"""Number of passes of the engine's loop (1) between which the time of a run is looked at."""
 
 
 def settled(problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> Orbit | None:
-    """Return the stable cycle to which a run of a rigid body under a law with states settles, as soon as it has.
+    """Return the stable cycle to which a run of a rigid body under a law with states settles, as soon as it comes nearer.
 
-    The run is made in parts, each from the last passage of the one before it, until two passages in it are close to each other, and
-    Newton's iteration leads from there to a stable cycle next to the run. `times` (s) are that before the motion begins, and that
-    of the first part behind it. None is returned under other laws, and if the run takes long.
+    The run only has to lead there, so that it is rough. `times` (s) are that before the motion begins, and that of a first part
+    behind it. None is returned under other laws, and if the run takes long.
     """
     if not problem.friction.states:
         return None
-    section, start, (wait, lasts) = Section(problem, at_onset=False, rtol=rtol), problem, times
-    for _ in range(PARTS):
-        run = uninterrupted(simulate(start, wait + lasts, rtol, max_pieces=MAX_PIECES))
-        if not run.status.ok:
+    section, (wait, lasts) = Section(problem, at_onset=False, rtol=rtol), times
+    step = SHARE_OF_FIRST * lasts
+    run = begun(problem, wait + MOST_LOOKS * step, max(rtol, ROUGH), MAX_PIECES)
+    seen = 0
+    for look in range(1, MOST_LOOKS + 1):
+        code = None
+        while code is None and run.time < wait + look * step:
+            code = advanced(run, PASSES_BETWEEN)
+        if code not in (None, Stop.FINISHED):
             return None
-        tell(f"run of {brief(wait + lasts, 's')}")
-        met, lasts = passages(run.history), 2.0 * lasts
-        found = _closed(section, run.history, met) if len(met.time) > 2 else None
-        if found is not None and is_stable(found.multipliers):
-            return found
-        if len(met.time):
-            start, wait = section.start_at(places_of(run.history, met)[:, -1]), 0.0
+        tell(f"run of {brief(run.time, 's')}")
+        history = run.history()
+        met = passages(history)
+        if len(met.time) > max(2, seen):
+            seen = len(met.time)
+            found = _closed(section, history, met)
+            if found is not None:
+                return found
+        if code is not None:
+            return None
     return None
 
 
 def _closed(section: Section, history: History, met: Crossings) -> Orbit | None:
-    """Return the cycle next to the last passages of a run, if these are close to each other; None if none is near."""
+    """Return the stable cycle next to where the last passages of a run lead; None if they lead nowhere, or none is there."""
     places, last = places_of(history, met), int(met.piece[-1])
     pieces = np.repeat(np.arange(int(met.piece[-3]), last + 1), 2)
     extent = np.ptp(coordinates(values_at(history, Positions.inside(pieces, np.tile([0.0, 1.0], len(pieces) // 2))), False), axis=1)
-    every = meetings(places, extent, NEARLY_CLOSES)
-    if not every:
+    leads = Leads(section, places, met.time, extent, meetings(places, extent, NEARLY_CLOSES) or 1)
+    if not (leads.last_share <= SURELY_CLOSES or (leads.is_regular and _comes_nearer(places[:, :: -leads.every], extent))):
         return None
     try:
-        found = closed(section, places[:, -1], float(met.time[-1] - met.time[-1 - every]))
+        now = leads.at_limit() or leads.at_last()
+        if not is_stable(np.linalg.eigvals(now.about)):
+            return None
+        found, near = closed_beyond(section, now, leads.period, leads.misses), now.start
     except InputError:
         return None
-    return found if np.all(np.abs(found.place - places[:, -1]) <= NEAR_THE_RUN * found.extent) else None
+    steps = np.abs(places[:, -1] - places[:, -2])
+    is_near = bool(np.all(np.abs(found.place - near) <= np.maximum(NEAR_THE_RUN * found.extent, MOST_STEPS * steps)))
+    return found if is_near and is_stable(found.multipliers) else None
+
+
+def _comes_nearer(backwards: Floats, extent: Floats) -> bool:
+    """Return True if the last step of a sequence, which comes first, is shorter than the one before it, in load and all states."""
+    steps = np.abs(np.diff(backwards[:, :3], axis=1)) / extent[:, None]
+    return steps.shape[1] == 2 and bool(np.all(steps[:, 0] < steps[:, 1]))

@@ -4,9 +4,10 @@ The state is load L, slip rate v, and the states w of the law. Under a steady pu
 
     dL/dt = K (V - v)      m dv/dt = L - c v - d S mu(|v|, w)      dw/dt = f(|v|, w)
 
-and at rest v = 0. A disturbance obeys the derivative of this, which Radau's method solves on each piece of the history: a fast
-motion that has long faded takes no short steps. At an event with the condition n y = const a disturbance is multiplied by
-I + (f+ - f-) n / (n f-), where f- and f+ are dy/dt before and after it. All of it is machine code (`compiled`).
+and at rest v = 0. In a position loop, at hard stops and in a play the lag e behind the reference matters, too (`lag`), and dL/dt
+has ki e more in a loop and no K in a play. A disturbance obeys the derivative of this, which Radau's method solves on each piece
+of the history: a fast motion that has long faded takes no short steps. At an event with the condition n y = const a disturbance is
+multiplied by I + (f+ - f-) n / (n f-), where f- and f+ are dy/dt before and after it (`events`). All of it is machine code.
 
 Source: di Bernardo et al. 2008, Piecewise-smooth Dynamical Systems, section 2.5, for the factor at events.
 """
@@ -23,13 +24,14 @@ from stickslip.engine import CompiledFormula, History, Positions, compile_formul
 from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, LOAD_ROW, RATE_ROW, RunNumbers, pace_in_piece
 from stickslip.extensions.cycles.compiled.disturbances import grow
 from stickslip.extensions.cycles.compiled.places import write_values
+from stickslip.extensions.cycles.lag import has_lag, is_wound, lags_at, lags_of
 from stickslip.foundation.arrays import Floats, Floats1, Integers1
 from stickslip.foundation.kernels.uncompiled import lend_memory
 from stickslip.friction import FrictionLaw
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_on_spring
 
-__all__ = ["FIRST_STATE_ROW", "RATE_ROW", "RigidMotion", "Tangent", "pace_at", "values_at"]
+__all__ = ["FIRST_STATE_ROW", "LOAD_ROW", "RATE_ROW", "RigidMotion", "Tangent", "pace_at", "values_at"]
 
 
 class LawNumbers(NamedTuple):
@@ -74,22 +76,24 @@ class RigidMotion:
 
     @property
     def size(self) -> int:
-        """The number of load, slip rate and states."""
-        return FIRST_STATE_ROW + len(self.problem.friction.states)
+        """The number of load, slip rate, states, and lag if it matters."""
+        return FIRST_STATE_ROW + len(self.problem.friction.states) + has_lag(self.problem)
 
     def along(self, history: History) -> RunNumbers:
         """Return the equation and a run that obeys it, for compiled code."""
         problem, body, law = self.problem, as_on_spring(self.problem.body), numbers_of_law(self.problem.friction)
         spring = body.stiffness, body.total_damping, body.inertia, problem.normal, problem.first_pull_rate
-        return RunNumbers(*history.store, *spring, law.calls, law.constants, law.reverses, law.sticks, law.has_knots)
+        held = lags_of(history), body.integral_gain, 0.5 * body.backlash, body.stop_ahead, -body.stop_behind, body.restitution
+        return RunNumbers(*history.store, *spring, law.calls, law.constants, law.reverses, law.sticks, law.has_knots, *held)
 
 
 def values_at(history: History, at: Positions) -> Floats:
-    """Return load, slip rate and states at positions inside recorded pieces, each in a row."""
-    found = np.empty((RigidMotion(history.problem).size, len(at.piece)))
+    """Return load, slip rate and states at positions inside recorded pieces, each in a row, and the lag if a loop integrates it."""
+    problem = history.problem
+    found = np.empty((FIRST_STATE_ROW + len(problem.friction.states), len(at.piece)))
     write_values(*history.store, np.ascontiguousarray(at.piece), np.ascontiguousarray(at.xi), found)
-    found[LOAD_ROW] += history.problem.strength
-    return found
+    found[LOAD_ROW] += problem.strength
+    return np.vstack([found, lags_at(history, at)]) if is_wound(problem) else found
 
 
 def pace_at(history: History, piece: int, place: float) -> Floats:

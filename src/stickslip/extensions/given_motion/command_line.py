@@ -28,8 +28,7 @@ class MotionKindOfRun(KindOfRun):
         others = {name: value for name, value in request.typed.items() if name != TAKEN} | {"--energy": request.energy or None}
         if needless := [name for name, value in others.items() if value is not None]:
             raise InputError(f"run: a run along a given [motion] has no {needless[0]}: leave it out")
-        if wrong := [option for option in request.pictures.wanted if option != "--figure"]:
-            raise InputError(f"run: a run along a given [motion] has --figure: leave out {', '.join(wrong)}")
+        request.pictures.check_only("run", "a run along a given [motion] has --figure", "--figure")
 
     @override
     def run(self, request: Request) -> PlainRun:

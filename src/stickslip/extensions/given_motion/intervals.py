@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stickslip.extensions.given_motion.compiled import along_motion as at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction import FrictionLaw
 from stickslip.problem import LoadingHistory
 
 Places = NDArray[np.int64]

@@ -15,7 +15,7 @@ from stickslip.extensions.given_motion.intervals import MotionInIntervals, Place
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.kernels.uncompiled import lend_memory
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction import FrictionLaw
 
 AT_ONCE = 20_000
 """Largest number of steps that are taken at once, without looking at the run."""

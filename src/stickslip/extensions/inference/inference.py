@@ -32,7 +32,7 @@ from stickslip.foundation.given import PLACE, preferred
 from stickslip.foundation.netcdf_file import write
 from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction import FrictionLaw
 from stickslip.problem.scenarios import Scenario
 from stickslip.run import TextProgress, telling
 from stickslip.solution.files import origin

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from stickslip.contact import uniqueness_of
 from stickslip.extensions.paper import planar, rate_law_report
 from stickslip.extensions.paper.cases import Runs, problem, typed
-from stickslip.figures.contact import resistance, systems
-from stickslip.figures.runs import comparison
+from stickslip.extensions.paper.figures import comparison, resistance, systems
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing_extensions import override
 from stickslip.cli.kinds import KindOfRun, check_same
 from stickslip.cli.output.files import drawing, write_files
 from stickslip.cli.output.pictures import Pictures, animated
-from stickslip.cli.results import RunResults
+from stickslip.cli.results import RunToShow
 from stickslip.extensions.planar.summary import announce_run, show_run
 from stickslip.extensions.planar.table import planar_slab_of
 from stickslip.foundation.errors import InputError
@@ -21,26 +21,18 @@ from stickslip.run import progress_line
 if TYPE_CHECKING:
     from stickslip.cli.request import Request
     from stickslip.extensions.planar.solution import PlanarSolution
-    from stickslip.problem import Status
-    from stickslip.problem.scenarios import Scenario
 
 DRAWN: Sequence[str] = ("--figure", "--animation")
 """The pictures that these runs have."""
 
 
 @dataclass(frozen=True)
-class PlanarResults(RunResults):
+class PlanarResults(RunToShow):
     """A run of a contact of many nodes."""
 
-    scenario: Scenario
     solution: PlanarSolution
     is_fresh: bool = False
     """True if its size has been said before the run."""
-
-    @property
-    @override
-    def status(self) -> Status:
-        return self.solution.status
 
     @override
     def check(self, pictures: Pictures, where: str) -> None:
@@ -57,16 +49,10 @@ class PlanarResults(RunResults):
         figure = drawing(self.solution.plot, pictures.look)
         return write_files((pictures.figure, figure), (pictures.animation, lambda target: animated(self.solution, target)))
 
-    @override
-    def to_csv(self, path: Path) -> Path:
-        """Write the motion of the node in the middle at the frames, and return the path."""
-        return self.solution.to_csv(path)
-
 
 def check_pictures(pictures: Pictures, where: str) -> None:
     """Refuse figures that a contact of many nodes does not have. Raises InputError."""
-    if others := [option for option in pictures.wanted if option not in DRAWN]:
-        raise InputError(f"{where}: a [contact] of many nodes has --figure and --animation: leave out {', '.join(others)}")
+    pictures.check_only(where, f"a [contact] of many nodes has {' and '.join(DRAWN)}", *DRAWN)
 
 
 class PlanarKindOfRun(KindOfRun):

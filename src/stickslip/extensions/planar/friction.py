@@ -13,8 +13,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from stickslip.extensions.planar.nodes import NodeValues
+from stickslip.friction import FrictionLaw
 from stickslip.friction.formula import LARGEST_EXPONENT, STATES, VARIABLES, Expression, limited, nodes_of, operation_of
-from stickslip.friction.law import FrictionLaw
 
 ITERATIONS = 80
 """Largest number of steps of Newton's method or bisection; from the slip rate of the step before it takes two to four."""

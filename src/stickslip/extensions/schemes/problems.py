@@ -11,8 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from stickslip.extensions.schemes.benchmark_kinds import Benchmark
-from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
-from stickslip.friction.laws.of_rate import Coulomb
+from stickslip.friction import Coulomb, HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
 from stickslip.problem import PiecewiseLinear, Problem
 from stickslip.problem.bodies import ElasticSlab
 from stickslip.problem.scenarios import Scenario, load_scenario

@@ -20,8 +20,8 @@ from stickslip.extensions.schemes.sbp import SummationByParts
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.law import FrictionLaw
-from stickslip.problem import Problem, features
+from stickslip.friction import FrictionLaw
+from stickslip.problem import Problem, driver_of, features
 from stickslip.problem.bodies import ElasticSlab, as_slab
 
 _ALL: tuple[Scheme, ...] = (
@@ -196,14 +196,14 @@ def check_suitable(problem: Problem) -> None:
 
 def _far_rate(problem: Problem) -> float:
     """Return the rate of change of the far stress (Pa/s), as far as it is felt."""
-    return 0.0 if "far_stress_rate" in features.unfelt(problem) else problem.far_stress_rate
+    return 0.0 if "far_stress_rate" in driver_of(problem).unfelt else problem.far_stress_rate
 
 
 def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Grid:
     """Return the grid of a run of some duration (s). Raises InputError if it has too few or too many cells."""
     check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
     slab = _slab_of(problem)
-    given = None if "far_stress" in features.unfelt(problem) else problem.far_stress
+    given = None if "far_stress" in driver_of(problem).unfelt else problem.far_stress
     far = problem.load if given is None else float(given)  # type: ignore[arg-type] # constant here
     return Grid(
         cells=cells,

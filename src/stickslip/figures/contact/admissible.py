@@ -13,10 +13,23 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import FuncFormatter
 
 from stickslip.contact import Uniqueness, resistance, uniqueness_of
-from stickslip.figures.contact.resistance import BRANCHES, draw_branches
 from stickslip.figures.panels import finish
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import GREEN, GREY, INK, curve_label, curve_quantity, label, quantity, styled, title_of, unit_shown
+from stickslip.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    PURPLE,
+    VERMILLION,
+    curve_label,
+    curve_quantity,
+    label,
+    quantity,
+    styled,
+    title_of,
+    unit_shown,
+)
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import readable_unit
@@ -28,6 +41,8 @@ if TYPE_CHECKING:
 
     from stickslip.solution import Solution
 
+BRANCHES = {1: ("slip, stable", BLUE, "-"), -1: ("slip, unstable", VERMILLION, "--"), 0: ("slip, continuum", PURPLE, "-")}
+"""Legend, colour and line style of the parts of the curve: 1 stable, -1 unstable, 0 a continuum of solutions."""
 _POINTS = 1201
 """Evaluate the curve at this many slip rates."""
 _ROOM = 1.25
@@ -193,6 +208,17 @@ def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, scales: _Scales) -> No
     look: dict[str, Any] = {"linewidth": 3.0} if sign > 0 else {"linewidth": 3.0, "label": None}
     axes.plot([0.0, 0.0], stick, **{"color": GREY, "label": "stick"} | look)
     draw_branches(axes, sign * scales.rates(rate), scales.height(excess, sign), kind, **look)
+
+
+def draw_branches(axes: Axes, rate: Floats, load: Floats, kind: Any, **look: Any) -> None:
+    """Draw the stable, unstable and flat parts of a curve, told apart by `kind`; `look` replaces colours, widths and labels."""
+    for which, (name, colour, style) in BRANCHES.items():
+        chosen = kind == which
+        if not chosen.any():
+            continue
+        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
+            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
+        axes.plot(rate, np.where(chosen, load, np.nan), **{"color": colour, "linestyle": style, "label": name} | look)
 
 
 def _draw_sets(axes: Axes, dataset: xr.Dataset, sign: int, scales: _Scales) -> None:

@@ -12,6 +12,8 @@ from stickslip.problem.bodies import BodyOnCharacteristics, as_waves
 class DrawnKind:
     """What is asked of a kind of body, with the answers of a uniform one with waves."""
 
+    has_inside: ClassVar[bool] = True
+    """True if waves run in it, so that there is something to draw inside."""
     coarser: ClassVar[int] = 1
     """By this factor an image of the inside has fewer cells, where the waves are replayed, which takes longer."""
 

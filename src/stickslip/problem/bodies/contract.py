@@ -226,9 +226,11 @@ class BodyOnCharacteristics(Body, Protocol):
         """True if there is ground under the contact, which may move: not if two sides slip on each other."""
         ...
 
-    @property
-    def has_belt(self) -> bool:
-        """True if the ground is a belt, whose velocity is the pull rate, and the far end of the spring is at rest."""
+    def belt_as_ground(self, pull: Any, given: str) -> Any:
+        """Return the `Ground` that a belt is, whose velocity is the pull rate; None without a belt, or if it runs steadily.
+
+        `given` is the field with another motion of the ground, "" for none. Raises InputError where a belt cannot have that.
+        """
         ...
 
     takes_force: ClassVar[bool]
@@ -326,7 +328,6 @@ def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with wave
 class WithNormalLoad:
     """The normal load of a body whose field for it has the usual name, and no belt under it: a base for bodies."""
 
-    has_belt: ClassVar[bool] = False
     has_stops: bool = False
     has_play: bool = False
 
@@ -343,6 +344,10 @@ class WithNormalLoad:
         """The normal load S on the contact, compression positive (Pa, N or N m)."""
         found: float = getattr(self, self.normal_field)
         return found
+
+    def belt_as_ground(self, pull: Any, given: str) -> Any:
+        """Return None: there is no belt."""
+        return None
 
 
 class WithOneDriver(WithNormalLoad):

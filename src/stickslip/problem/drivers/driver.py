@@ -42,6 +42,8 @@ class Driver(ABC):
 
     moves: ClassVar[bool] = False
     """True if it has a motion of its own, which the engine follows."""
+    unfelt: ClassVar[tuple[str, ...]] = ("far_stress", "far_stress_rate", "driver_inertia", "driver_integral_gain")
+    """The fields, of a problem and of its body, that it does not feel: only a driver of finite impedance feels these."""
     missing_for_creep: ClassVar[str] = ""
     """What a body with waves lacks for creep that is alike from round trip to round trip: echoes that come back whole."""
     missing_for_leaps: ClassVar[str] = ""

@@ -19,6 +19,7 @@ from stickslip.problem.problem import Problem
 class LossyDriver(Driver):
     """What a driver of finite impedance Zd answers: it sends (1 + r) (Zd V + far stress)."""
 
+    unfelt: ClassVar[tuple[str, ...]] = ()
     missing_for_creep: ClassVar[str] = "a rigid driver (no driver_impedance)"
 
     def impedance(self, body: BodyOnCharacteristics) -> DriverImpedance:

@@ -79,9 +79,9 @@ def _points_in(text: str, columns: Mapping[str, str], file: str, named: NamedCol
         raise InputError(f"{table.at(-1)}: at least two rows of numbers are needed, got {count}")
     table.check_ascending(found[0])
     points = {columns[column]: numbers.tolist() for column, numbers in table.warned().columns.items()}
-    unit = find(table.header, (value,), file)[value].unit
-    if unit is not None:
-        points[columns[value]] = column_given(points[columns[value]], unit, KNOWN_COLUMNS[value].unit)
+    for column, one in find(table.header, (found[0], value), file).items():
+        if one.unit is not None:
+            points[columns[column]] = column_given(points[columns[column]], one.unit, KNOWN_COLUMNS[column].unit)
     return points
 
 

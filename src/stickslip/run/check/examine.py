@@ -34,7 +34,7 @@ from stickslip.problem import (
     Problem,
     automatic_length,
     creep_tolerance,
-    features,
+    driver_of,
     leaps_over,
     lumps_by_itself,
     normal_name,
@@ -120,7 +120,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
             if value == STEADY:
                 value = problem.rate if name == "rate" else problem.given_states[STATE_NAMES.index(name)]
             off = owner is scenario and value == 0.0  # an option of a run
-            unfelt = owner is problem and name in features.unfelt(problem)
+            unfelt = owner is problem and name in driver_of(problem).unfelt
             if value is not None and not (off or unfelt):
                 facts[table] += _facts(name, value, declared)
     facts["run"] += _automatic(scenario)

@@ -16,6 +16,7 @@ from stickslip.engine import (
     ARRAYS,
     NO_LEAPS,
     SHOCK_COLUMNS,
+    TERMS,
     Checkpoint,
     History,
     HistoryPiece,
@@ -26,7 +27,6 @@ from stickslip.engine import (
     rule_in_force,
     shock_columns,
 )
-from stickslip.engine.state import layout as at
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.constants import PAPER
@@ -322,7 +322,7 @@ def _solution(tables: Tables, path: Path) -> Solution:
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     scenario = read_scenario(attributes["scenario"], str(path))
     columns = {name: tables.array(f"history_{name}") for name in HISTORY_AXES}
-    state = tables.array("history_state") if "history_state" in has else np.empty((0, 0, at.TERMS))
+    state = tables.array("history_state") if "history_state" in has else np.empty((0, 0, TERMS))
     if state.ndim == 2:  # a file from before laws of two states
         state = state[:, None]
     asked = number(attributes, "asked_duration" if "asked_duration" in attributes else "duration", path)  # older files: asked alone

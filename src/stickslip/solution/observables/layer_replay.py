@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.engine.waves.interface import cross
+from stickslip.engine import cross
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.kernels.kernels import entry, kernel

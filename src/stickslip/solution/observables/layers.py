@@ -15,9 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.engine import Floats, History, Integers, LadderCell, Positions
+from stickslip.engine import Floats, History, Integers, LadderCell, Positions, crossed
 from stickslip.engine.input import ladder_of, sides_of
-from stickslip.engine.waves.interface import crossed
 from stickslip.foundation.constants import RIGID
 from stickslip.problem import inflow_of
 from stickslip.problem.bodies import OfLayers

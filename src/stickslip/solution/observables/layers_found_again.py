@@ -71,12 +71,6 @@ def _load(
     """Return the load minus the reference (Pa) from the first cell of each side and all waves; `times` as for `of_ground`."""
     problem, rate, (starts, rows) = history.problem, history.rate(at), waves
     velocity, acceleration = of_ground(problem, *times)
-    impedances, impedance = [one.cell_impedances[0] for one in body.stacks], body.impedance
-    if len(impedances) == 1 or body.is_joined:
-        load = np.zeros(len(rate))
-        for z, cell in zip(impedances, starts[:-1], strict=True):
-            load += 2.0 * z * (rate + velocity) - rows[:, cell]
-    else:
-        near, far = impedances
-        load = 2.0 * impedance * rate - (far * rows[:, starts[0]] + near * rows[:, starts[1]]) / (near + far)
-    return np.asarray(load - impedance * velocity - body.inertia * acceleration)
+    share = body.sides_together.slipping([one.cell_impedances[0] for one in body.stacks])  # of each wave, as of slow slip
+    load = 2.0 * body.impedance * (rate + velocity) - rows[:, starts[:-1]] @ np.array(share)
+    return np.asarray(load - body.impedance * velocity - body.inertia * acceleration)

@@ -47,13 +47,13 @@ def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
     assert again.read_bytes() == (tmp_path / "run.nc").read_bytes()
 
 
-def test_arrays_make_the_same_file_as_their_dataset(tmp_path: Path) -> None:
-    """xarray writes netCDF independently; solutions are written without it, because its import takes long."""
+def test_arrays_make_the_file_of_their_dataset(tmp_path: Path) -> None:
+    """xarray and h5netcdf write netCDF independently; solutions are written without them, because that takes long."""
     variables = {
         "time": Variable(("time",), np.linspace(0.0, 1.0, 5), {"units": "s"}),
         "slip": Variable(("time", "piece"), np.array([[np.nan, 1.5]] * 5), {"units": "m", "long_name": "slip, µ"}),
         "pieces": Variable(("piece",), np.arange(2), {}),
-        "cause": Variable(("shock",), np.array(["start", "écho", ""]), {"units": ""}),
+        "cause": Variable(("shock",), np.array(["start", "écho", ""]), {"units": "", "of": ["a", "wave"]}),
         "none": Variable(("no_shock",), np.empty(0), {"units": "Pa"}),
         "words": Variable(("no_shock",), np.array([], dtype=str), {}),
         "reached": Variable((), 12.0, {"units": "s"}),
@@ -61,7 +61,27 @@ def test_arrays_make_the_same_file_as_their_dataset(tmp_path: Path) -> None:
     attributes = {"title": "a run", "status_ok": 1, "rtol": 1e-10}
     ours = write_variables(variables, attributes, tmp_path / "ours.nc")
     other = write(xr.Dataset({name: tuple(one) for name, one in variables.items()}, attrs=attributes), tmp_path / "other.nc")
-    assert ours.read_bytes() == other.read_bytes()
+    xr.testing.assert_identical(*(xr.load_dataset(path, engine="h5netcdf") for path in (ours, other)))
+    assert stored(ours) == stored(other)
+
+
+PLACES = ("_NCProperties", "_Netcdf4Coordinates", "_Netcdf4Dimid", "DIMENSION_LIST", "REFERENCE_LIST")
+"""Who wrote the file; addresses of dimensions, `stored` follows them, and what a reader may know without a look at them."""
+
+
+def stored(path: Path) -> dict[str, object]:
+    """Return for each table in the file, in its order, the type, the shape, how far it may grow, its dimensions and attributes."""
+
+    def about(attributes: h5py.AttributeManager) -> dict[str, str]:
+        return {name: repr((value, attributes.get_id(name).dtype)) for name, value in attributes.items() if name not in PLACES}
+
+    with h5py.File(path) as file:
+        scales = {name: one.attrs["_Netcdf4Dimid"] for name, one in file.items() if one.is_scale}
+        tables = {
+            name: (one.dtype.str, one.shape, one.maxshape, [axis.keys() for axis in one.dims if len(axis)], about(one.attrs))
+            for name, one in file.items()
+        }
+        return {"scales": sorted(scales, key=scales.__getitem__), "tables": repr(sorted(tables.items())), **about(file.attrs)}
 
 
 def test_tables_of_a_run_are_read_as_xarray_reads_them(tmp_path: Path) -> None:

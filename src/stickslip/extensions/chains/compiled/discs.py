@@ -12,9 +12,7 @@ import math
 
 import numpy as np
 
-from stickslip.engine import TERMS
-from stickslip.engine.series.step_size import quick_exp2, quick_log2
-from stickslip.engine.state.layout import STATES
+from stickslip.engine import STATES, TERMS, quick_exp2, quick_log2
 from stickslip.extensions.chains.compiled.memory import (
     COUNTED,
     MODE,

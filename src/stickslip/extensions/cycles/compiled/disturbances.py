@@ -1,7 +1,7 @@
 """The linear equation of disturbances along a run, by Radau's method on parts of its pieces, with factors at events.
 
-On a part the unknowns are slip rate and states at Radau's points. The load follows from the slip rate: it is eliminated, so that
-the equations are fewer by a third or a half.
+On a part the unknowns are slip rate and states at Radau's points. Load and lag follow from the slip rate: they are eliminated, so
+that the equations are fewer by a third or a half.
 """
 
 from __future__ import annotations
@@ -13,18 +13,19 @@ from stickslip.extensions.cycles.compiled.along_run import (
     BY_STATE,
     CHANGE_BY_RATE,
     CHANGE_BY_STATE,
-    FIRST_STATE_ROW,
     LOAD_ROW,
+    MOST_DISTURBED,
     MOST_OF_FORMULA,
     RATE_ROW,
     ROOM_OF_ANSWER,
     RunNumbers,
+    count_of,
     look,
-    look_at_rate,
     pieces_of,
     sign_of_state,
-    write_pace,
+    stiffness_in,
 )
+from stickslip.extensions.cycles.compiled.events import pass_event
 from stickslip.extensions.cycles.compiled.radau import COEFFICIENTS, COMPARED, MOST_STAGES, RADAU_PLACES, STAGES, USED
 from stickslip.foundation.arrays import Floats, Floats2
 from stickslip.foundation.kernels.kernels import entry, kernel
@@ -32,11 +33,11 @@ from stickslip.foundation.kernels.memory.addresses import ahead, room_for
 
 TOLERANCE, MOST_PARTS = 1e-11, 64
 """Pieces are divided until two methods differ by less than this share (1) of the largest so far, into no more parts than this."""
-ROOM_OF_MATRIX = 4 * 4
-"""Room for a disturbance of load, slip rate and two states for each of these (numbers)."""
+ROOM_OF_MATRIX = MOST_DISTURBED * MOST_DISTURBED
+"""Room for a disturbance of load, slip rate, two states and lag for each of these (numbers)."""
 ROOM_OF_SLOPES = 3 * 3 * MOST_STAGES
 """Room for the derivatives of slip rate and states by these at the points (numbers)."""
-ROOM_OF_EQUATIONS = 3 * MOST_STAGES * (3 * MOST_STAGES + 4)
+ROOM_OF_EQUATIONS = 3 * MOST_STAGES * (3 * MOST_STAGES + MOST_DISTURBED)
 """Room for the equations of a part, with a right-hand side for each disturbance at its start (numbers)."""
 
 
@@ -81,8 +82,8 @@ def assemble(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, eq
     pace, slopes = room_for(MOST_STAGES), room_for(ROOM_OF_SLOPES)
     write_slopes(run, part, method, pace, slopes)
     many, stages, moving = len(run.reverses), STAGES[method], pieces_of(run.pieces)[part.piece].mode != 0
-    count, size = FIRST_STATE_ROW + many, (1 + many) * stages
-    width, spring = size + count, run.stiffness / run.inertia
+    count, size = count_of(run), (1 + many) * stages
+    width, spring = size + count, stiffness_in(run, part.piece) / run.inertia
     for i in range(stages):
         for r in range(1 + many):
             row = ahead(equations, (r * stages + i) * width)
@@ -102,6 +103,27 @@ def assemble(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, eq
                     row[k] += spring * share * COEFFICIENTS[method, j, k] * pace[k]
             for c in range(count):
                 row[size + c] += passed / run.inertia * before[LOAD_ROW * count + c]
+    if moving and run.winding != 0.0:
+        wind_up(run, method, pace, before, equations)
+
+
+@kernel
+def wind_up(run: RunNumbers, method: int, pace: Floats, before: Floats, equations: Floats) -> None:
+    """Add what the integral of the lag does to the slip rate to the equations of a part; `pace` is d time/d place (s) there."""
+    stages, count, twice = STAGES[method], count_of(run), room_for(MOST_STAGES)
+    width, gain = (1 + len(run.reverses)) * stages + count, run.winding / run.inertia
+    for i in range(stages):
+        row, passed = ahead(equations, i * width), 0.0
+        for j in range(stages):
+            twice[j] = 0.0
+            for k in range(stages):
+                twice[j] += COEFFICIENTS[method, i, k] * pace[k] * COEFFICIENTS[method, k, j] * pace[j]
+            passed += twice[j]
+        for j in range(stages):
+            for k in range(stages):
+                row[k] += gain * twice[j] * COEFFICIENTS[method, j, k] * pace[k]
+        for c in range(count):
+            row[width - count + c] += gain * passed * before[(count - 1) * count + c]
 
 
 @kernel
@@ -138,7 +160,7 @@ def pass_part(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, a
     equations, one = room_for(ROOM_OF_EQUATIONS), pieces_of(run.pieces)[part.piece]
     assemble(run, part, method, before, equations)
     many, stages = len(run.reverses), STAGES[method]
-    count, size = FIRST_STATE_ROW + many, (1 + many) * stages
+    count, size = count_of(run), (1 + many) * stages
     width = size + count
     eliminate(equations, size, width)
     for c in range(count):
@@ -146,47 +168,38 @@ def pass_part(run: RunNumbers, part: PartOfPiece, method: int, before: Floats, a
         for r in range(1 + many):
             after[(RATE_ROW + r) * count + c] = equations[((r + 1) * stages - 1) * width + size + c]
     if one.mode != 0:
+        stiffness = stiffness_in(run, part.piece)
         for k in range(stages):
             place = part.begin + part.length * RADAU_PLACES[method, k]
             pace = part.length * (one.speed + 2.0 * one.bend * place)
-            factor = run.stiffness * COEFFICIENTS[method, stages - 1, k] * pace
+            factor = stiffness * COEFFICIENTS[method, stages - 1, k] * pace
             for c in range(count):
                 after[c] -= factor * equations[k * width + size + c]
+    if len(run.lags) > 0:
+        pass_lag(run, part, method, (before, equations), after)
 
 
 @kernel
-def pass_event(run: RunNumbers, piece: int, now: Floats) -> None:
-    """Multiply disturbances by the factor at the event between a piece and the one before it, if there is one."""
-    one, past = pieces_of(run.pieces)[piece], pieces_of(run.pieces)[piece - 1]
-    if one.mode == past.mode and (run.has_knots == 0 or one.law_piece == past.law_piece):
-        return
-    if one.mode == -past.mode and run.sticks == 0:  # friction passes smoothly through rest
-        return
-    many = len(run.reverses)
-    count = FIRST_STATE_ROW + many
-    low, high, normal = room_for(MOST_OF_FORMULA), room_for(MOST_OF_FORMULA), room_for(MOST_OF_FORMULA)
-    write_pace(run, piece - 1, 1.0, low)
-    write_pace(run, piece, 0.0, high)
-    for n in range(count):
-        normal[n] = 0.0
-    if past.mode == 0:  # no law that rests has a state that changes its sign
-        answer = room_for(ROOM_OF_ANSWER)
-        look_at_rate(run, (piece - 1, one.law_piece, one.mode), 1.0, 0.0, answer)
-        normal[LOAD_ROW] = 1.0
-        for n in range(many):
-            normal[FIRST_STATE_ROW + n] = -one.mode * run.normal * answer[BY_STATE + n]
-    else:
-        normal[RATE_ROW] = 1.0
-    meets = 0.0
-    for n in range(count):
-        meets += normal[n] * low[n]
+def pass_lag(run: RunNumbers, part: PartOfPiece, method: int, known: tuple[Floats, Floats], after: Floats) -> None:
+    """Write what disturbances of the lag have become at the end of a part, and add what its integral does to the load.
+
+    `known` has the disturbances before the part, and the solved equations.
+    """
+    before, equations = known
+    one, stages, count = pieces_of(run.pieces)[part.piece], STAGES[method], count_of(run)
+    width, last = (1 + len(run.reverses)) * stages + count, count - 1
     for c in range(count):
-        moved = 0.0
-        for n in range(count):
-            moved += normal[n] * now[n * count + c]
-        moved /= meets
-        for n in range(count):
-            now[n * count + c] += (high[n] - low[n]) * moved
+        for j in range(stages):
+            lag = before[last * count + c]
+            for k in range(stages):
+                place = part.begin + part.length * RADAU_PLACES[method, k]
+                pace = part.length * (one.speed + 2.0 * one.bend * place)
+                if one.mode != 0:
+                    lag -= COEFFICIENTS[method, j, k] * pace * equations[k * width + width - count + c]
+            place = part.begin + part.length * RADAU_PLACES[method, j]
+            pace = part.length * (one.speed + 2.0 * one.bend * place)
+            after[c] += run.winding * COEFFICIENTS[method, stages - 1, j] * pace * lag
+            after[last * count + c] = lag
 
 
 @kernel
@@ -204,7 +217,7 @@ def pass_piece(run: RunNumbers, span: tuple[int, float], exactly: bool, now: Flo
     """Carry disturbances over a piece, up to a place (1) in it, in parts where one is not exact enough."""
     used, compared = room_for(ROOM_OF_MATRIX), room_for(ROOM_OF_MATRIX)
     piece, whole = span
-    size = (FIRST_STATE_ROW + len(run.reverses)) ** 2
+    size = count_of(run) ** 2
     begin, length = 0.0, 1.0  # shares of the piece; powers of 2 are exact
     for _ in range(4 * MOST_PARTS):
         part = PartOfPiece(piece, whole * begin, whole * length)

@@ -15,7 +15,7 @@ MOST_STAGES = max(STAGES)
 """Room for the points of a method (1)."""
 
 
-def _places(stages: int) -> Floats:
+def radau_places(stages: int) -> Floats:
     """Return the zeros of P_s - P_(s-1) on (0, 1], up to 1; P is a Legendre polynomial."""
     series = np.zeros(stages + 1)
     series[-2:] = -1.0, 1.0
@@ -26,7 +26,7 @@ def _places(stages: int) -> Floats:
     return np.asarray(0.5 * (1.0 + zeros))
 
 
-def _coefficients(places: Floats) -> Floats:
+def radau_coefficients(places: Floats) -> Floats:
     """Return the integrals from 0 to each place of the polynomials that are 1 at one place and 0 at all others."""
     count, seen = len(places), 2.0 * places - 1.0
     known = legendre.legvander(seen, count)
@@ -42,5 +42,5 @@ RADAU_PLACES = np.zeros((len(STAGES), MOST_STAGES))
 COEFFICIENTS = np.zeros((len(STAGES), MOST_STAGES, MOST_STAGES))
 """Coefficients (1) of each method; the last row has the weights of a whole step."""
 for _method, _stages in enumerate(STAGES):
-    RADAU_PLACES[_method, :_stages] = _places(_stages)
-    COEFFICIENTS[_method, :_stages, :_stages] = _coefficients(RADAU_PLACES[_method, :_stages])
+    RADAU_PLACES[_method, :_stages] = radau_places(_stages)
+    COEFFICIENTS[_method, :_stages, :_stages] = radau_coefficients(RADAU_PLACES[_method, :_stages])

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
-from stickslip.extensions.cycles.orbit import Orbit, near_end
+from stickslip.extensions.cycles.near import near_end
+from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.path import Path, path_of
 from stickslip.extensions.cycles.settling import settled
 from stickslip.problem import Problem
@@ -21,7 +22,7 @@ class CyclesOfRigid(CycleKind):
         if problem.body.is_free:
             return "without a spring nothing brings the body back"
         if as_on_spring(problem.body).has_stops:
-            return "cycles against hard stops are not found"
+            return "a steady pull carries the body to its stop, where it stays, or away from it, so that nothing repeats itself"
         return not_steady(problem)
 
     def settled(self, problem: Problem, times: tuple[float, float], rtol: float, tell: TextProgress) -> Orbit | None:

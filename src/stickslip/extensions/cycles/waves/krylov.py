@@ -19,6 +19,9 @@ EXHAUSTED = 1e-14
 """A new direction is rounding where so small a share (1) is left: the space is whole."""
 FIRST_LOOK, EVERY = 16, 4
 """Eigenvalues are looked at in a space of so many directions (1), and each time so many more."""
+SMALL_MATRIX, MOST_OF_MATRIX, LOOKS_EVERY, TO_ROUNDING = 120, 56, 8, 1e-12
+"""A matrix with fewer rows (1) is looked at whole, of others spaces of so many directions, each time so many more; errors (1) that
+are rounding."""
 EXACT, KNOWN, ROUGHLY_KNOWN = 1e-7, 1e-5, 0.03
 """Errors (1) of eigenvalues: what is wanted of large ones, what is called known, and what is called roughly known."""
 
@@ -58,6 +61,33 @@ def solved(operator: Operator, right: Floats, accuracy: float, most: int) -> tup
         if left <= accuracy:
             break
     return found, left, count
+
+
+def largest(matrix: Floats, many: int, least: float) -> NDArray[Any]:
+    """Return up to `many` of the largest eigenvalues of a matrix, to rounding: the first, and others larger in size than `least`.
+
+    A large matrix is looked at in a growing space first, which is enough where few of them stand out.
+    """
+    if len(matrix) > SMALL_MATRIX:
+        start = np.random.default_rng(0).normal(size=len(matrix))
+        for basis, inside in _spaces(matrix.__matmul__, start, MOST_OF_MATRIX):
+            count = basis.shape[1]
+            if count % LOOKS_EVERY and inside[-1, -1] > TO_ROUNDING * np.abs(inside).max():
+                continue
+            values, vectors = np.linalg.eig(inside[:-1])
+            order = np.argsort(-np.abs(values), kind="stable")
+            missed = np.abs(inside[-1, -1] * vectors[-1])[order]
+            found = _first_of(values[order], many, least)
+            if missed[: len(found)].max() <= TO_ROUNDING * np.abs(values).max():
+                return found
+    values = np.linalg.eigvals(matrix)
+    return _first_of(values[np.argsort(-np.abs(values), kind="stable")], many, least)
+
+
+def _first_of(values: NDArray[Any], many: int, least: float) -> NDArray[Any]:
+    """Return the first of eigenvalues that become smaller, as `largest` does; a pair is not parted."""
+    count = max(1, min(many, int(np.sum(np.abs(values) > least))))
+    return np.asarray(values[: count + (count < len(values) and values[count - 1].imag > 0.0)], complex)
 
 
 def leading(operator: Operator, start: Floats, many: int, large: float, most: int) -> NDArray[Any]:

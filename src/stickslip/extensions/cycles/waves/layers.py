@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from stickslip.solution.observables import LayerWaves
 
 class LayerSource(WaveSource):
     """The waves that left the even places of all cells, over the round trip of a cell that ends at a time (s)."""
+
+    is_one_wave: ClassVar[bool] = False
 
     @cached_property
     def body(self) -> OfLayers:

@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.engine import TERMS, History, Positions
 from stickslip.foundation.arrays import Floats
@@ -44,6 +46,13 @@ class WaveMesh:
 
     edges: Floats
     """Phases (s) of their ends, from 0 on."""
+    resolved: float = RESOLVED
+    """The share (1) of the wave's extent to which it is resolved."""
+
+    @property
+    def is_fine(self) -> bool:
+        """True if it resolves a wave as well as meshes do."""
+        return self.resolved <= RESOLVED
 
     @cached_property
     def phases(self) -> Floats:
@@ -59,10 +68,22 @@ class WaveMesh:
 
     def at(self, values: Floats, phases: Floats) -> Floats:
         """Return a wave with these values at the points, at phases (s)."""
+        piece, powers = self._found(phases)
+        terms = self.series(values)[piece].reshape(len(phases), -1, TERMS)[..., :NODES]
+        return np.einsum("pck,pk->cp", terms, powers).ravel()
+
+    def matrix_at(self, phases: Floats) -> Floats:
+        """Return the matrix that makes values at phases (s) of those at the points."""
+        piece, powers = self._found(phases)
+        found = np.zeros((len(phases), len(self.phases)))
+        np.put_along_axis(found, piece[:, None] * NODES + np.arange(NODES), powers @ POWERS_OF_TERMS @ TERMS_OF_VALUES, axis=1)
+        return found
+
+    def _found(self, phases: Floats) -> tuple[NDArray[np.intp], Floats]:
+        """Return the pieces in which phases (s) are, and the powers of the places (1) there."""
         piece = np.clip(np.searchsorted(self.edges, phases, side="right") - 1, 0, len(self.edges) - 2)
         xi = (phases - self.edges[piece]) / (self.edges[piece + 1] - self.edges[piece])
-        terms = self.series(values)[piece].reshape(len(phases), -1, TERMS)[..., :NODES]
-        return np.einsum("pck,pk->cp", terms, xi[:, None] ** np.arange(NODES)).ravel()
+        return piece, np.vander(xi, NODES, increasing=True)
 
 
 @dataclass(frozen=True)
@@ -71,6 +92,8 @@ class WaveSource:
 
     history: History
     end: float
+    is_one_wave: ClassVar[bool] = True
+    """True if this wave, with what moves the contact, is all that decides what follows."""
 
     def at(self, phases: Floats) -> Floats:
         """Return the wave 2 Z v - load, plus the reference strength (Pa), at phases (s)."""
@@ -104,6 +127,15 @@ class WaveSource:
         answer = np.abs(1.0 - 2.0 * body.echo_impedance / (body.total_damping + problem.normal * by_rate))
         return math.exp(back + float(np.sum(lasts * np.log(np.maximum(answer, 1e-300)))) / trip)
 
+    def pace_at(self, phases: Floats) -> Floats:
+        """Return how fast the wave changes (Pa/s) at phases (s)."""
+        history = self.history
+        where, store = history.find(self.end - history.round_trip_time + phases, "right"), history.store
+        series = 2.0 * history.problem.body.echo_impedance * store.rate[where.piece] - store.load[where.piece]
+        slopes = np.sum(series[:, 1:] * np.arange(1, TERMS) * where.xi[:, None] ** np.arange(TERMS - 1), axis=1)
+        lasts = store.speed[where.piece] + 2.0 * store.bend[where.piece] * where.xi
+        return np.asarray(slopes / lasts * (-as_waves(history.problem.body).front_reflection) ** where.leaped)
+
 
 def changes_in(history: History, end: float, period: float) -> Floats:
     """Return the times (s) of events in the period up to an end (s) that leave kinks in waves: onsets, arrests, ends of rests."""
@@ -127,8 +159,8 @@ def kinks(history: History, end: float, period: float, share: float) -> Floats:
     return np.concatenate([row[(row > 0.0) & (row < trip)] for row in found])
 
 
-def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
-    """Return a mesh that resolves a wave with `sharp` kinks at phases (s), the sharpest first."""
+def mesh_of(source: WaveSource, sharp: Floats, resolved: float = RESOLVED) -> WaveMesh:
+    """Return a mesh that resolves a wave with `sharp` kinks at phases (s), the sharpest first, to a share (1) of its extent."""
     trip = source.history.round_trip_time
     kept = [0.0, trip]
     for one in sharp.tolist():
@@ -140,9 +172,9 @@ def mesh_of(source: WaveSource, sharp: Floats) -> WaveMesh:
     divided = [np.linspace(low, high, n, endpoint=False) for low, high, n in ends]
     edges = np.append(np.concatenate(divided), trip)
     while True:
-        mesh = WaveMesh(edges)
+        mesh = WaveMesh(edges, resolved)
         values = source.at(mesh.phases).reshape(-1, len(edges) - 1, NODES)
-        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=(0, 2)) > RESOLVED * np.ptp(values)
+        rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=(0, 2)) > resolved * np.ptp(values)
         rough &= np.diff(edges) > FINEST * trip
         if not rough.any() or len(edges) + rough.sum() > MOST_PIECES:
             return mesh

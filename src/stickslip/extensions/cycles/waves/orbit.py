@@ -1,7 +1,8 @@
 """From a run of a body with waves to the cycle near its end: Newton's iteration on the wave of a round trip, by exact runs.
 
-The derivative of a return is known by differences of runs: each says what it does to one disturbance. GMRES solves Newton's
-equation, and Arnoldi's iteration finds the leading multipliers.
+The derivative of a return is a matrix, from the linear equation of disturbances along the run (`disturbed`). Where that does not
+hold, it is known by differences of runs: each says what it does to one disturbance; GMRES then solves Newton's equation, and
+Arnoldi's iteration finds the leading multipliers.
 
 Source: Knoll & Keyes 2004, J. Comput. Phys. 193, 357, for Newton's iteration without a matrix.
 """
@@ -18,8 +19,9 @@ from numpy.typing import NDArray
 
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
-from stickslip.extensions.cycles.waves.krylov import Operator, leading, solved
-from stickslip.extensions.cycles.waves.mesh import WaveMesh, mesh_of
+from stickslip.extensions.cycles.waves.disturbed import is_known, slopes_of
+from stickslip.extensions.cycles.waves.krylov import Operator, largest, leading, solved
+from stickslip.extensions.cycles.waves.mesh import RESOLVED, WaveMesh, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -37,10 +39,14 @@ CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 """A cycle closes to this share (1) of its extent; where rounding or kinks forbid that, to the second."""
 SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
+RESOLVED_OF_MISS = 1e-2
+"""The mesh resolves a wave to this share (1) of what the return misses."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
+MOST_COLUMNS = 800
+"""The derivative of a return is a matrix up to this number of rows (1): a larger one takes longer than differences of runs."""
 MANY_MULTIPLIERS, LEAST_LARGE = 6, 0.5
-"""Most multipliers (1), and the size (1) below which multipliers are only roughly known."""
+"""Most multipliers (1), and the size (1) below which all but the first are left out, or roughly known if by differences of runs."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,8 @@ class WaveOrbit:
     """Number of runs of one period that have found it."""
     change: float
     """The last change of the period (s) in Newton's iteration."""
+    known: Floats | None = None
+    """The derivative of the return over the scales of its `Image`, if it has been worked out already."""
 
     @property
     def period(self) -> float:
@@ -74,6 +82,16 @@ class WaveOrbit:
     @property
     def forgets_all(self) -> bool:
         """False: waves outlast a rest."""
+        return False
+
+    @property
+    def is_kept(self) -> bool:
+        """False: a wave is too much for a table."""
+        return False
+
+    @property
+    def is_of_half(self) -> bool:
+        """False: cycles of twice the period are not followed."""
         return False
 
     def problem_on_it(self, problem: Problem) -> Problem:
@@ -109,11 +127,22 @@ class WaveOrbit:
         """What a period multiplies the sharpest waves by (1): all that is not among the multipliers fades at least so fast."""
         return self.closed.source.sharp_factor(self.closed.begin)
 
+    @property
+    def slopes(self) -> Floats | None:
+        """The derivative of the return over the scales of its `Image`; None where it is known by differences of runs only."""
+        return slopes_at(self.closed) if self.known is None else self.known
+
     @cached_property
     def multipliers(self) -> NDArray[Any]:
-        """The leading multipliers, the largest first: exact where they are large, else roughly the largest."""
+        """The leading multipliers, the largest first.
+
+        By differences of runs they are exact where they are large, else roughly the largest.
+        """
         place = self.closed.start
         image = Image(place, self.period)
+        slopes = self.slopes
+        if slopes is not None:
+            return largest(slopes, MANY_MULTIPLIERS, max(LEAST_LARGE, self.sharp_waves))
         phases = place.mesh.phases / self.closed.begin
         swing: Any = sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))
         start = np.concatenate([np.ones(sum(place.counts)), np.resize(swing, len(place.wave))])
@@ -145,6 +174,12 @@ class Image:
         return met.on(place.mesh).vector / self.scale, met
 
 
+def slopes_at(met: WaveReturn) -> Floats | None:
+    """Return the derivative of a return over the scales of its `Image`; None if its run does not tell it."""
+    scale = Image(met.start, met.time).scale
+    return slopes_of(met, scale) if len(scale) <= MOST_COLUMNS and is_known(met) else None
+
+
 def grown(image: Image, section: WaveSection) -> Operator:
     """Return what disturbances of a place become, by differences of two runs."""
 
@@ -167,19 +202,20 @@ def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
     return along
 
 
-def fitted_mesh(met: WaveReturn) -> WaveMesh:
-    """Return the mesh for the wave at a return."""
-    return mesh_of(met.source, met.source.kinks(met.time))
+def fitted_mesh(met: WaveReturn, share: float) -> WaveMesh:
+    """Return the mesh for the wave at a return that misses its start by a share (1): finer ones would resolve what is yet wrong."""
+    return mesh_of(met.source, met.source.kinks(met.time), max(RESOLVED, RESOLVED_OF_MISS * share))
 
 
 def with_sharp_kinks(section: WaveSection, now: WaveReturn, share: float) -> WaveReturn:
     """Return the return of a return that misses its start by a share (1), whose wave has its kinks where the mesh has edges.
 
-    If it misses more it is not taken: the start is put on the new mesh. Where kinks no longer move, all stays as it is.
+    If it misses more it is not taken: the start is put on the new mesh. Where kinks no longer move and the mesh is fine, all stays
+    as it is.
     """
-    if share <= SAME_MESH:
+    if share <= SAME_MESH and now.start.mesh.is_fine:
         return now
-    mesh = fitted_mesh(now)
+    mesh = fitted_mesh(now, share)
     try:
         again = section.returned(now.on(mesh), now.time)
         if missed_share(again) <= share:
@@ -207,7 +243,7 @@ def coordinates(place: WavePlace) -> Floats:
 def missed_share(met: WaveReturn) -> float:
     """Return by what share (1) of the extent a return misses its start."""
     start = Image(met.start, met.time)
-    return float(np.abs(met.on(met.start.mesh).vector / start.scale - start.start).max())
+    return float(np.abs(met.landed.vector / start.scale - start.start).max())
 
 
 def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
@@ -224,13 +260,25 @@ def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
         if share <= CLOSED_SHARE or (before is not None and before.share <= GOOD_ENOUGH and share > 0.5 * before.share):
             return checked(best)
         image = Image(now.start, now.time)
-        missed = now.on(now.start.mesh).vector / image.scale - image.start
-        step, _, directions = solved(difference(image, section, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+        missed = now.landed.vector / image.scale - image.start
+        step, directions = _newton_step(image, section, now, missed)
         period, now = now.time, _shortened(image, section, step, share)
         runs, change = runs + directions + 1, abs(now.time - period)
     if best is not None and best.share <= GOOD_ENOUGH:
         return checked(best)
     raise InputError("cycle: Newton's iteration finds no cycle near this run: give another start, or a longer run (near)")
+
+
+def _newton_step(image: Image, section: WaveSection, now: WaveReturn, missed: Floats) -> tuple[Floats, int]:
+    """Return the step of Newton's iteration from a return, and the number of runs that it took."""
+    slopes = slopes_at(now)
+    if slopes is None:
+        step, _, directions = solved(difference(image, section, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
+        return step, directions
+    try:
+        return np.linalg.solve(slopes - np.eye(len(slopes)), -missed), 0
+    except np.linalg.LinAlgError:
+        raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
 
 
 def _shortened(image: Image, section: WaveSection, step: Floats, share: float) -> WaveReturn:

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.engine import Positions
-from stickslip.extensions.cycles.edges import GRAZING, LOSS_OF_STICK, NOT_FOUND, CycleEdge
-from stickslip.extensions.cycles.found import FoundCycle
-from stickslip.extensions.cycles.measures import measures_of
+from stickslip.extensions.cycles.edges import CycleEdge
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
-from stickslip.extensions.cycles.waves.krylov import solved
+from stickslip.extensions.cycles.waves.bordered import Bordered
+from stickslip.extensions.cycles.waves.ends import EndOfPart, cut_anew, end_of_rests, with_rest
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
-    MOST_DIRECTIONS,
     SMALL_NUDGE,
     Image,
     WaveOrbit,
@@ -25,6 +22,7 @@ from stickslip.extensions.cycles.waves.orbit import (
     difference,
     even_mesh,
     missed_share,
+    slopes_at,
     with_sharp_kinks,
 )
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
@@ -32,18 +30,16 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
-NEWTON_ROUNDS = 8
-"""Largest number of Newton's iterations in a step (1)."""
+NEWTON_ROUNDS, MOST_NO_NEARER = 8, 1
+"""Largest number of Newton's iterations in a step (1), and how often one may bring a return no nearer to its start."""
 CLOSED, STILL_CLOSED = 1e-8, 1e-6
 """A cycle of a branch closes to this share of its extent (1); where kinks forbid that, to the second."""
+MUCH_NEARER = 1e-2
+"""A step of Newton's iteration brings a return much nearer if what it misses is this share (1) of what it missed before."""
+MOST_SECTIONS = 8
+"""Number of sections that a path remembers (1)."""
 DIRECTION_SHARE = 1e-3
 """The direction of a branch is known to this share (1)."""
-
-FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
-"""First step towards an end (1), the number of steps, halved without a cycle, and by what share (1) a period may change there."""
-SHORT_REST, TOUCHES = 1e-2, 1e-3
-"""A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch; slip rate and load touch rest and
-strength where they come as near (1, of their extent) as the second."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +47,8 @@ class WavePath(Path):
     """Cycles of one scenario, cut at one kind of section, with one number of the problem as a parameter."""
 
     joins: ClassVar[bool] = False
-    same_step: float = 1e-7
-    """An edge within a step is found to this share of the step (1), which is what multipliers are known to."""
+    same_step: float = 1e-10
+    """An edge within a step is found to this share of the step (1): cycles close to little less, and multipliers follow."""
     level: float = 1.0
     """The slip rate on a section without rest, as a share of the pull rate (1)."""
     counts: tuple[int, int] = (0, 0)
@@ -60,7 +56,17 @@ class WavePath(Path):
 
     def section(self, value: float) -> Any:
         """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
-        return WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
+        known = self._sections
+        if value not in known:
+            if len(known) >= MOST_SECTIONS:
+                known.clear()
+            known[value] = WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
+        return known[value]
+
+    @cached_property
+    def _sections(self) -> dict[float, WaveSection]:
+        """Sections by their values: a problem is made and prepared once."""
+        return {}
 
     def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.
@@ -81,48 +87,56 @@ class WavePath(Path):
         return WavePlace.of(even_mesh(trip), target[:-1] * self.scales[:-1], self.counts)
 
     def _newton(self, now: WaveReturn, value: float, target: Floats, way: Floats) -> PlaceOnBranch:
-        """Return the cycle to which Newton's iteration leads from a return."""
-        share, last, runs = np.inf, np.inf, 0
+        """Return the cycle to which Newton's iteration leads from a return.
+
+        A derivative serves as long as steps with it bring the return much nearer to its start.
+        """
+        share, last, runs, is_new, no_nearer = np.inf, np.inf, 0, True, 0
+        bordered: Bordered | None = None
         for _ in range(NEWTON_ROUNDS):
             section = self.section(value)
             now = with_sharp_kinks(section, now, missed_share(now))
             off = self._off(coordinates(now.start), value, target, way)
-            last, share, image = share, max(missed_share(now), abs(off)), Image(now.start, now.time)
-            good = share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last)
-            along = self._derivative(image, value, way)
-            if good:
+            last, share = share, max(missed_share(now), abs(off))
+            if share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last and is_new):
                 break
-            missed = np.append(now.on(image.place.mesh).vector / image.scale - image.start, off)
-            step, _, _ = solved(along, -missed, LINEAR_SHARE, MOST_DIRECTIONS)
-            value += float(step[-1]) * self.range
-            now, runs = image.of(image.start + step[:-1], self.section(value))[1], runs + 1
+            no_nearer += share > 0.5 * last
+            if no_nearer > MOST_NO_NEARER:
+                break
+            is_new = bordered is None or share > MUCH_NEARER * last
+            if bordered is None or is_new:
+                bordered = self._bordered(now, value, way)
+            place, change = bordered.step(now, off, LINEAR_SHARE)
+            value += change * self.range
+            section = self.section(value)
+            now, runs = section.returned(place.over(section.problem.round_trip_time), now.time), runs + 1
         if share > STILL_CLOSED:
             raise NoCycleError("follow: Newton's iteration finds no cycle here")
-        orbit = checked(WaveOrbit(now, self.section(value), share, runs, 0.0))
-        ahead = np.zeros(len(image.start) + 1)
-        ahead[-1] = 1.0
-        grown, _, _ = solved(along, ahead, DIRECTION_SHARE, MOST_DIRECTIONS)
-        moved = image.place.moved_to(grown[:-1] * image.scale)
-        new = np.append(coordinates(moved) / self.scales[:-1], grown[-1])
+        bordered = self._bordered(now, value, way, exactly=True)
+        orbit = checked(WaveOrbit(now, section, share, runs, 0.0, bordered.slopes))
+        moved, change = bordered.ahead(DIRECTION_SHARE)
+        new = np.append(coordinates(moved) / self.scales[:-1], change)
         return PlaceOnBranch(value, orbit, new / np.linalg.norm(new))
 
     def _off(self, place: Floats, value: float, target: Floats, way: Floats) -> float:
         """Return how far a start is from the plane through `target` across `way`."""
         return float((self.together(place, value) - target) @ way)
 
-    def _derivative(self, image: Image, value: float, way: Floats) -> Callable[[Floats], Floats]:
-        """Return the derivative of the miss of a return, and of the distance from the plane, by start and parameter."""
-        section = self.section(value)
-        missed = image.of(image.start, section)[0] - image.start
-        ends = [image.of(image.start, self.section(value + sign * SMALL_NUDGE * self.range))[0] for sign in (1.0, -1.0)]
-        by_value, grown = (ends[0] - ends[1]) / (2.0 * SMALL_NUDGE), difference(image, section, missed)
+    def _bordered(self, now: WaveReturn, value: float, way: Floats, *, exactly: bool = False) -> Bordered:
+        """Return the derivative of the miss of a return, and of the distance from the plane, by start and parameter.
 
-        def along(change: Floats) -> Floats:
-            here = grown(change[:-1]) if change[:-1].any() else np.zeros(len(missed))
-            moved = coordinates(image.place.moved_to(change[:-1] * image.scale)) / self.scales[:-1]
-            return np.append(here + change[-1] * by_value, np.append(moved, change[-1]) @ way)
-
-        return along
+        That by the parameter is a difference of two runs if `exactly`, else of one from the return.
+        """
+        image, count = Image(now.start, now.time), sum(now.start.counts)
+        here = now.landed.vector / image.scale
+        up = image.of(image.start, self.section(value + SMALL_NUDGE * self.range))[0]
+        low = image.of(image.start, self.section(value - SMALL_NUDGE * self.range))[0] if exactly else here
+        by_value = (up - low) / (SMALL_NUDGE * (1.0 + exactly))
+        mesh, weights = image.place.mesh, way[:-1] / self.scales[:-1]
+        even = mesh.matrix_at(even_mesh(float(mesh.edges[-1])).phases)
+        by_start = np.append(weights[:count], weights[count:].reshape(-1, len(even)) @ even)
+        grown = difference(image, self.section(value), here - image.start)
+        return Bordered(image, slopes_at(now), grown, by_value, np.append(by_start * image.scale, way[-1]))
 
     def step(self, begin: PlaceOnBranch, length: float) -> PlaceOnBranch:
         """Return the cycle a step further along the branch. Raises NoCycleError."""
@@ -137,40 +151,18 @@ class WavePath(Path):
             raise NoCycleError(str(error)) from None
         return self.at(target, begin.way, orbit.period, moved.over(trip))
 
-    def end_beyond(self, last: PlaceOnBranch) -> CycleEdge | None:
-        """Return the edge where cycles with rest end, beyond the last place of a branch, by steps that become shorter."""
-        if not self.at_onset:
-            return None
-        length = FIRST_SHORT
-        for _ in range(MOST_SHORT):
-            try:
-                new = self.step(last, length)
-                if abs(new.orbit.period - last.orbit.period) > SAME_MOTION * last.orbit.period:
-                    raise NoCycleError("follow: this is another cycle")
-                last = new if new.way @ last.way >= 0.0 else replace(new, way=-new.way)
-            except NoCycleError:
-                length *= 0.5
-        return CycleEdge(_name_of_end(last.orbit), last.value, last.orbit)
+    def end_beyond(self, last: PlaceOnBranch) -> EndOfPart | None:
+        """Return the edge where cycles with rest end, beyond the last place of a branch, and where the branch goes on."""
+        return end_of_rests(self, last) if self.at_onset else cut_anew(self, last)
+
+    def rest_begun(self, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
+        """Return where cycles with rest begin, at an edge where the slip rate touches 0."""
+        return with_rest(self, edge)
 
     def longest_step(self, begin: PlaceOnBranch, share: float) -> float:
         """Return the longest step that moves the start by no more than a share (1) of the extent of the cycle."""
         moves = np.abs(begin.way[:-1]) * np.sqrt(len(begin.way) - 1.0)
         return float(np.min(share / np.maximum(moves, 1e-300), initial=np.inf))
-
-
-def _name_of_end(orbit: FoundCycle) -> str:
-    """Return what happens next to the end of a branch of cycles with rest."""
-    if measures_of(orbit).stick_share < SHORT_REST:
-        return LOSS_OF_STICK
-    end = orbit.closed
-    pieces = np.arange(end.first, end.piece)
-    at = Positions.inside(np.repeat(pieces, 9), np.tile(np.linspace(0.0, 1.0, 9), len(pieces)))
-    rests, rate, load = end.history.mode(at) == 0, end.history.rate(at), end.history.excess(at)
-    inside = (rests[1:-1] == rests[:-2]) & (rests[1:-1] == rests[2:])
-    low = ~rests[1:-1] & (rate[1:-1] <= rate[:-2]) & (rate[1:-1] <= rate[2:]) & (rate[1:-1] < TOUCHES * rate.max())
-    high = rests[1:-1] & (load[1:-1] >= load[:-2]) & (load[1:-1] >= load[2:]) & (load[1:-1] > -TOUCHES * np.ptp(load))
-    moves = (np.diff(load)[:-1] != 0.0) & (np.diff(load)[1:] != 0.0)  # two pieces share a place
-    return GRAZING if np.any(inside & moves & (low | high)) else NOT_FOUND
 
 
 def path_of(orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:

@@ -22,6 +22,8 @@ from stickslip.solution import Solution
 
 LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
+NO_STATE = 1e-15
+"""A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
 PASSES = 20_000
 """Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
 
@@ -44,8 +46,8 @@ class WavePlace:
     @property
     def scale(self) -> Floats:
         """Their extents: sizes of the states, and how far the wave goes, for what the driver keeps as well."""
-        sizes, reach = np.abs(self.states), np.full(len(self.kept) + len(self.wave), np.ptp(self.wave))
-        return np.concatenate([sizes, reach]) + 1e-300
+        sizes, reach = np.abs(self.states), np.full(len(self.kept) + len(self.wave), np.ptp(self.wave) + 1e-300)
+        return np.concatenate([np.where(sizes > NO_STATE, sizes, 1.0), reach])
 
     @property
     def counts(self) -> tuple[int, int]:
@@ -65,7 +67,7 @@ class WavePlace:
     def over(self, trip: float) -> WavePlace:
         """Return the same wave over a round trip that lasts so long (s)."""
         edges = self.mesh.edges
-        return self if edges[-1] == trip else replace(self, mesh=WaveMesh(edges * (trip / edges[-1])))
+        return self if edges[-1] == trip else replace(self, mesh=replace(self.mesh, edges=edges * (trip / edges[-1])))
 
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the same place on another mesh."""
@@ -84,6 +86,8 @@ class WaveReturn:
     """The time (s) of the return in the history."""
     first: int
     """The first piece of the history behind the wave."""
+    at_onset: bool
+    """True if it begins and ends at an onset of slip after a rest."""
 
     @property
     def history(self) -> History:
@@ -118,6 +122,11 @@ class WaveReturn:
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the place of the return, on a mesh."""
         return WavePlace(mesh, self.states, self.kept, self.source.at(mesh.phases))
+
+    @cached_property
+    def landed(self) -> WavePlace:
+        """The place of the return on the mesh of the start."""
+        return self.on(self.start.mesh)
 
     @cached_property
     def sticks(self) -> bool:
@@ -173,7 +182,7 @@ class WaveSection:
             raise InputError(f"cycle: the contact no longer {what} within {longer * guess:.4g} s: there is no cycle near")
         nearest = int(np.abs(met.time - trip - guess).argmin())
         piece, xi, time = int(met.piece[nearest]), float(met.place[nearest]), float(met.time[nearest])
-        return WaveReturn(place, solution, piece, xi, time, len(place.mesh.edges) - 1)
+        return WaveReturn(place, solution, piece, xi, time, len(place.mesh.edges) - 1, self.at_onset)
 
     def met(self, history: History) -> Crossings:
         """Return where a run that begins with a wave meets the section, not counting its start."""

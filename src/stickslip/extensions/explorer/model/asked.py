@@ -40,6 +40,10 @@ class ShownKind(ABC):
     def in_place_of(self, own: BodyOnCharacteristics, kind: str, name: str) -> dict[str, Any]:
         """Return the table of a body `kind`, of this kind, which takes the place of another one in the scenario `name`."""
 
+    @abstractmethod
+    def as_rigid(self, own: BodyOnCharacteristics) -> dict[str, Any]:
+        """Return the table of the block to which a body of this kind is equivalent, under a driver that does not give way."""
+
     def loading_of(self, table: dict[str, Any], own: Problem) -> dict[str, Any]:
         """Return the table [loading] of a problem as a body of this kind can have it: by default as it is."""
         return table

@@ -18,7 +18,7 @@ from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.problem import ALL_HISTORIES, HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, features, names
+from stickslip.problem import ALL_HISTORIES, HISTORIES, HISTORIES_ONLY, SELECTION_RULES, STEADY, driver_of, names
 from stickslip.problem.bodies import BODIES
 from stickslip.problem.scenarios import (
     ONE_WAY,
@@ -293,7 +293,7 @@ class _Tables:
 
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
-        if path.removeprefix("loading.").removeprefix("body.") in features.unfelt(self.problem):
+        if path.removeprefix("loading.").removeprefix("body.") in driver_of(self.problem).unfelt:
             return False
         if path.removeprefix("loading.") in HISTORIES_ONLY:
             return False

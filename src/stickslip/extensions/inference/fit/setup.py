@@ -23,7 +23,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import KNOWN_COLUMNS
 from stickslip.foundation.names import KINDS_OF_BODY, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction import FrictionLaw
 from stickslip.problem import PiecewiseLinear, Problem, features
 
 NOT_FITTED = (features.DRIVER_THAT_CHANGES, features.ONE_WAY, features.MOVING_GROUND)

@@ -9,7 +9,7 @@ from stickslip.extensions.inference.points.fit_both_ways import fit_both_ways
 from stickslip.extensions.inference.points.fit_one_way import Fit, fit_one_way
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError
-from stickslip.friction.custom.points import Points
+from stickslip.friction import Points
 
 __all__ = ["Fit", "fit", "fit_each"]
 

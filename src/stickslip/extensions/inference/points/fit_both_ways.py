@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from stickslip.extensions.inference.points.fit_one_way import EXACT_POINTS, Fit, fit_one_way
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import with_uncertainty
-from stickslip.friction import LAWS
-from stickslip.friction.custom.points import Points
+from stickslip.friction import LAWS, Points
 
 DECISIVE = 10.0
 """A law for each direction is taken if its BIC is below that of one law by more than this."""

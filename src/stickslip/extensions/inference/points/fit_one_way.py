@@ -19,8 +19,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import in_units
 from stickslip.foundation.show import ShownAsTable, with_uncertainty
-from stickslip.friction.custom.points import Points
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction import FrictionLaw, Points
 
 EXACT_POINTS = 1e-9
 """With a residual below this (no unit), points lie on a law up to the errors of calculation."""

@@ -16,9 +16,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.other_values import with_values
 from stickslip.foundation.quantities import LawField, NamedNumbers, NumberSeries, Quantity, fields_of
+from stickslip.friction import FrictionLaw, Points
 from stickslip.friction.contract import states_in
-from stickslip.friction.custom.points import Points
-from stickslip.friction.law import FrictionLaw
 
 STEP = 1e-100
 """Imaginary step for derivatives of a formula; it loses no digit (Squire & Trapp 1998, SIAM Rev. 40, 110)."""

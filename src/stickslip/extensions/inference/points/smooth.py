@@ -13,7 +13,7 @@ from stickslip.foundation.arguments import NamesAttributes, for_users, is_number
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.foundation.show import ShownAsTable
-from stickslip.friction.custom.points import FromTable, Points
+from stickslip.friction import FromTable, Points
 from stickslip.friction.piecewise import IGNORED_NOISE, reversals
 
 SCALES = ("auto", "linear", "log")

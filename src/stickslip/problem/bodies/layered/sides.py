@@ -14,6 +14,8 @@ class Sides(ABC):
 
     has_ground: ClassVar[bool]
     """True if there is something under the contact that does not belong to a side."""
+    resist: ClassVar[str]
+    """How they resist, in words."""
 
     @abstractmethod
     def together(self, numbers: Sequence[float]) -> float:
@@ -44,6 +46,7 @@ class Joined(Sides):
     """Sides that move as one on a third body, and resist side by side."""
 
     has_ground: ClassVar[bool] = True
+    resist: ClassVar[str] = "side by side"
 
     def together(self, numbers: Sequence[float]) -> float:
         """Return their sum."""
@@ -74,6 +77,7 @@ class Apart(Sides):
     """Two sides that slip on each other: each is the ground of the other, and they give way one after the other."""
 
     has_ground: ClassVar[bool] = False
+    resist: ClassVar[str] = "in series"
 
     def together(self, numbers: Sequence[float]) -> float:
         """Return what they are in series."""

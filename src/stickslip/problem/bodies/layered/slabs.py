@@ -149,7 +149,7 @@ class TwoSlabs(Declared, OfSlabs):
     def __post_init__(self) -> None:
         check_body(self)
         check_stacks(self, [[f"{side}{name}" for name in LISTS] for side in ("", "other_")], self.drag_step)
-        if self.contact_mass > 0.0 and not self.has_ground:
+        if self.contact_mass > 0.0 and self.sides == APART:
             why = "between two slabs it is not clear which of them it is on"
             raise InputError(f'{type(self).__name__}: contact_mass needs sides = "joined": {why}')
         _ = self.cells

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from stickslip.problem.bodies.rigid.blocks import RotatingBlock, SpringBlock
 
@@ -12,9 +12,14 @@ class OnBelt:
     """What differs from a body whose spring is pulled: the pull rate is the velocity of the belt under it."""
 
     structure: ClassVar[str] = "belt"
-    has_belt: ClassVar[bool] = True
     off_belt: ClassVar[str]
     """The class of the body off the belt."""
+
+    def belt_as_ground(self, pull: Any, given: str) -> Any:
+        """Return the belt as ground that moves. Raises InputError if other ground is given, or if the belt jumps."""
+        from stickslip.problem.belt import ground_of_belt  # few problems have one
+
+        return ground_of_belt(type(self).__name__, pull, given)
 
     def __repr__(self) -> str:
         """Return the call that makes it: the classes of bodies on a belt have no names after `ss.`."""

@@ -23,8 +23,7 @@ class _CheckOfLayered(CheckOfWaves):
     def numbers(self, problem: Problem) -> list[Fact]:
         """Return what follows from the layers and their cells, what each driver sends back, and the rate of loading."""
         body = of_layers(problem.body)
-        sides = ", that of both sides" if len(body.stacks) > 1 else ""
-        together = "side by side" if body.has_ground else "in series"  # sides without ground slip on each other
+        sides, series = (", that of both sides", f", both sides {body.sides_together.resist}") if len(body.stacks) > 1 else ("", "")
         unit = {name: problem.unit_of(name) for name in ("impedance", "stiffness", "load_rate")}
         symbol, slip = ("GJ", "radian") if body.load_unit == TURNS else ("G", "metre")
         cells, driver = body.cells, CHECK_DRIVERS[problem.driver_kind]
@@ -42,7 +41,7 @@ class _CheckOfLayered(CheckOfWaves):
                 f"{symbol}/h",
                 body.stiffness,
                 unit["stiffness"],
-                f"load lost per {slip} of slow slip: the {body.part}s in series{sides and ', both sides '}{sides and together}",
+                f"load lost per {slip} of slow slip: the {body.part}s in series{series}",
             ),
             Fact(f"{symbol} V/h", body.stiffness * problem.first_pull_rate, unit["load_rate"], "rate of loading at first"),
             *driver.facts(problem, f"{body.time_to_driver:.6g} s"),

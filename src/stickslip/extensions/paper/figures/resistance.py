@@ -13,9 +13,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.contact import branches_of, rate_on, resistance
+from stickslip.figures.contact.admissible import draw_branches
 from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, curve_quantity, label, quantity, shown, styled, unit_shown
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, curve_quantity, label, quantity, shown, styled, unit_shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 from stickslip.problem import Problem
@@ -27,9 +28,6 @@ if TYPE_CHECKING:
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""
-
-BRANCHES = {1: ("slip, stable", BLUE, "-"), -1: ("slip, unstable", VERMILLION, "--"), 0: ("slip, continuum", PURPLE, "-")}
-"""Legend, colour and line style of the parts of the curve: 1 stable, -1 unstable, 0 a continuum of solutions."""
 LOOP = "loop"
 """Prefix of the variables of the set K in the dataset of the loop."""
 
@@ -107,17 +105,6 @@ def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False)
     axes.plot([0, 0], [0, float(dataset[f"{case}_strength"]) / load_unit(dataset)[1]], **stick)
     draw_branches(axes, rate, load, kind, **look)
     axes.set(xlabel=label(dataset["slip_rate"]), xlim=(-0.04 * rate[-1], rate[-1]), ylim=(0, None))
-
-
-def draw_branches(axes: Axes, rate: Floats, load: Floats, kind: Any, **look: Any) -> None:
-    """Draw the stable, unstable and flat parts of a curve, told apart by `kind`; `look` replaces colours, widths and labels."""
-    for which, (name, colour, style) in BRANCHES.items():
-        chosen = kind == which
-        if not chosen.any():
-            continue
-        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
-            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
-        axes.plot(rate, np.where(chosen, load, np.nan), **{"color": colour, "linestyle": style, "label": name} | look)
 
 
 def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:

@@ -1,0 +1,217 @@
+"""What decides all that follows of a run: some numbers, and the waves of a round trip where that is over.
+
+There it can be read, compared with that of another run, and disturbed. A body of layers has a wave in each cell, a uniform body the
+one that left its contact, and a rigid body none, whose run may stand anywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from stickslip.engine import TERMS
+from stickslip.foundation.arrays import Floats
+from stickslip.run import ExactRun
+
+POINTS = 10
+"""Points of Gauss and Legendre on each piece of a wave (1)."""
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
+WAVE_PLACES, WAVE_WEIGHTS = 0.5 * (_PLACES + 1.0), 0.5 * _WEIGHTS
+"""The points as places (1) on a piece, and their weights (1)."""
+POWERS_OF_VALUES = np.linalg.inv(np.vander(WAVE_PLACES, increasing=True))
+"""From values at the points to the coefficients of powers of the place (1)."""
+FIRST_ROW_OF_WAVES = 2
+"""Rows of waves in layers (1) before those of the history."""
+ROOM = 64
+"""Room for more pieces of history (1) in a copy of a run."""
+SHORT_WAY = 1e-5
+"""The motion of a driver is differenced over this share (1) of a round trip."""
+NUMBERS = ("rate_now", "slip_now", "law_slip", "driver_rate", "driver_push")
+RATE, SLIP, LAW_SLIP, DRIVER_RATE, DRIVER_PUSH, LOAD = range(len(NUMBERS) + 1)
+"""Numbers of the state of a run, the load of a rigid body, and behind them the states of the law."""
+FIRST_STATE = LOAD + 1
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What a run carries over the end of a round trip, or a difference of two: numbers, and waves (a row each) at points."""
+
+    numbers: Floats
+    waves: Floats
+
+    def __sub__(self, other: Carried) -> Carried:
+        return Carried(self.numbers - other.numbers, self.waves - other.waves)
+
+    def times(self, factor: float) -> Carried:
+        """Return it, a factor times as large."""
+        return Carried(factor * self.numbers, factor * self.waves)
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Where a run stands: at the end of a round trip, or a run of a rigid body anywhere."""
+
+    run: ExactRun
+
+    @cached_property
+    def pieces(self) -> slice:
+        """The pieces of the history whose waves are still to come back."""
+        count = self.run.count
+        first, last = int(count.previous_from), int(count.previous_to)
+        return slice(first, last) if count.is_block == 0 else slice(last, last)
+
+    @property
+    def where(self) -> tuple[int, ...]:
+        """Numbers that runs must share to be compared: round trips to come and recorded, which way they slip, the law's piece."""
+        count, store = self.run.count, self.run.store
+        trips = (0, 0) if count.is_block else (int(count.trip), int(store.trip[count.previous_to - 1]))
+        return (*trips, int(count.mode), int(count.piece), int(count.side))
+
+    @property
+    def time(self) -> float:
+        """The time (s)."""
+        count, run = self.run.count, self.run
+        return run.time if count.is_block else float(count.trip * run.problem.round_trip_time)
+
+    @cached_property
+    def series(self) -> Floats:
+        """The waves as polynomials: (waves, pieces, TERMS)."""
+        run, here = self.run, self.pieces
+        if run.count.is_block:
+            return np.zeros((0, 0, TERMS))
+        if run.count.slots > 0:
+            return np.moveaxis(run.waves[self._rows], 1, 0)
+        doubled = 2.0 * run.params.impedance
+        return np.asarray(doubled * run.store.rate[here] - run.store.load[here])[None]
+
+    @property
+    def _rows(self) -> Any:
+        """The rows of the table of waves in layers that belong to the pieces."""
+        count = self.run.count
+        number = np.arange(self.pieces.start, self.pieces.stop)
+        return FIRST_ROW_OF_WAVES + (number + int(count.wave_shift)) % (len(self.run.waves) - FIRST_ROW_OF_WAVES)
+
+    @cached_property
+    def phases(self) -> Floats:
+        """The phases (s) of the points: of each piece a row."""
+        store, here, xi = self.run.store, self.pieces, WAVE_PLACES
+        return np.asarray(store.phase_from[here, None] + store.speed[here, None] * xi + store.bend[here, None] * xi * xi)
+
+    @cached_property
+    def weights(self) -> Floats:
+        """The weights (1) of the points in a mean over the round trip."""
+        store, here = self.run.store, self.pieces
+        lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * WAVE_PLACES
+        return np.asarray(lasts * WAVE_WEIGHTS / self.run.problem.round_trip_time)
+
+    @cached_property
+    def numbers(self) -> Floats:
+        """The numbers, and the states of the law."""
+        state, count = self.run.state, self.run.count
+        states = [state.state_now[n] for n in range(int(count.states))]
+        load = self.run.scratch[0] @ state.xi ** np.arange(TERMS) if count.is_block else 0.0
+        return np.array([*(getattr(state, name) for name in NUMBERS), load, *states], float)
+
+    def at(self, phases: Floats) -> Carried:
+        """Return what is carried, with the waves at phases (s)."""
+        store, here = self.run.store, self.pieces
+        if here.start == here.stop:
+            return Carried(self.numbers, np.zeros((0, 0)))
+        wanted = phases.ravel()
+        piece = np.clip(np.searchsorted(store.phase_from[here], wanted, "right") - 1, 0, here.stop - here.start - 1)
+        begin, speed, bend = (one[here][piece] for one in (store.phase_from, store.speed, store.bend))
+        gone = wanted - begin
+        xi = 2.0 * gone / (speed + np.sqrt(np.maximum(speed * speed + 4.0 * bend * gone, 0.0)))
+        found, series = np.zeros((len(self.series), len(wanted))), self.series[:, piece]
+        for k in range(TERMS - 1, -1, -1):
+            found = found * xi + series[:, :, k]
+        return Carried(self.numbers, found)
+
+    @cached_property
+    def here(self) -> Carried:
+        """What is carried, with the waves at the own points."""
+        return self.at(self.phases)
+
+    @cached_property
+    def flow(self) -> Carried:
+        """How fast that changes in time: a disturbance along it is a shift in time."""
+        store, here, last = self.run.store, self.pieces, self.run.length - 1
+        found = np.zeros((len(self.series), self.phases.size))
+        if self.phases.size:
+            lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * WAVE_PLACES
+            slopes = sum(k * self.series[:, :, k, None] * WAVE_PLACES ** (k - 1) for k in range(1, TERMS))
+            found = (slopes / lasts).reshape(len(self.series), -1)
+        pace = float(store.speed[last] + 2.0 * store.bend[last])
+
+        def changes(series: Floats) -> Any:
+            return series @ np.arange(TERMS) / pace
+
+        numbers = np.zeros(len(self.numbers))
+        numbers[RATE] = changes(store.rate[last])
+        numbers[LOAD] = changes(store.load[last])
+        numbers[LAW_SLIP] = abs(self.run.state.rate_now)
+        numbers[SLIP] = self.run.state.rate_now - self.run.problem.first_pull_rate
+        if len(numbers) > FIRST_STATE:
+            numbers[FIRST_STATE:] = changes(store.state[last])
+        return Carried(numbers, found)
+
+
+def copied(run: ExactRun, into: ExactRun) -> ExactRun:
+    """Make a run stand where another one stands, and return it."""
+    length = run.length
+    into.reserve(length + ROOM)
+    into.store.pieces[:length], into.store.state[:length] = run.store.pieces[:length], run.store.state[:length]
+    into.forgotten = run.forgotten
+    into.restore(run.snapshot())
+    return into
+
+
+def disturb(run: ExactRun, by: Carried) -> None:
+    """Add a disturbance to what a run carries over the end of a round trip; its waves are given at the points of the run itself."""
+    end, state = Stand(run), run.state
+    here, count = end.pieces, here_count(end)
+    for n, name in enumerate(NUMBERS):
+        setattr(state, name, getattr(state, name) + float(by.numbers[n]))
+    for n, change in enumerate(by.numbers[FIRST_STATE:].tolist()):
+        state.state_now[n] += change
+    if not count:
+        run.scratch[0, 0] += by.numbers[LOAD]
+        return
+    series = by.waves.reshape(-1, count, POINTS) @ POWERS_OF_VALUES.T
+    if run.count.slots > 0:
+        run.waves[end._rows, :, :POINTS] += np.moveaxis(series, 0, 1)
+    else:
+        run.store.load[here, :POINTS] -= series[0]
+
+
+def here_count(end: Stand) -> int:
+    """Return the number of pieces of waves."""
+    return end.pieces.stop - end.pieces.start
+
+
+def flow_of_driver(flow: Carried, run: ExactRun, spare: ExactRun) -> Carried:
+    """Return a flow with that of a driver which moves by itself, from a short way of a spare run, which is lost."""
+    moved = copied(run, spare)
+    end, first = Stand(moved), int(moved.count.previous_from)
+    store, short = moved.store, SHORT_WAY * run.problem.round_trip_time
+    speed, bend = float(store.speed[first]), float(store.bend[first])
+    share = 2.0 * short / (speed + np.sqrt(speed * speed + 4.0 * bend * short))
+    powers = share ** np.arange(TERMS)
+    if moved.count.slots > 0:
+        moved.waves[end._rows[:1]] *= powers
+    store.load[first] *= powers
+    store.rate[first] *= powers
+    store.speed[first], store.bend[first] = share * speed, share * share * bend
+    store.phase_to[first] = store.phase_from[first] + short
+    before = end.numbers
+    moved.count.pause_at = int(moved.count.trip) + 1
+    while moved.count.ready == 0:
+        moved.advance(1)
+    after = Stand(moved).numbers
+    numbers = flow.numbers.copy()
+    driven = [DRIVER_RATE, DRIVER_PUSH]
+    numbers[driven] = (after - before)[driven] / short
+    return Carried(numbers, flow.waves)
