@@ -52,7 +52,7 @@ RUNS: dict[str, tuple[Any, float]] = {
         50.0,
     ),
     "rate and state": (lambda: slab(F.RateAndState(**AGEING), initial_rate=0.024, initial_state="steady"), 25.0),
-    "rate and state without a mass": (lambda: slab(F.RateAndState(**AGEING), 0.0, initial_state=0.5), 25.0),
+    "rate and state without a mass": (lambda: slab(F.RateAndState(**AGEING), 0.0, initial_state=0.5), 12.0),
     "two states": (
         lambda: slab(
             F.TwoStateRateAndState(0.6, 0.01, 0.015, 0.01, second_b=0.002, second_distance=0.03),

@@ -45,10 +45,8 @@ LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MOST_COLUMNS = 800
 """The derivative of a return is a matrix up to this number of rows (1): a larger one takes longer than differences of runs."""
-LEAST_LISTED = 0.25
-"""Multipliers of a smaller size (1) are left out, beyond the first."""
 MANY_MULTIPLIERS, LEAST_LARGE = 6, 0.5
-"""Most multipliers (1), and the size (1) below which multipliers are only roughly known."""
+"""Most multipliers (1), and the size (1) below which all but the first are left out, or roughly known if by differences of runs."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +142,7 @@ class WaveOrbit:
         image = Image(place, self.period)
         slopes = self.slopes
         if slopes is not None:
-            return largest(slopes, MANY_MULTIPLIERS, max(LEAST_LISTED, self.sharp_waves))
+            return largest(slopes, MANY_MULTIPLIERS, max(LEAST_LARGE, self.sharp_waves))
         phases = place.mesh.phases / self.closed.begin
         swing: Any = sum(np.cos(math.pi * n * phases + n) / (n + 1) for n in range(8))
         start = np.concatenate([np.ones(sum(place.counts)), np.resize(swing, len(place.wave))])

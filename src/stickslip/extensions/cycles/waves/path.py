@@ -32,8 +32,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
-NEWTON_ROUNDS = 8
-"""Largest number of Newton's iterations in a step (1)."""
+NEWTON_ROUNDS, MOST_NO_NEARER = 8, 1
+"""Largest number of Newton's iterations in a step (1), and how often one may bring a return no nearer to its start."""
 CLOSED, STILL_CLOSED = 1e-8, 1e-6
 """A cycle of a branch closes to this share of its extent (1); where kinks forbid that, to the second."""
 MUCH_NEARER = 1e-2
@@ -99,7 +99,7 @@ class WavePath(Path):
 
         A derivative serves as long as steps with it bring the return much nearer to its start.
         """
-        share, last, runs, is_new = np.inf, np.inf, 0, True
+        share, last, runs, is_new, no_nearer = np.inf, np.inf, 0, True, 0
         bordered: Bordered | None = None
         for _ in range(NEWTON_ROUNDS):
             section = self.section(value)
@@ -107,6 +107,9 @@ class WavePath(Path):
             off = self._off(coordinates(now.start), value, target, way)
             last, share = share, max(missed_share(now), abs(off))
             if share <= CLOSED or (share <= STILL_CLOSED and share > 0.5 * last and is_new):
+                break
+            no_nearer += share > 0.5 * last
+            if no_nearer > MOST_NO_NEARER:
                 break
             is_new = bordered is None or share > MUCH_NEARER * last
             if bordered is None or is_new:
