@@ -7,8 +7,8 @@ one that left its contact, and a rigid body none, whose run may stand anywhere.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, Self
 
 import numpy as np
 
@@ -16,13 +16,8 @@ from stickslip.engine import TERMS
 from stickslip.foundation.arrays import Floats
 from stickslip.run import ExactRun
 
-POINTS = 10
-"""Points of Gauss and Legendre on each piece of a wave (1)."""
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
-WAVE_PLACES, WAVE_WEIGHTS = 0.5 * (_PLACES + 1.0), 0.5 * _WEIGHTS
-"""The points as places (1) on a piece, and their weights (1)."""
-POWERS_OF_VALUES = np.linalg.inv(np.vander(WAVE_PLACES, increasing=True))
-"""From values at the points to the coefficients of powers of the place (1)."""
+MOST_POINTS, FEWEST_POINTS, POINTS_IN_ALL = 10, 2, 2000
+"""Points of Gauss and Legendre on each piece of a wave (1), fewer where pieces are many, and about how many there are in all."""
 FIRST_ROW_OF_WAVES = 2
 """Rows of waves in layers (1) before those of the history."""
 ROOM = 64
@@ -33,6 +28,24 @@ NUMBERS = ("rate_now", "slip_now", "law_slip", "driver_rate", "driver_push")
 RATE, SLIP, LAW_SLIP, DRIVER_RATE, DRIVER_PUSH, LOAD = range(len(NUMBERS) + 1)
 """Numbers of the state of a run, the load of a rigid body, and behind them the states of the law."""
 FIRST_STATE = LOAD + 1
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points of Gauss and Legendre on a piece of a wave, as places (1), their weights (1), and powers of values there."""
+
+    places: Floats
+    weights: Floats
+    powers: Floats
+    """From values at the points to the coefficients of powers of the place (1)."""
+
+    @classmethod
+    @lru_cache(maxsize=16)
+    def on(cls, pieces: int) -> Self:
+        """Return those for so many pieces."""
+        places, weights = np.polynomial.legendre.leggauss(int(np.clip(POINTS_IN_ALL // max(pieces, 1), FEWEST_POINTS, MOST_POINTS)))
+        places = 0.5 * (places + 1.0)
+        return cls(places, 0.5 * weights, np.linalg.inv(np.vander(places, increasing=True)))
 
 
 @dataclass(frozen=True)
@@ -76,6 +89,11 @@ class Stand:
         count, run = self.run.count, self.run
         return run.time if count.is_block else float(count.trip * run.problem.round_trip_time)
 
+    @property
+    def points(self) -> Points:
+        """The points on each piece of a wave."""
+        return Points.on(self.pieces.stop - self.pieces.start)
+
     @cached_property
     def series(self) -> Floats:
         """The waves as polynomials: (waves, pieces, TERMS)."""
@@ -97,15 +115,15 @@ class Stand:
     @cached_property
     def phases(self) -> Floats:
         """The phases (s) of the points: of each piece a row."""
-        store, here, xi = self.run.store, self.pieces, WAVE_PLACES
+        store, here, xi = self.run.store, self.pieces, self.points.places
         return np.asarray(store.phase_from[here, None] + store.speed[here, None] * xi + store.bend[here, None] * xi * xi)
 
     @cached_property
     def weights(self) -> Floats:
         """The weights (1) of the points in a mean over the round trip."""
         store, here = self.run.store, self.pieces
-        lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * WAVE_PLACES
-        return np.asarray(lasts * WAVE_WEIGHTS / self.run.problem.round_trip_time)
+        lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * self.points.places
+        return np.asarray(lasts * self.points.weights / self.run.problem.round_trip_time)
 
     @cached_property
     def numbers(self) -> Floats:
@@ -141,8 +159,8 @@ class Stand:
         store, here, last = self.run.store, self.pieces, self.run.length - 1
         found = np.zeros((len(self.series), self.phases.size))
         if self.phases.size:
-            lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * WAVE_PLACES
-            slopes = sum(k * self.series[:, :, k, None] * WAVE_PLACES ** (k - 1) for k in range(1, TERMS))
+            lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * self.points.places
+            slopes = sum(k * self.series[:, :, k, None] * self.points.places ** (k - 1) for k in range(1, TERMS))
             found = (slopes / lasts).reshape(len(self.series), -1)
         pace = float(store.speed[last] + 2.0 * store.bend[last])
 
@@ -172,24 +190,32 @@ def copied(run: ExactRun, into: ExactRun) -> ExactRun:
 def disturb(run: ExactRun, by: Carried) -> None:
     """Add a disturbance to what a run carries over the end of a round trip; its waves are given at the points of the run itself."""
     end, state = Stand(run), run.state
-    here, count = end.pieces, here_count(end)
+    here = end.pieces
     for n, name in enumerate(NUMBERS):
         setattr(state, name, getattr(state, name) + float(by.numbers[n]))
     for n, change in enumerate(by.numbers[FIRST_STATE:].tolist()):
         state.state_now[n] += change
-    if not count:
-        run.scratch[0, 0] += by.numbers[LOAD]
+    if run.count.is_block:
+        wound = run.params.winding * state.speed * float(by.numbers[SLIP])  # what the integral of a loop takes on this piece
+        run.scratch[0, :2] += by.numbers[LOAD] + wound * state.xi, -wound
         return
-    series = by.waves.reshape(-1, count, POINTS) @ POWERS_OF_VALUES.T
+    powers = end.points.powers
+    many = len(powers)
+    series = by.waves.reshape(-1, here.stop - here.start, many) @ powers.T
     if run.count.slots > 0:
-        run.waves[end._rows, :, :POINTS] += np.moveaxis(series, 0, 1)
+        run.waves[end._rows, :, :many] += np.moveaxis(series, 0, 1)
     else:
-        run.store.load[here, :POINTS] -= series[0]
+        run.store.load[here, :many] -= series[0]
 
 
-def here_count(end: Stand) -> int:
-    """Return the number of pieces of waves."""
-    return end.pieces.stop - end.pieces.start
+def on_spring(run: ExactRun, between: Carried) -> Carried:
+    """Return a disturbance of a rigid body without what rounding leaves of load that its spring does not have.
+
+    In a position loop the integral makes a load of its own. In a play the spring bears none.
+    """
+    if run.count.is_block and run.params.winding == 0.0:
+        between.numbers[LOAD] = -run.params.stiffness * between.numbers[SLIP]
+    return between
 
 
 def flow_of_driver(flow: Carried, run: ExactRun, spare: ExactRun) -> Carried:
