@@ -160,7 +160,9 @@ def own_sizes(trips: int, steps: int) -> list[float]:
     impedance, trip = CHAOTIC.body.impedance, CHAOTIC.round_trip_time
     back, step = (impedance - DRIVE) / (impedance + DRIVE), trip / steps
     sent, turn = 2.0 * impedance * DRIVE * TURNS / (impedance + DRIVE), np.pi * np.arange(steps + 1) / steps
-    load, lead, rate, ahead, found = np.linspace(0.0, sent, steps + 1), np.zeros(steps + 1), 0.0, 0.0, []
+    load, rate, ahead = np.linspace(0.0, sent, steps + 1), 0.0, 0.0
+    lead: Any = np.zeros(steps + 1)
+    found: list[float] = []
     for n in range(trips):
         rates, push, pushed = [(rate, ahead)], load.tolist(), lead.tolist()
         for k in range(steps):

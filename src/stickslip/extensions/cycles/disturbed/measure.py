@@ -44,20 +44,18 @@ class Measure:
     @classmethod
     def of(cls, run: ExactRun) -> Self:
         """Return one for the runs of a problem."""
-        problem, count, law = run.problem, run.count, run.problem.friction
+        problem, count, law, kind = run.problem, run.count, run.problem.friction, Stand(run).kind
         decides = np.ones(FIRST_STATE + int(count.states))
         decides[RATE] = count.has_inertia
         decides[LAW_SLIP] = law.depends_on_slip
-        decides[SLIP] = count.is_block and (problem.body.structure == "loop" or problem.body.has_stops or problem.body.has_play)
-        decides[LOAD] = count.is_block
+        decides[SLIP], decides[LOAD] = kind.has_place(problem), kind.has_load()
         decides[[DRIVER_RATE, DRIVER_PUSH]] = problem.driver_kind in MOVING_DRIVERS
         least = LEAST_SHARE * abs(run.params.reference)
         rate, trip, numbers = least / run.params.impedance, problem.round_trip_time, np.zeros(len(decides))
         numbers[RATE] = numbers[DRIVER_RATE] = rate
         numbers[SLIP] = numbers[LAW_SLIP] = rate * trip
         numbers[LOAD] = numbers[DRIVER_PUSH] = least
-        joins = problem.driver_kind in MOVING_DRIVERS
-        return cls(not (decides.any() or joins), decides, numbers, np.full(len(Stand(run).series), least))
+        return cls(not decides.any(), decides, numbers, np.full(len(Stand(run).series), least))
 
     def see(self, stand: Stand) -> None:
         """Take note of how far all goes in the history that is kept."""
