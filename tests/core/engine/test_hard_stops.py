@@ -82,6 +82,7 @@ def reached(since: float, moves: Floats, motion: Floats, place: int, level: floa
     return float((expm(moves * since) @ motion)[place] - level)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.8, 1.0])
 def test_impacts_are_where_exponentials_meet_the_stop(restitution: float) -> None:
     given = block(restitution)

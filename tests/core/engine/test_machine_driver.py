@@ -41,7 +41,7 @@ CASES = [
 ]
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize(("body", "law"), CASES)
 @pytest.mark.parametrize("stepped", [False, True])
 def test_run_agrees_with_the_method_of_steps(body: ElasticSlab, law: ss.FrictionLaw, stepped: bool) -> None:

@@ -105,6 +105,7 @@ def problem(static: float = 0.4, kinetic: float = 0.3, **changed: Any) -> ss.Pro
 PROBLEM = ("pull_rate", "initial_load", "initial_rate", "normal_load")
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("rate", [0.0, 2e-3])
 def test_hunting_meets_exponentials_between_roots_of_rest(rate: float) -> None:
     solution = ss.simulate(problem(pull_rate=rate), 200.0, rtol=TIGHT)

@@ -38,6 +38,7 @@ def two_slabs(slab: ss.ElasticSlab, sides: str) -> ss.TwoSlabs:
     return ss.TwoSlabs(*one, *one, slab.normal_stress, sides=sides, contact_damping=slab.contact_damping, **drivers)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("dashpot", [0.5, 2.0, 3.0])
 def test_each_round_trip_changes_coulomb_slip_by_the_factor_1_less_2_z_over_z_plus_d(dashpot: float) -> None:
     """Not pulled, v = excess / (Z + D) at first, and an echo brings the excess over sliding friction times 1 - 2 Z / (Z + D).

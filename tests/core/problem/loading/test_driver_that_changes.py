@@ -115,7 +115,7 @@ def same(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> Floats:
     return (abs(one[0] - other[0]) < 1e-7 * STRESS) & (abs(one[1] - other[1]) < 1e-7 * STRESS / Z)
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=16)
 @pytest.mark.parametrize("seed", range(16))
 def test_runs_at_random_are_those_of_an_own_recursion_and_keep_energy(seed: int) -> None:
     rng = np.random.default_rng([46, seed])
@@ -172,6 +172,7 @@ def test_rest_of_thousands_of_round_trips_is_leapt_over_between_changes(seed: in
     assert balance(run, np.sort(rng.uniform(0.0, trips * R, 12))) < 1e-9
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     "others",
     [
