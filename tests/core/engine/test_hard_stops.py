@@ -176,6 +176,7 @@ def test_energies_balance_with_what_stops_take(restitution: float) -> None:
     assert proven.rate < 1e-9
 
 
+@pytest.mark.slow
 def test_a_run_with_stops_goes_on_bit_for_bit_from_a_file(tmp_path: Path) -> None:
     swings = block(0.7, 0.01, 0.02, pull_rate=ss.loading.Sinusoidal(0.0, 0.4, 1.3), initial_load=1.0)
     whole = ss.simulate(swings, 8.0)

@@ -244,6 +244,7 @@ def test_a_loop_without_an_integral_is_a_block_on_a_spring_bit_for_bit() -> None
         assert np.array_equal(one.load(t), two.load(t))
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_bit_for_bit_from_a_file(tmp_path: Path) -> None:
     given = problem(pull_rate=PULLS["swing"])
     whole = ss.simulate(given, 30.0)

@@ -325,6 +325,7 @@ def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pyt
         assert rough.parts[part] == pytest.approx(values, abs=1e-3 * float(np.ptp(values)))
 
 
+@pytest.mark.slow
 def test_energy_picture_of_a_slab_on_shaken_ground_is_that_of_the_run() -> None:
     """The work of the ground is part of the total, which the parts add up to."""
     found = answer("sliding-slab-shaken")

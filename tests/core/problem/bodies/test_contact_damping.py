@@ -173,6 +173,7 @@ def test_loads_stay_within_the_bound_for_which_branches_are_sought() -> None:
     assert 0.5e9 < largest < load_bound(problem, resistance(problem))
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_from_its_file_bit_for_bit(tmp_path: Path) -> None:
     problem = ss.Problem(SLAB, WEAKENING, pull_rate=0.3, initial_excess=1e6)
     ss.simulate(problem, 2.0 * R).to_netcdf(tmp_path / "half.nc")

@@ -238,6 +238,7 @@ def test_a_driver_that_only_ever_is_rigid_does_not_feel_the_far_stress(body: Any
     assert found[0] == found[1]
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("stop", [0.4, 1.7, 2.6, 5.5, 300.0])
 def test_a_run_that_is_taken_up_again_has_every_bit_of_one_that_never_stopped(stop: float, tmp_path: Path) -> None:
