@@ -28,7 +28,7 @@ test:
 test-week:
 	$(MAKE) test DRAW=$$(date -u +%G-W%V)
 
-# All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
+# All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, eight times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
 test-all:
 	$(MAKE) --jobs=2 compiled lint browser collected

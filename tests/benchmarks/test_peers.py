@@ -30,6 +30,7 @@ def test_scipy_agrees_with_the_reference(case: Case) -> None:
     assert error(scipy_peer, case, 1e-12) < 2e-9
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", stiff.CASES, ids=lambda case: case.name)
 def test_radau_and_the_engine_agree_with_the_reference_on_stiff_contacts(case: Case) -> None:
     assert float(stiff.radau(case, 1e-8).error()) < 2e-9
