@@ -197,7 +197,7 @@ def _checked(orbit: Orbit) -> Orbit:
 
 def places_of(history: History, met: Crossings, at_onset: bool = False) -> Floats:
     """Return what may vary on a section where a run crosses it, each in a row."""
-    return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
+    return np.asarray(coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset))
 
 
 def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
@@ -214,7 +214,9 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
     found = closed(Section(problem, at_onset, rtol), places[:, -1], float(met.time[-1] - met.time[-1 - every]))
     if at_onset or problem.friction.states or not found.sticks:
         return found
-    return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
+    along = found.closed.history
+    begins = places_of(along, onsets(along), at_onset=True)
+    return closed(Section(problem, at_onset=True, rtol=rtol), begins[:, 0], found.period) if begins.shape[1] else found
 
 
 def meetings(places: Floats, extent: Floats, share: float) -> int:
