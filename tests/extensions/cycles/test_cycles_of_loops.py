@@ -57,6 +57,8 @@ def test_hunting_under_coulomb_friction_is_that_of_matrix_exponentials(
     assert found.multipliers == pytest.approx([multiplier, 0.0], abs=1e-8)
     assert found.orbit.closed.impacts == impacts
     assert found.slip == pytest.approx(pull * period, rel=1e-10)
+    if not gains and way == math.inf and pull == 0.0:  # it goes as far behind the set point as beyond it
+        assert found.swing == pytest.approx(2.0 * lag, rel=1e-10)
 
 
 @pytest.mark.parametrize(("way", "restitution", "pull"), [(math.inf, 0.0, 0.01), (0.01, 0.6, 0.0)], ids=["ramp", "bounce"])
