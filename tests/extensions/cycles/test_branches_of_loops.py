@@ -19,7 +19,7 @@ MASS, KP, KI, NORMAL, STATIC, DYNAMIC = 1.0, 100.0, 200.0, 10.0, 0.6, 0.4
 SHORT_STEP = 0.02
 
 
-def hunting(law: ss.FrictionLaw, damping: float, step: float = SHORT_STEP, **stop: float) -> ss.Problem:
+def hunting(law: F.FrictionLaw, damping: float, step: float = SHORT_STEP, **stop: float) -> ss.Problem:
     body = ss.PositionLoop(MASS, KP, NORMAL, KI, damping, reference_step=step, **stop)
     return ss.Problem(body, law, pull_rate=0.0, initial_load=0.0)
 

@@ -3,7 +3,7 @@
 Near the set point slips are slow, and friction is S (mu0 + mu' v) there if it does not drop where slip begins. The slip that
 begins at a lag e under the load S mu0 obeys m v' = l - (c + S mu') v, l' = ki e - kp v, e' = -v from l = v = 0 on, until v is 0
 again. It ends at a lag of -rho e, and rho does not depend on e. Hunting grows from all small lags where the rho of both ways have a
-product above 1, and dies out below it. At 1 a cycle vanishes, whose rests have become infinitely long: the load grows by ki e.
+product above 1, and dies out below it. At 1 a cycle vanishes, and its rests have become infinitely long: the load grows by ki e.
 
 Source: Hensen, Van de Molengraft & Steinbuch 2003, Automatica 39, 2131, for hunting that ends.
 """
