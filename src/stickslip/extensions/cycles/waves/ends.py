@@ -10,7 +10,7 @@ import numpy as np
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.edges import CORNER, GRAZING, LOSS_OF_STICK, NOT_FOUND, CycleEdge
 from stickslip.extensions.cycles.found import FoundCycle
-from stickslip.extensions.cycles.measures import measures_of
+from stickslip.extensions.cycles.measures import least_rate, measures_of
 from stickslip.extensions.cycles.meeting import CLOSE_PERIOD, NEXT_TO_EDGE
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.mesh import mesh_of
@@ -58,7 +58,23 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
     if found >= GOES_ON and name != LOSS_OF_STICK:
         return EndOfPart(CycleEdge(CORNER, last.value, last.orbit), (path, last))
     edge = CycleEdge(name, last.value, last.orbit)
-    return EndOfPart(edge, _without_rest(path, edge) if name == LOSS_OF_STICK else None)
+    begun = _without_rest(path, edge) if name == LOSS_OF_STICK else None
+    if begun is None:
+        return EndOfPart(edge, None)
+    other, first = begun
+    return EndOfPart(edge._replace(value=_value_of_touch(other, first)), (other, _led_away(other, first)))
+
+
+def _value_of_touch(path: Path, first: PlaceOnBranch) -> float:
+    """Return the value (SI) where the least slip rate of cycles without rest is 0, next to the first one, on a line."""
+    try:
+        second = path.step(first, SHORTEST_AWAY)
+    except NoCycleError:
+        return first.value
+    rates = least_rate(first.orbit), least_rate(second.orbit)
+    if second.orbit.sticks or not rates[1] > rates[0]:
+        return first.value
+    return first.value - rates[0] * (second.value - first.value) / (rates[1] - rates[0])
 
 
 def _name_of_end(orbit: FoundCycle) -> str:
@@ -126,7 +142,8 @@ def with_rest(path: Path, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
     piece, place = int(at.piece[n]), float(at.xi[n])
     store = closed.history.store
     time = float(closed.history.start[piece] + place * (store.speed[piece] + place * store.bend[piece]))
-    return _next_to(path, edge, _place_at(closed, (piece, place), time), at_onset=True, level=1.0)
+    begun = _next_to(path, edge, _place_at(closed, (piece, place), time), at_onset=True, level=1.0)
+    return None if begun is None else (begun[0], _led_away(*begun))
 
 
 def _place_at(closed: Any, where: tuple[int, float], time: float) -> WavePlace:
@@ -157,7 +174,7 @@ def _next_to(path: Any, edge: CycleEdge, place: WavePlace, *, at_onset: bool, le
                 continue
             close = abs(found.orbit.period - edge.orbit.period) <= CLOSE_PERIOD * edge.orbit.period
             if close and found.orbit.sticks == at_onset:
-                return other, _led_away(other, found if found.way[-1] * sign > 0.0 else replace(found, way=-found.way))
+                return other, found if found.way[-1] * sign > 0.0 else replace(found, way=-found.way)
     return None
 
 
