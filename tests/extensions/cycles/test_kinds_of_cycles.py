@@ -118,6 +118,14 @@ def test_what_is_not_followed_is_refused_in_one_line(changes: dict[str, Any], sa
     assert str(error.value).startswith("cycle: ")
 
 
+def test_a_run_of_one_period_that_has_too_many_pieces_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if a million were ten: what the run says of itself is told."""
+    monkeypatch.setattr("stickslip.problem.run_options.MAX_PIECES", 10)
+    with pytest.raises(ss.InputError, match="cycle: a run of one period did not reach its end: too many pieces") as error:
+        ss.studies.cycle(stribeck(0.1, initial_load=0.0), near=2.0)
+    assert "\n" not in str(error.value)
+
+
 def test_where_steady_sliding_takes_all_no_cycle_is_found() -> None:
     with pytest.raises(ss.InputError, match=r"^cycle: .*(no other cycle|no cycle|does not come back)"):
         ss.studies.cycle(stribeck(1.0, initial_load=0.0))
