@@ -10,8 +10,7 @@ from stickslip.engine.state.layout import Counts, Floats, HistoryPiece, State, S
 def put_wave(store: Store, count: Counts, state: State, edges: Floats, series: Floats) -> None:
     """Put a wave into a history without pieces, as the load of a contact at rest, which sends back what it meets.
 
-    The first round trip is over then, and the second begins, whose first piece of load may jump. For the numbers see
-    `Session.begin_with`.
+    The first round trip is over then, and the second begins, whose first load may jump. Numbers are those of `Session.begin_with`.
     """
     pieces = len(series)
     store.pieces[:pieces] = 0

@@ -14,6 +14,7 @@ from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.krylov import solved
+from stickslip.extensions.cycles.waves.of_driver import moving
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
     MOST_DIRECTIONS,
@@ -30,6 +31,7 @@ from stickslip.extensions.cycles.waves.orbit import (
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
 NEWTON_ROUNDS = 8
@@ -59,8 +61,15 @@ class WavePath(Path):
     """How many states there are, and how many numbers the driver keeps (1)."""
 
     def section(self, value: float) -> Any:
-        """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
-        return WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
+        """Return the section of the problem with a value (SI) of the parameter.
+
+        Raises InputError if the problem refuses it, or if the driver has other numbers of its own there.
+        """
+        problem = self.problem_at(value)
+        if sum(moving(problem)) != self.counts[1]:
+            at = f"{self.parameter.name} = {brief(value, self.parameter.unit)}"
+            raise InputError(f"follow: a driver with {at} has a number of its own more or less: begin and end beside 0")
+        return WaveSection(problem, self.at_onset, self.rtol, self.level)
 
     def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.

@@ -41,9 +41,9 @@ class WavePlace:
 
     @property
     def scale(self) -> Floats:
-        """Their extents: sizes of the states, and how far the wave goes, for what the driver keeps as well."""
-        sizes, reach = np.abs(self.states), np.full(len(self.kept) + len(self.wave), np.ptp(self.wave))
-        return np.concatenate([sizes, reach]) + 1e-300
+        """Their extents: sizes of the states, how far the wave goes, and both together for what the driver keeps."""
+        reach = float(np.ptp(self.wave))
+        return np.concatenate([np.abs(self.states), np.abs(self.kept) + reach, np.full(len(self.wave), reach)]) + 1e-300
 
     @property
     def counts(self) -> tuple[int, int]:
