@@ -18,20 +18,20 @@ paper: compiled
 	$(BIN)/stickslip paper --out paper
 
 # The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. Before, the machine
-# code of the engine is made, while what only tests need is installed, the source is checked, a browser is looked for, and the bytecode
-# of the tests is written.
+# code of the engine is made, while what only tests need is installed, a browser is looked for, the bytecode of the tests is written,
+# and the source is checked: in this order, and three at a time, because installation and browser wait for the network.
 test:
-	$(MAKE) --jobs=2 compiled lint browser collected
+	$(MAKE) --jobs=3 compiled browser collected lint
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --draw=$(DRAW) --numprocesses auto --dist worksteal
 
 # The tests of `make test` with other cases each week; the seed that pytest prints repeats them: make test DRAW=2026-W48
 test-week:
 	$(MAKE) test DRAW=$$(date -u +%G-W%V)
 
-# All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
+# All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, eight times as many
 # drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
 test-all:
-	$(MAKE) --jobs=2 compiled lint browser collected
+	$(MAKE) --jobs=3 compiled browser collected lint
 	STICKSLIP_TESTS=all OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.

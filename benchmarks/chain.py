@@ -1,13 +1,20 @@
-"""`python -m benchmarks.chain`: chains of blocks under Coulomb friction, beside scipy with events and RK4.
+"""`python -m benchmarks.chain`: chains of blocks under Coulomb friction, beside scipy with events, RK4, and series in plain C.
 
-Both peers are numpy, forward slip only. RK4 is as usual: after each step a block whose rate is not above a small one, and whose
-load is within its strength, is held; how many events it counts depends on the step.
+The peers take forward slip only; the first two are numpy. RK4 is as usual: after each step a block whose rate is not above a small
+one, and whose load is within its strength, is held; how many events it counts depends on the step. The last is what one would write
+for this problem alone (c_kernel/chain.c): from event to event as ours, without proofs.
 """
 
 from __future__ import annotations
 
+import ctypes
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
+from functools import cache
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -26,8 +33,10 @@ SIZES = ((10, 1500.0), (40, 300.0))
 """Numbers of blocks, and durations (s)."""
 STEPS = (0.1, 0.03, 0.01)
 """Time steps of RK4 (s)."""
-BIG = ((1000, 4000.0),)
-"""Chains for ours alone. A step ends at each change of any block, so that a rupture of n blocks costs some n^2 steps of blocks."""
+SAMPLES = (8, 64)
+"""Samples of a step in which the C kernel looks for events: of 200 blocks it misses an onset with 8 of them."""
+BIG = ((200, 1000.0), (1000, 4000.0))
+"""Chains for ours and C. A step ends at each change of any block, so that a rupture of n blocks costs some n^2 steps of blocks."""
 
 
 class Outcome(NamedTuple):
@@ -125,18 +134,49 @@ def fixed_step(count: int, duration: float, step: float) -> Outcome:
     return Outcome(time.perf_counter() - begun, onsets, float(u.sum()))
 
 
+@cache
+def library() -> ctypes.CDLL | None:
+    """Compile the C kernel; None without a compiler."""
+    compiler = shutil.which("cc") or shutil.which("gcc")
+    if compiler is None:
+        return None
+    target = Path(tempfile.mkdtemp(prefix="stickslip-c-")) / "chain.so"
+    source = Path(__file__).parent / "c_kernel" / "chain.c"
+    subprocess.run([compiler, "-O3", "-march=native", "-shared", "-fPIC", str(source), "-o", str(target), "-lm"], check=True)
+    loaded = ctypes.CDLL(str(target))
+    loaded.solve.argtypes = (*[ctypes.c_int64] * 2, *[ctypes.c_double] * 5, ctypes.c_void_p)
+    loaded.solve.restype = ctypes.c_int64
+    return loaded
+
+
+def in_c(count: int, duration: float, samples: int) -> Outcome:
+    """Solve it from event to event by series in plain C, with samples of each step; nothing is found without a compiler."""
+    if (loaded := library()) is None:
+        return Outcome(np.nan, 0, np.nan)
+    begun, u = time.perf_counter(), initial(count)
+    onsets = loaded.solve(count, samples, PULL_RATE, COUPLING, STATIC, DYNAMIC, duration, u.ctypes.data)
+    return Outcome(time.perf_counter() - begun, onsets, float(u.sum()))
+
+
+def plain_c(count: int, duration: float) -> list[tuple[str, Outcome]]:
+    """Return what the C kernel finds, by its name in the table."""
+    return [(f"series in C, {samples} samples a step", in_c(count, duration, samples)) for samples in SAMPLES]
+
+
 def main() -> None:
     """Print a table."""
     ours(2, 1.0)  # machine code is made or loaded
+    library()
     table = Table("blocks", "method", "seconds", "onsets", "sum of slip (m)")
     for count, duration in SIZES:
         solved = ours(count, duration)
-        rows = [("ours", solved), ("DOP853 with events", with_events(count, duration))]
+        rows = [("ours", solved), *plain_c(count, duration), ("DOP853 with events", with_events(count, duration))]
         rows += [(f"RK4, step {step:g} s", fixed_step(count, duration, step)) for step in STEPS]
         for name, one in rows:
             table.add_row(str(count), name, f"{one.wall:.3g}", str(one.onsets), f"{one.slip:.9f}")
     for count, duration in BIG:
-        ours(count, duration)
+        for name, one in (("ours", ours(count, duration)), *plain_c(count, duration)):
+            table.add_row(str(count), name, f"{one.wall:.3g}", str(one.onsets), f"{one.slip:.9f}")
     Console().print(table)
 
 

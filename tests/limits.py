@@ -21,8 +21,8 @@ def all_tests() -> bool:
 
 
 def examples(many: int) -> int:
-    """Return how many examples are drawn: so many in `make test-all`, and a quarter of them in `make test`."""
-    return many if all_tests() else max(many // 4, 2)
+    """Return how many examples are drawn: so many in `make test-all`, and an eighth of them in `make test`."""
+    return many if all_tests() else max(many // 8, 2)
 
 
 def mypy_on(file: Path, code: str) -> str:

@@ -29,7 +29,6 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = Path(ss.__file__).parent
 OWN = [one.name for one in extensions() if type(one).__module__.startswith("stickslip.extensions.")]
 FEW = (
-    "tests/core/contact/test_uniqueness.py",
     "tests/core/cli/test_completion.py",
     "tests/core/problem/scenarios/test_run_by_name.py",
 )

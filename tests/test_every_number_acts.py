@@ -221,13 +221,13 @@ def silent(problem: ss.Problem) -> Iterator[str]:
             yield name
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=24)
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_every_number_of_a_problem_acts_or_is_refused(name: str) -> None:
     assert list(silent(PROBLEMS[name])) == []
 
 
-@pytest.mark.sampled(every=17)
+@pytest.mark.sampled(every=26)
 @pytest.mark.parametrize("body", ["block", "slab with mass"])
 @pytest.mark.parametrize("kind", LAWS)
 def test_every_number_of_a_law_acts_or_is_refused(kind: str, body: str) -> None:

@@ -99,7 +99,7 @@ def folder_of_runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("typed", MAY_LOAD)
 def test_a_command_loads_no_library_that_it_does_not_need(typed: str, folder_of_runs: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(folder_of_runs)

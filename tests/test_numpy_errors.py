@@ -28,7 +28,7 @@ def scenario(body: str, law: str) -> Scenario:
 CASES = [("slab", law) for law in LAWS] + [("block", law) for law in list(LAWS)[::4]] + [("lab-slab", "hyperbolic-rate")]
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize(("body", "law"), CASES)
 def test_uniqueness_and_check_need_no_setting_of_numpy(body: str, law: str) -> None:
     given = scenario(body, law)
@@ -37,7 +37,7 @@ def test_uniqueness_and_check_need_no_setting_of_numpy(body: str, law: str) -> N
     assert (str(ss.uniqueness(given)), str(examine(given))) == expected
 
 
-@pytest.mark.sampled(every=9)
+@pytest.mark.sampled(every=17)
 @pytest.mark.parametrize(("body", "law"), CASES)
 def test_a_run_and_its_tables_need_no_setting_of_numpy(body: str, law: str) -> None:
     given = scenario(body, law)
@@ -54,6 +54,7 @@ def test_a_run_and_its_tables_need_no_setting_of_numpy(body: str, law: str) -> N
     assert len(run.events) == len(expected.events)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("law", "name", "values"),
     [

@@ -118,6 +118,7 @@ def test_the_commands_name_scenarios_that_there_are() -> None:
         assert load_scenario(one.typed.split()[1]).problem is not None
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
 def test_a_peer_gives_its_answer(peer: Peer, tmp_path: Path) -> None:
     pytest.importorskip(peer.module)

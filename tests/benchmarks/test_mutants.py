@@ -90,6 +90,7 @@ def test_soak_draws_every_kind_reproducibly() -> None:
     assert repr(draw(1, 3)) == repr(draw(1, 3))
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("index", range(4))
 def test_soak_finds_nothing_wrong_with_the_first_problems(index: int) -> None:
     assert run(draw(1, index), limit=60.0).wrong == ()

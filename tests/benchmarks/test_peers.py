@@ -13,7 +13,7 @@ pytest.importorskip("scipy")
 from benchmarks.problems import CASES, DRIVEN, EVENT, SHOCKS, TRANSIT, Case
 from benchmarks.runner import UnavailableError
 
-from benchmarks import c_peer, heyoka_peer, ours, scipy_peer, stiff
+from benchmarks import c_peer, chain, heyoka_peer, ours, scipy_peer, stiff
 
 
 def error(method: ModuleType, case: Case, tolerance: float) -> float:
@@ -30,6 +30,7 @@ def test_scipy_agrees_with_the_reference(case: Case) -> None:
     assert error(scipy_peer, case, 1e-12) < 2e-9
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", stiff.CASES, ids=lambda case: case.name)
 def test_radau_and_the_engine_agree_with_the_reference_on_stiff_contacts(case: Case) -> None:
     assert float(stiff.radau(case, 1e-8).error()) < 2e-9
@@ -79,3 +80,15 @@ def test_the_error_shows_a_wrong_answer(case: Case) -> None:
     run = ours.runner(case, 1e-10)
     run.run()
     assert case.error(run.slip(case.times) * (1.0 + 1e-6), case.arrest) > 5e-7
+
+
+@pytest.mark.parametrize(("count", "duration"), [(40, 300.0), (200, 600.0)])
+def test_a_chain_by_series_in_c_has_the_same_onsets_and_slip(count: int, duration: float) -> None:
+    """Of 200 blocks only if it looks closely at each step: else it misses an onset, 344 for 345."""
+    if chain.library() is None:
+        pytest.skip("no C compiler")
+    found, exact = chain.in_c(count, duration, samples=64), chain.ours(count, duration)
+    assert found.onsets == exact.onsets
+    assert found.slip == pytest.approx(exact.slip, rel=1e-12, abs=0.0)
+    if count == 200:
+        assert chain.in_c(count, duration, samples=8).onsets == exact.onsets - 1

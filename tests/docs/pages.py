@@ -169,8 +169,8 @@ LONG = ('"10 years" --catalogue', '"35 mm/year"', "pull_rate=0.5)", "stickslip a
 
 
 LONG_PAGES = {
-    "block-or-slab", "drill-string", "energy", "fault-in-2d-and-3d", "have-a-record", "inside-the-slab", "large-faults",
-    "laws-and-bodies", "long-runs", "measured-friction",
+    "block-or-slab", "chain", "drill-string", "energy", "fault-in-2d-and-3d", "have-a-record", "inside-the-slab", "large-faults",
+    "laws-and-bodies", "long-runs", "measured-friction", "rate-law-on-a-fault",
     "reading-results", "teaching", "schemes", "schemes-at-a-jump", "stick-slip", "sweeps", "uniqueness", "which-rule",
 }  # fmt: skip
 """Pages that take more than five seconds each: they are run with the slow tests, and what they type is read with the quick ones."""

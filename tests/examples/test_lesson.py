@@ -68,6 +68,7 @@ def test_cells_of_the_second_lesson_run_in_order_and_only_soft_machines_stick_an
     assert float(re.findall(r"6 and 10 km: (\S+) km/s", said)[0]) == pytest.approx(3.5, rel=0.05)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("notebook", "answers"), LESSONS, ids=["first", "second"])
 @pytest.mark.parametrize(("factor", "verdict"), [(1.0, "is right"), (1.02, "is not right")])
 def test_closed_forms_are_the_answers(

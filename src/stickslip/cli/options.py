@@ -49,12 +49,6 @@ complete_curve = choices("series", names_in("solution.evaluation", "CURVES"))
 complete_quantity = completion("quantity")
 
 
-def complete_series(incomplete: str) -> list[str]:
-    """Return the lists of curves that begin with what is typed: names of curves with commas between them."""
-    before, comma, last = incomplete.rpartition(",")
-    return [f"{before}{comma}{name}" for name in complete_curve(last) if name not in before.split(",")]
-
-
 TABLES = (".csv", ".txt", ".tsv", ".dat", ".lvm", ".las", ".uff", ".unv")
 """How the names of tables of numbers end."""
 

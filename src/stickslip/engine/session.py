@@ -109,8 +109,7 @@ class Session(Generic[Options]):
         run = cls.begin(history.problem, options)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
-        capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        capacity = max(checkpoint.length, min(capacity, options.most_pieces + SPARE))
+        capacity = max(checkpoint.length, min(max(FIRST_CAPACITY, 3 * checkpoint.length // 2), options.most_pieces + SPARE))
         run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
         run.restore(checkpoint)
         return run

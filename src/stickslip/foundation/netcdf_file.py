@@ -224,7 +224,7 @@ def _dimensions(table: h5py.Dataset) -> list[str]:
 
 def _about(table: h5py.Group | h5py.Dataset) -> dict[str, Any]:
     """Return the attributes of a file or a table."""
-    return {name: _plain(value) for name, value in table.attrs.items() if name not in OF_NETCDF}
+    return {name: _plain(table.attrs[name]) for name in table.attrs if name not in OF_NETCDF}
 
 
 def _plain(value: Any) -> Any:

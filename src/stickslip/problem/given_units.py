@@ -133,9 +133,6 @@ def _problems_of(owner: Any) -> list[Problem]:
 
 def _problem_of(owner: Any) -> Problem | None:
     """Return the problem of a result, of its run or of its scenario."""
-    runs = getattr(owner, "_all_runs", None)
-    if callable(runs):
-        return _problem_of(next(iter(runs()), None))
     for name in ("problem", "_run", "slab", "scenario", "solution", "run"):
         found = getattr(owner, name, None)
         if isinstance(found, Problem):

@@ -52,7 +52,6 @@ from stickslip.run.source import (
     run_source,
 )
 from stickslip.run.study import (
-    RunsCompared,  # The result of a study that compares several runs over the time that all of them cover.
     Study,  # The result of a study: a table, a text and a figure.
     StudyWithDataset,  # The result of a study whose figure is drawn from a dataset, which `to_dataset` gives.
     TextProgress,  # A function that is called with a line of text on the progress of a study.
@@ -78,7 +77,6 @@ __all__ = [
     "PausedCatalogue",
     "Reader",
     "RunSource",
-    "RunsCompared",
     "SolverKind",
     "Study",
     "StudyWithDataset",

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
-from stickslip.foundation.constants import YEAR
 from stickslip.foundation.show import ShownAsTable
 from stickslip.problem import in_given_units
 from stickslip.run.progress import reporting
@@ -100,27 +98,3 @@ class StudyWithDataset(Study):
 
     def _drawn(self) -> Any:
         return self.to_dataset()
-
-
-class RunsCompared(Study):
-    """The result of a study that compares several runs over the time that all of them cover."""
-
-    def _all_runs(self) -> tuple[Solution, ...]:
-        raise NotImplementedError
-
-    @cached_property
-    def until(self) -> float:
-        """The end (s) of the comparison of runs: the earliest end of a run."""
-        return min(run.history.span[1] for run in self._all_runs())
-
-    @property
-    def ok(self) -> bool:
-        """True if every run reached its end."""
-        return all(run.status.ok for run in self._all_runs())
-
-    @property
-    def stopped(self) -> str:
-        """The reason why the comparison ends before the duration that was asked for; "" if it does not."""
-        reasons = ", ".join(dict.fromkeys(run.status.name for run in self._all_runs() if not run.status.ok))
-        years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
-        return f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if reasons else ""

@@ -109,6 +109,7 @@ def test_help_needs_few_seconds_of_the_processor():
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", templates.template_names())
 def test_new_prints_the_template(command, name):
     assert command("new", name).out == templates.template(name)
@@ -125,7 +126,7 @@ def test_new_lists_every_name(command, arguments: tuple[str, ...]):
     assert re.findall(r"^[a-z][a-z-]+", drilling, re.MULTILINE) == ["drill-string", "pipe-and-collar"]
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("name", of_each_kind(library.in_1d()))
 def test_check_prints_its_four_sections(command, name):
     shown = command("check", name)

@@ -85,6 +85,7 @@ def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("arguments", "message"), REFUSED)
 def test_bad_input_gives_one_line_and_changes_nothing(command, tmp_path: Path, begun: Path, arguments: list[str], message: str):
     (tmp_path / "bad.nc").write_text("no")

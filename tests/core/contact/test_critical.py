@@ -82,6 +82,7 @@ def test_the_edge_of_what_a_problem_accepts_can_be_critical():
         assert ss.uniqueness(slab_problem(law)).critical_value == dynamic
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("k", [0.2, 3.0])
 def test_of_two_critical_values_the_one_beside_the_present_value_is_told(k):
     """Friction falls by 0.5 k exp(-k), which is straight neither in k nor in its inverse."""

@@ -53,6 +53,7 @@ def test_all_slip_rates_are_found_at_a_load_within_reach_and_none_is_promised_be
         found.admissible(1.1 * found.known_to)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("rule", ["perfect-delay", "minimal", "maximal"])
 def test_a_run_under_such_a_law_goes_on(rule: str) -> None:
     run = ss.simulate(endless(initial_excess=1e6, selection=rule), 12.0)

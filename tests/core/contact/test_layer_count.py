@@ -112,7 +112,7 @@ def test_two_slabs_have_the_critical_rates_at_which_roots_cross_the_axis_and_no_
 # ---- motions drawn at random ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("seed", range(6))
 def test_no_verdict_on_a_bundled_body_contradicts_its_growth_rate_or_a_root(seed: int):
     draw = np.random.default_rng(100 + seed)

@@ -141,6 +141,7 @@ GROWING = {
 }
 
 
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("name", GROWING)
 def test_a_small_disturbance_of_an_exact_run_grows_as_it_is_said_to(name: str):
     """From a slip rate that is 1e-7 off, after other modes have faded: to 1e-3 in each period."""
@@ -177,6 +178,7 @@ def test_the_critical_pull_rate_of_a_damped_block_is_proven():
     assert found.slidings[0].traction == pytest.approx(3.0 + 2.0 * math.exp(-1.0), rel=1e-14, abs=0.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("mass", [1e-3, 1.0, 1e9])
 def test_the_critical_stiffness_is_that_of_rice_and_ruina(mass: float):
     """K = S (b - a)/Dc (1 + m V^2/(S a Dc)): a block 1e-9 softer is unstable, one 1e-9 stiffer is stable."""

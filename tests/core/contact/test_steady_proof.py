@@ -31,7 +31,7 @@ def found_for(law: Any, stiffness: float, mass: float = 10.0, damping: float = 0
     return proven_slidings(ss.Problem(body, law, pull_rate=1e-6))
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 @pytest.mark.parametrize("mass", [1e-3, 1e6])
 def test_the_critical_rate_of_rice_and_ruina_is_enclosed(evolution: str, mass: float):
@@ -88,6 +88,7 @@ def test_two_states_over_the_same_distance_act_as_one(evolution: str):
     assert change.enclosure[0] < exact < change.enclosure[1] < change.enclosure[0] * (1.0 + 1e-6)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("seed", range(2))
 def test_blocks_under_two_states_change_where_eigenvalues_do(seed: int):
     """Eigenvalues of four equations of motion, at 15 rates away from the changes; slopes from states alone, by hand."""
@@ -280,7 +281,7 @@ def test_slabs_drawn_at_random_change_where_eigenvalues_do(seed: int):
             assert modes_are_left(law, slab, float(rate)) == is_said_stable(found, float(rate)), rate
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("driver", [1e6, 9.8e6])
 @pytest.mark.parametrize("mass", [0.0, 1e4])
 def test_a_driver_that_gives_way_lets_slow_sliding_run_away(driver: float, mass: float):

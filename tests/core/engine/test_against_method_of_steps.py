@@ -13,7 +13,7 @@ from tests.core.engine.problems import KINDS, away_from_jumps
 from tests.core.run.reference.method_of_steps import method_of_steps
 
 
-@pytest.mark.sampled(every=23)
+@pytest.mark.sampled(every=39)
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_every_law_under_every_body_balances_energy_and_agrees_with_scipy(kind: str, body: str) -> None:
@@ -33,7 +33,7 @@ def test_every_law_under_every_body_balances_energy_and_agrees_with_scipy(kind: 
     assert run.slip(times) == pytest.approx(theirs, rel=0.0, abs=1e-6 * np.ptp(theirs))
 
 
-@pytest.mark.sampled(every=19)
+@pytest.mark.sampled(every=32)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", KINDS)
 def test_slip_and_rate_of_random_problems_agree_with_scipy(kind: str, seed: int) -> None:

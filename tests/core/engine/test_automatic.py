@@ -222,6 +222,7 @@ def test_a_full_history_is_written_and_goes_on_with_more_pieces(
     assert same_pieces(more, whole, len(whole.history))
 
 
+@pytest.mark.slow
 def test_a_long_run_that_was_stopped_goes_on_without_a_number_of_pieces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It had more than the default allows, because it was allowed more; it is not full."""
     file, short = tmp_path / "run.nc", 0.5 * EXACT_TRIPS * ROUND

@@ -101,6 +101,7 @@ def there_and_back(rate: float, size: float) -> tuple[ss.loading.Waypoints, Any,
     return ss.loading.Waypoints(at.tolist(), way.tolist()), pulled, tuple(at[1:].tolist())
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("seed", range(5))
 def test_a_block_with_a_play_moves_as_solve_ivp_says_in_both_directions(seed: int) -> None:
     draw = np.random.default_rng(seed)
@@ -141,6 +142,7 @@ def check_account(run: ss.Solution) -> None:
     assert np.abs(energy.balance).max() < 1e-9 * max(float(np.abs(energy.work).max()), 1.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(3))
 def test_a_dashpot_and_a_force_act_in_the_play_too(seed: int) -> None:
     """The end of spring and dashpot swings, and a force jumps; a body in the play is dragged by them alone."""
@@ -208,6 +210,7 @@ LAWS = {
 }
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", LAWS)
 def test_a_law_with_a_state_goes_through_the_play_as_solve_ivp_says(name: str) -> None:
     """The pull turns while the body slides, so that the spring lets go and takes it up on the other side."""

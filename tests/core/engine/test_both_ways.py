@@ -117,6 +117,7 @@ def test_a_block_slides_as_an_integrator_of_two_laws_does(name: str) -> None:
     assert np.diff(truth).min() < -1e-4
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", LAWS)
 def test_the_mirror_image_of_a_run_is_the_run_of_the_mirrored_laws(name: str) -> None:
     """Slip of the block to 1e-12 m, and slip rate of a slab to 1e-9 m/s: the same numbers but for the rounding of loads."""
@@ -158,7 +159,7 @@ def on_the_grid(law: dict[int, Callable[[float], float]], static: dict[int, floa
     return time, rate
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", ["coulomb", "one coefficient each", "of the rate", "by points"])
 def test_a_slab_slides_as_the_method_of_steps_says(name: str) -> None:
     """Slip rates within 1e-8 m/s of 0.5 m/s, but for the few points of the grid next to a jump."""
@@ -173,6 +174,7 @@ def test_a_slab_slides_as_the_method_of_steps_says(name: str) -> None:
     assert rate.min() < -0.05
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("body", [BLOCK, SLAB], ids=["block", "slab"])
 @pytest.mark.parametrize("name", LAWS)
 def test_the_same_law_both_ways_has_the_bits_of_the_law(name: str, body: ss.SpringBlock | ss.ElasticSlab) -> None:

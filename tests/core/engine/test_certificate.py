@@ -38,6 +38,7 @@ def test_no_step_lacks_more_than_its_bound(make: Callable[[int], ss.Problem]) ->
     assert max(shares) > 1e-6
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("make", RUNS)
 def test_a_step_that_is_bent_by_a_thousandth_exceeds_its_bound(make: Callable[[int], ss.Problem]) -> None:
     """The test above would notice it: in more than half of the pieces in which slip is faster than its rounding."""
@@ -71,6 +72,7 @@ def off_the_law(solution: ss.Solution, times: Floats) -> float:
     return float(np.max(np.where(rate != 0.0, miss, 0.0)))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("power", [4, 8, 20])
 @pytest.mark.parametrize("start", [0.0, 1e-6, 1e-3])
 def test_the_contact_equation_is_met_where_the_last_coefficients_are_next_to_nothing(power: int, start: float) -> None:

@@ -71,6 +71,7 @@ def test_the_waves_tile_the_round_trip_after_each_leap(printed: ss.Solution) -> 
         assert np.abs(low[1:] - high[:-1]).max(initial=0.0) <= 4.0 * np.spacing(turn)
 
 
+@pytest.mark.slow
 def test_energy_balances_after_leaps_beside_rest(printed: ss.Solution) -> None:
     """To 1e-9 of the heat: the load of a leap is the mean over the whole round trip, not over what slips of it."""
     energy = printed.energy(np.array([printed.duration]))

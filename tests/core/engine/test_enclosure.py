@@ -55,6 +55,7 @@ def escapes(seed: int, trees: int, width: float, depth: int = 4) -> tuple[int, i
     return outside, checked
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("width", "trees"), [(0.0, 80), (0.03, 80), (1.0, examples(80))])
 def test_bounds_hold_the_exact_values_and_derivatives(width, trees):
     outside, checked = escapes(seed=int(1e3 * width) + 7, trees=trees, width=width)

@@ -19,6 +19,7 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
+import pytest
 
 import stickslip as ss
 from tests.core.engine.truth.slab_events import ALPHA_ONE, COLUMNS, JUST_ABOVE_CRITICAL, Slab, Table
@@ -120,6 +121,7 @@ def test_the_first_micro_events_just_above_critical_agree_with_50_digits() -> No
     assert worst["duration"] <= 1.0, worst
 
 
+@pytest.mark.slow
 def test_events_that_break_into_fragments_agree_with_50_digits() -> None:
     exact = truth(FAST)
     found = simulated(FAST.slab, len(exact), rtol=1e-13)

@@ -24,7 +24,7 @@ FORMULAS: dict[str, Callable[[Any], Any]] = {
 """Friction is 0.6 up to the middle of the rise, which the slip reaches after some seconds."""
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("formula", FORMULAS)
 @np.errstate(over="ignore")
 def test_slip_and_friction_are_those_of_the_law(formula: str) -> None:

@@ -67,7 +67,7 @@ def drawn(rng: np.random.Generator, size: int, kind: Any, lanes: bool) -> Block 
     return block
 
 
-@pytest.mark.sampled(every=8)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("kind", LAWS)
 def test_functions_of_a_law_do_what_their_text_says(kind: str) -> None:
     law, rng = example_law(kind), np.random.default_rng(1)
@@ -101,6 +101,7 @@ HELPERS |= {"exp_radius": 3, "sine_radius": 3, "log_radius": 2, "power_radius": 
 HELPERS |= {"fused": 3, "min": 2, "max": 2, "abs": 1, "sqrt": 1, "sin": 1, "cos": 1, "exp": 1, "log": 1}
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("part", ["radii", "radii_in_lanes"])
 @pytest.mark.parametrize("helper", HELPERS)
 def test_helpers_do_what_their_text_says(helper: str, part: str) -> None:

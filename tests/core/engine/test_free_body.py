@@ -158,6 +158,7 @@ def integrated(
             t = until
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("body", [FREE, SPRUNG])
 @pytest.mark.parametrize("force", [SWING, POINTS, JUMPS], ids=["swing", "points", "jumps"])
 def test_a_force_moves_a_body_as_an_integrator_says_with_stops(body: ss.SpringBlock, force: ss.loading.LoadingHistory) -> None:
@@ -203,6 +204,7 @@ CASES = {
 CASE = pytest.mark.parametrize("problem", CASES.values(), ids=CASES.keys())
 
 
+@pytest.mark.sampled(every=5)
 @CASE
 def test_energies_balance_and_the_run_is_proven(problem: ss.Problem) -> None:
     run = ss.simulate(problem, 6.0)

@@ -21,6 +21,7 @@ from tests.core.engine.balls import EXACT
 from tests.core.engine.formulas import FORMULAS, JET, VALUE, functions_of, pointer
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", FORMULAS)
 def test_difference_keeps_its_digits(name: str) -> None:
     """mu(u0 + d, s) - mu(u0, 0) against 50 digits, for steps where plain subtraction has none left."""
@@ -51,7 +52,7 @@ def layout_of_k(rate: float, mass: float = 0.7, bend: float = 0.0, speed: float 
     return np.array([1.3, 0.9, 1.0, speed, bend, 0.0, 0.0, mass, 0.8, rate, 1.0, 0.0])
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize("bend", [0.0, 0.03])
 @pytest.mark.parametrize("name", FORMULAS)
 def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
@@ -73,7 +74,7 @@ def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
     assert np.abs(jet[1:]).max() > 1e-4
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("bend", [0.0, 0.03])
 @pytest.mark.parametrize("name", FORMULAS)
 def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> None:

@@ -82,6 +82,7 @@ def reached(since: float, moves: Floats, motion: Floats, place: int, level: floa
     return float((expm(moves * since) @ motion)[place] - level)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.8, 1.0])
 def test_impacts_are_where_exponentials_meet_the_stop(restitution: float) -> None:
     given = block(restitution)
@@ -175,6 +176,7 @@ def test_energies_balance_with_what_stops_take(restitution: float) -> None:
     assert proven.rate < 1e-9
 
 
+@pytest.mark.slow
 def test_a_run_with_stops_goes_on_bit_for_bit_from_a_file(tmp_path: Path) -> None:
     swings = block(0.7, 0.01, 0.02, pull_rate=ss.loading.Sinusoidal(0.0, 0.4, 1.3), initial_load=1.0)
     whole = ss.simulate(swings, 8.0)

@@ -62,6 +62,7 @@ def first_trip(problem: ss.Problem, mass: float, times: Any) -> Any:
     return done.y
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("mass", [1.0, 1e3, 3e5])
 def test_a_stiff_contact_agrees_with_scipy(mass: float) -> None:
     """The contact settles 3e8 times a second and slower; slip to 1e-8 of its end, in at most 400 pieces."""

@@ -62,6 +62,7 @@ def turning() -> ss.Problem:
     return replace(lugre(), body=ss.RotatingBlock(1.0, 2.0, 1.0))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("problem", [lugre, typed, turning])
 @pytest.mark.parametrize("duration", [40.0, 44.0, 80.0])
 def test_a_step_does_not_run_over_the_stribeck_rise_before_an_arrest(problem: Any, duration: float) -> None:
@@ -89,7 +90,7 @@ def drawn(seed: int, turns: bool) -> tuple[ss.Problem, float]:
     return ss.Problem(body, law, pull_rate=pull, **AT_REST), duration  # type: ignore[arg-type]
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("seed", "turns"), [(2, False), (6, False), (20, False), (10, True), (22, True)])
 def test_slip_under_bristles_does_not_depend_on_the_tolerance(seed: int, turns: bool) -> None:
     """Relative 1e-8 of slip, to rtol 1e-13; these five were off by 5e-7 to 5e-5."""

@@ -130,7 +130,7 @@ def drawn(seed: int) -> Slide:
     return Slide(expression, variable, width, 0.0 if lagged and draw.random() < 0.5 else mass, lag)
 
 
-@pytest.mark.sampled(every=17)
+@pytest.mark.sampled(every=24)
 @pytest.mark.parametrize("seed", range(24))
 def test_implicit_steps_meet_random_features_of_the_law(seed: int) -> None:
     check(drawn(seed))
@@ -216,7 +216,7 @@ def test_a_load_that_passes_through_zero_turns_the_slip(thickness: float, normal
     assert (mode[clear] == np.sign(load[clear])).all()
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-9])
 @pytest.mark.parametrize(("mass", "lag"), [(3e3, 0.0), (0.0, 0.05), (1e5, 0.05)])
 def test_the_tolerance_rules_the_error(mass: float, lag: float, rtol: float) -> None:

@@ -34,7 +34,7 @@ EACH_BODY = pytest.mark.parametrize("name", BODIES)
 BOTH_WAYS = pytest.mark.parametrize("way", [1, -1])
 
 
-@pytest.mark.sampled(every=13)
+@pytest.mark.sampled(every=30)
 @EACH_BODY
 @BOTH_WAYS
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
@@ -134,6 +134,7 @@ def test_a_slab_out_of_balance_agrees_with_scipy_from_the_start(name: str) -> No
     assert np.log(run.slip_rate(at)) == pytest.approx(theirs[1], rel=0.0, abs=1e-7)
 
 
+@pytest.mark.sampled(every=5)
 @EACH_BODY
 def test_the_energy_balances_with_the_kinetic_energy_of_the_start(name: str) -> None:
     """Over ten round trips; at the start a slab with velocities from v0 to V has rho h (v0^2 + v0 V + V^2) / 6."""

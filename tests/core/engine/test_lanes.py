@@ -62,7 +62,7 @@ def series(seed: int) -> Block:
     return block
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     function = compiled(FUNCTIONS[name])
@@ -133,7 +133,7 @@ def test_rows_in_lanes_are_stored_across_as_columns() -> None:
     assert not out[:, SIMD_WIDTH + 2 :].any()
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("name", FORMULAS)
 def test_series_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     part = "motion_jet" if name in WITH_MASS else "rate_jet"

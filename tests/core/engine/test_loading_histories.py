@@ -74,7 +74,7 @@ def test_a_stuck_slab_sums_its_bounces(name: str) -> None:
     assert np.abs(expected - SLAB.stiffness * problem.first_pull_rate * times).max() > 1e-3 * np.abs(expected).max()
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=9)
 @EACH
 def test_a_stuck_block_follows_its_driver(name: str) -> None:
     """K times what was pulled, by quadrature; to 1e-11 of the largest change."""

@@ -41,7 +41,7 @@ CASES = [
 ]
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize(("body", "law"), CASES)
 @pytest.mark.parametrize("stepped", [False, True])
 def test_run_agrees_with_the_method_of_steps(body: ElasticSlab, law: ss.FrictionLaw, stepped: bool) -> None:
@@ -169,6 +169,7 @@ def test_rest_is_for_ever_where_the_gain_cannot_free_the_contact() -> None:
     assert float(solution.load(299.0 * T)) == pytest.approx(3e5 + 0.5 * Z * 1e-3, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_run_goes_on_bit_for_bit(tmp_path) -> None:
     problem = ss.Problem(slab(0.5, 0.6, 0.2), COULOMB, pull_rate=0.03, initial_excess=-2e4)
     whole = ss.simulate(problem, 30.0 * T)

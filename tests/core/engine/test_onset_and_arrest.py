@@ -108,7 +108,7 @@ def duration_of(known: Known) -> float:
     return float(known.end[-1]) + 0.4
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=18)
 @pytest.mark.parametrize("rate", RATES.values(), ids=RATES)
 @pytest.mark.parametrize("backwards", [False, True])
 @pytest.mark.parametrize("name", KNOWN)

@@ -147,7 +147,7 @@ CHECKS = {
 """What compares each rule; `test_discs` compares those on discs."""
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("name", OPERATIONS)
 @pytest.mark.parametrize("check", list(dict.fromkeys(CHECKS.values())), ids=lambda check: check.__name__)
 def test_every_rule_of_every_operation_agrees_with_mpmath(name: str, check: Callable[[Operation], None]) -> None:
@@ -192,6 +192,7 @@ def test_what_an_operation_says_of_zeros_and_of_large_arguments_is_true(name: st
     assert bool(limited(tree)) == overflows
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_function_is_typed_traced_from_numpy_and_known_to_jax(name: str) -> None:
     jax = pytest.importorskip("jax.numpy")

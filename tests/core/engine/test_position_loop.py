@@ -105,6 +105,7 @@ def problem(static: float = 0.4, kinetic: float = 0.3, **changed: Any) -> ss.Pro
 PROBLEM = ("pull_rate", "initial_load", "initial_rate", "normal_load")
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("rate", [0.0, 2e-3])
 def test_hunting_meets_exponentials_between_roots_of_rest(rate: float) -> None:
     solution = ss.simulate(problem(pull_rate=rate), 200.0, rtol=TIGHT)
@@ -243,6 +244,7 @@ def test_a_loop_without_an_integral_is_a_block_on_a_spring_bit_for_bit() -> None
         assert np.array_equal(one.load(t), two.load(t))
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_bit_for_bit_from_a_file(tmp_path: Path) -> None:
     given = problem(pull_rate=PULLS["swing"])
     whole = ss.simulate(given, 30.0)

@@ -20,7 +20,7 @@ COMPILED_ANEW = ("table", "expression", "product", "sum")
 """Laws of which every example is a new formula, compiled for seconds: other tests run them."""
 
 
-@pytest.mark.sampled(every=13)
+@pytest.mark.sampled(every=22)
 @pytest.mark.parametrize("kind", [kind for kind in LAWS if kind not in COMPILED_ANEW])
 @given(data=st.data())
 @few
@@ -71,7 +71,7 @@ def obeys(run: ss.Solution) -> None:
     assert float(np.abs(energy.balance).max()) <= 1e-8 * size + rounding
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("kind", ["coulomb", "hyperbolic-rate", "exponential-stribeck", "piecewise-linear-rate", "power-stribeck"])
 @given(data=st.data())
 @few
@@ -93,6 +93,7 @@ def test_the_chosen_rate_is_admissible_and_stable(kind: str, data: st.DataObject
         assert stable[nearest]
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("rate", [0.0, 2e4])
 @pytest.mark.parametrize("driver", [math.inf, 0.0, 9.8e6, 9.7e6, 3e6, 1e9])
 def test_rest_is_that_of_the_closed_form(driver: float, rate: float) -> None:

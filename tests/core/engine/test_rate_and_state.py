@@ -42,6 +42,7 @@ def slowest_root(mass: float, stiffness: float, damping: float) -> complex:
     return SLIDING.block_growth(stiffness, mass, damping)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("damping", "evolution", "share"), [(0.0, "ageing", 0.98), (2e9, "slip", 1.02)])
 def test_a_block_grows_at_the_rate_of_the_linearised_system(damping: float, evolution: str, share: float) -> None:
     """k_c = S (b - a) / Dc - damping V / Dc, for hardly any mass.

@@ -53,6 +53,7 @@ def ramp_run(selection: str) -> ss.Solution:
     return ss.simulate(ss.Problem(slab, LAW, pull_rate=2.5, initial_load=48e6, selection=selection), 2 * HALF - 1e-9)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("selection", "pick"), [("minimal", min), ("maximal", max)])
 def test_minimal_and_maximal_rules_take_the_smallest_and_largest_root_of_a_polyline(
     selection: str, pick: Callable[[list[float]], float]

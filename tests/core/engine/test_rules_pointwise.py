@@ -110,7 +110,7 @@ def apart(problem: ss.Problem, rows: int, phases: int = 4001) -> float:
     return float(np.mean(np.abs(found - Pointwise(problem).rates(phase, rows)) > AGREE * scale, axis=1).max())
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("selection", SELECTION_RULES)
 @pytest.mark.parametrize("seed", range(8))
 def test_rule_picks_the_root_of_the_recursion(seed: int, selection: str) -> None:

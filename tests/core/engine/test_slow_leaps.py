@@ -174,6 +174,7 @@ def test_slip_is_the_integral_of_the_slip_rate_through_a_leap() -> None:
     np.testing.assert_allclose(store.slip[1:], grown[:-1], rtol=1e-10, atol=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("share", [0.01, 0.3, 0.9])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(share: float, tmp_path: Path) -> None:

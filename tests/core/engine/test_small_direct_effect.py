@@ -79,6 +79,7 @@ def test_a_slab_without_mass_follows_its_load() -> None:
         assert np.copysign(resisted, rate) == pytest.approx(load, abs=1e-9 * slab.normal_stress)
 
 
+@pytest.mark.slow
 def test_two_states_and_flash_heating_run_with_a_small_a_as_well() -> None:
     two = ss.friction.TwoStateRateAndState(0.6, 1e-3, 0.02, 5e-3, 0.01, 5e-2)
     start = dict(zip(("initial_state", "initial_second_state"), two.steady_state(PLATE) * 0.5, strict=True))

@@ -39,7 +39,7 @@ def swing(t: float) -> float:
     return 2e-3 / turn * (1.0 - math.cos(turn * t))
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("one", [LUGRE, TYPED_LUGRE, DAHL, WARM], ids=["lugre", "typed-lugre", "dahl", "two states"])
 @BOTH_WAYS
 def test_a_reversing_axis_follows_its_hysteresis_loop(one: Truth, way: float) -> None:

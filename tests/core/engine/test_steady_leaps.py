@@ -115,6 +115,7 @@ def test_backward_sliding_is_the_mirror_image() -> None:
 UNSTABLE = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-7, 1e-4)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     "problem",
     [
@@ -150,7 +151,7 @@ def test_the_first_round_trips_of_sliding_are_all_run() -> None:
     assert len(ss.simulate(CASES["fades"], 0.9 * EXACT_TRIPS * LAB.two_way_time).creep) == 0
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("case", ["swings", "state"])
 @pytest.mark.parametrize("share", [0.03, 0.5, 0.999])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(case: str, share: float, tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ CASES = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("case", CASES)
 def test_a_leap_over_swings_lands_where_computing_each_period_does(case: str) -> None:
     """Slip and slip rate in the periods after the landing: within the stated error, and 1e-12 of the slip by rounding."""
@@ -58,6 +59,7 @@ def test_the_stated_error_is_far_below_the_swing() -> None:
     assert leaping.creep.error.max() < 1e-12
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("name", "starts", "pieces"),
     [

@@ -61,6 +61,7 @@ LAWS: dict[str, ss.friction.FrictionLaw] = {
 }
 
 
+@pytest.mark.sampled(every=4)
 @BOTH_WAYS
 @pytest.mark.parametrize("name", LAWS)
 def test_under_a_law_of_slip_a_thrown_block_stops_where_its_energy_is_spent(name: str, way: int) -> None:

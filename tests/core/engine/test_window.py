@@ -48,6 +48,7 @@ def same_slip(early: ss.Solution, late: ss.Solution) -> tuple[float, float]:
     return float(np.abs(slips[1] - slips[0]).max() / whole), float(np.abs(seconds - slips[0]).max() / whole)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_event_is_as_sharp_after_900_years_as_after_a_second(kind: str) -> None:
     """The run's seconds, which late in it are 4e-6 apart, do not show it: the tolerance would notice."""

@@ -236,6 +236,7 @@ def test_a_run_begins_only_where_the_formula_is_friction(text: str, slip: float,
     assert message in str(error.value)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("text", ["0.6 - 0.01*u*u", "0.6 + 0.2*exp(-u/1e-4)", "0.2 + 0.4/(1 - u)"])
 def test_a_law_that_ends_beyond_what_a_run_reaches_is_a_law(text: str) -> None:
     run = ss.simulate(starting(text), 6.0)

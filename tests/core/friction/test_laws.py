@@ -117,7 +117,7 @@ def inside(law: FrictionLaw, i: int, data: st.DataObject) -> tuple[float, float]
     return (bound, free) if law.knot_variable == "slip" else (free, bound)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @KINDS
 @given(data=st.data())
 @quick
@@ -143,7 +143,7 @@ def test_friction_stays_in_its_range_is_continuous_at_knots_and_depends_on_what_
         assert law.piece_coefficient(i, *at) == pytest.approx(law.piece_coefficient(i + 1, *at), rel=0, abs=1e-12)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @KINDS
 @given(data=st.data())
 @quick
@@ -181,7 +181,7 @@ def test_compiled_code_is_the_formula(kind: str, data: st.DataObject) -> None:
     np.testing.assert_allclose(out[:0:-1], law.slopes(slip, rate)[:2], rtol=1e-9, atol=1e-11)
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @KINDS
 @given(data=st.data())
 @quick

@@ -44,6 +44,7 @@ class Exact:
     )
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", LAWS)
 def test_a_law_that_overflows_harmlessly_has_its_value_and_slope_at_every_rate(name: str) -> None:
     law = ss.friction.FromFunction(lambda v: LAWS[name](v, np))

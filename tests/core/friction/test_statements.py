@@ -199,6 +199,7 @@ def test_an_honest_class_is_never_refused(static: float, dynamic: float, rate: f
     ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), law, initial_excess=0.0)
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("body", ["slab", "block"])
 def test_the_example_of_every_law_is_honest(name: str, body: str) -> None:

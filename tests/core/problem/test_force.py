@@ -66,6 +66,7 @@ def test_a_stiffness_below_0_is_no_spring() -> None:
         ss.SpringBlock(1.0, -30.0, 20.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("text", [SLIDES, TURNS])
 def test_a_scenario_pushes_as_python_does(text: str, tmp_path: Path) -> None:
     file = tmp_path / "pushed.toml"

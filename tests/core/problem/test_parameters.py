@@ -20,6 +20,7 @@ def problem(law: ss.friction.FrictionLaw) -> ss.Problem:
     return ss.Problem(SLAB, law, initial_slip=0.25, initial_excess=0.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", LAWS)
 def test_every_number_of_every_law_can_be_put_back_and_changed(kind: str) -> None:
     given = read_scenario(template("slab", kind), "new").problem

@@ -33,6 +33,7 @@ def problem(body: Any = SLAB, law: Any = COULOMB, **fields: Any) -> ss.Problem:
     return ss.Problem(body, law, **({"pull_rate": 0.01, "initial_load": 5.9e5} | fields))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("made", "said"),
     [

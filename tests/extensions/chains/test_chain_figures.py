@@ -85,6 +85,7 @@ def test_energies_between_events_are_what_the_driver_gave() -> None:
     assert (np.diff(found["time"]) >= 0.0).all()
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ["catalogue", "rupture", "energy", "frequency"])
 def test_every_figure_is_drawn_where_it_is_asked_for(name: str) -> None:
     plots = ChainPlots(run())

@@ -22,6 +22,7 @@ def alone(law: ss.friction.FrictionLaw, pull_rate: float, initial_slip: float = 
 # ---- laws whose curve the series do not see --------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("exponent", [1, 2])
 @pytest.mark.parametrize("initial_slip", [-0.7, -5.0, -50.0])
 def test_an_exponential_law_is_seen_from_far_above_its_rate(exponent, initial_slip):
@@ -36,6 +37,7 @@ def test_an_exponential_law_is_seen_from_far_above_its_rate(exponent, initial_sl
     assert "proven on complex discs" in run.proof()
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("exponent", [1, 2])
 def test_two_blocks_under_an_exponential_law_agree_with_dop853(exponent):
     """Two blocks that slip from the start, to where the first one turns back: to 1e-10 m of DOP853 at 1e-13."""

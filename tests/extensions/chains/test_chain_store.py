@@ -50,6 +50,7 @@ def test_a_run_in_a_folder_is_the_run_in_memory(tmp_path: Path) -> None:
     assert np.array_equal(opened.motion(1000.0, 2900.0, 40).slip, whole.motion(1000.0, 2900.0, 40).slip)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("stop", [0.5, 1234.5])
 def test_a_run_that_is_resumed_has_the_bits_of_one_that_never_stopped(tmp_path: Path, stop: float) -> None:
     whole = ss.simulate(_chain(), 3000.0, keep="changes")
@@ -109,6 +110,7 @@ def test_a_chain_under_a_smooth_law_is_resumed_bit_for_bit(tmp_path: Path) -> No
     _same(ss.resume(tmp_path / "a.zarr", 400.0), whole)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("many", [1, 17])
 def test_a_run_ends_after_so_many_events_and_goes_on_from_there(tmp_path: Path, many: int) -> None:
     whole = ss.simulate(_chain(), 3000.0, keep="changes")
@@ -122,6 +124,7 @@ def test_a_run_ends_after_so_many_events_and_goes_on_from_there(tmp_path: Path, 
     _same(ss.resume(tmp_path / "a.zarr"), whole)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("duration", [299.0, 100.0])
 def test_a_run_does_not_end_before_the_time_that_it_has_reached(tmp_path: Path, duration: float) -> None:
     """Its last event is over long before: the state that it goes on from is older than its end."""
@@ -212,6 +215,7 @@ def _other(arrays: Any, attributes: Any) -> None:
     attributes["digest"] = "0"
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("change", [_piece, _block, _nan, _rows, _negative, _fewer, _other])
 def test_a_state_that_no_run_has_is_refused_in_one_line(kept: Path, tmp_path: Path, change: Any) -> None:
     folder = tmp_path / "b.zarr"

@@ -138,7 +138,7 @@ CURVED = {
 }
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=10)
 @pytest.mark.parametrize("name", CURVED)
 @pytest.mark.parametrize("seed", [0, 1])
 def test_laws_that_are_not_straight_agree_with_dop853(name, seed):

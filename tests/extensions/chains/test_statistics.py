@@ -73,6 +73,7 @@ def test_a_cut_far_away_changes_nothing() -> None:
     assert slope(0.4, 0.0, 12.0) == pytest.approx(slope(0.4), rel=1e-10, abs=0.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("b", [0.6, 1.0, 1.5])
 @pytest.mark.parametrize("width", [0.0, 0.1, 0.5])
 def test_the_slope_of_drawn_magnitudes_is_that_of_their_law(b: float, width: float) -> None:
@@ -89,6 +90,7 @@ def test_the_slope_is_that_of_a_peer_that_is_exact_for_bins() -> None:
     assert found.b == pytest.approx(1.0040396525586752, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("given", [None, 4.0])
 def test_one_small_event_among_100_000_changes_nothing(given: float | None) -> None:
     magnitudes = in_bins(100_000)
@@ -102,6 +104,7 @@ def test_one_small_event_among_100_000_changes_nothing(given: float | None) -> N
     assert beside.b == pytest.approx(alone.b, rel=1e-4, abs=0.0)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("width", "largest"), [(0.0, None), (0.3, None), (0.0, 1.0)])
 def test_the_interval_holds_the_truth_as_often_as_it_says(width: float, largest: float | None) -> None:
     held = 0

@@ -1,7 +1,7 @@
 """Cycles without the package: hunting by matrix exponentials or DOP853, and a block on a spring with a play under bristles.
 
-The state of an axis is the lag e behind its reference, the slip rate v and the force q of the integral, in SI. Events are located by
-`brentq` or by the events of `solve_ivp`, cycles by `brentq`, and multipliers are differences of returns.
+The state of an axis is the lag e behind its reference, the slip rate v and the force q of the integral, in SI. Events are located
+by `brentq` or by the events of `solve_ivp`, cycles by `brentq`, and multipliers are differences of returns.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from scipy.optimize import brentq
 WIDE = np.array([-2.0, -1.0, 1.0, 2.0])
 WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 """A central difference of fourth order."""
+MOST_STEPS = 100_000
+"""Steps, slips or events after which a motion counts as lost (1)."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +50,9 @@ class Axis:
         )
         length = 0.02 * math.sqrt(m / self.kp)
         step, time, now = expm(length * matrix), 0.0, np.append(state, 1.0)
-        while True:
+        for _ in range(MOST_STEPS):
             new = step @ now
-            hit, back = new[0] < self.stop, way * new[1] < 0.0 and time > 0.0
+            hit, back = new[0] < self.stop, way * new[1] < 0.0 and (time > 0.0 or now[1] != 0.0)
             if hit or back:
 
                 def off(lasts: float, n: int, now: Any = now) -> float:
@@ -60,11 +62,12 @@ class Axis:
                 lasts = min(ends)
                 return (expm(lasts * matrix) @ now)[:3], time + lasts, bool(hit and lasts == ends[0])
             now, time = new, time + length
+        raise AssertionError("the slip does not end")
 
     def next_onset(self, lag: float) -> tuple[float, float]:
         """Return the lag at the next onset of forward slip after one at a lag, and the time between them."""
         state, way, time = np.array([lag, 0.0, self.static - self.kp * lag - self.kd * self.pull]), 1, 0.0
-        while True:
+        for _ in range(MOST_STEPS):
             state, lasts, hit = self.slipped(state, way)
             time += lasts
             if hit and self.restitution * abs(state[1]) > 1e-9:
@@ -77,6 +80,7 @@ class Axis:
             state, time = np.array([e, 0.0, way * self.static - self.kp * e - self.kd * self.pull]), time + lasts
             if way > 0:
                 return float(e), time
+        raise AssertionError("forward slip does not begin")
 
     def rested(self, lag: float, load: float) -> tuple[float, int]:
         """Return how long a rest lasts from a lag and a load on, until slip begins, and in what direction it does."""
@@ -166,15 +170,11 @@ class BlockWithPlay:
         for one in kinks:
             one.terminal = True
         passed = _event(lambda time, y: y[1] - self.pull if time > 0.7 * guess else -1.0, 1.0)
-        while True:
+        for _ in range(MOST_STEPS):
             run = solve_ivp(self.pace, (time, 2.0 * guess), state, "DOP853", events=[passed, *kinks], rtol=1e-11, atol=1e-13)
             state, time = run.y[:, -1], float(run.t[-1])
             if len(run.t_events[0]):
                 return self.stiffness * (state[0] - self.half), float(state[2]), time
-            state, time = self._past(state, time, run)
-
-    def _past(self, state: Any, time: float, run: Any) -> tuple[Any, float]:
-        """Return a state a little behind an event, so that it is not met again."""
-        step = 1e-9
-        on = solve_ivp(self.pace, (time, time + step), state, "DOP853", rtol=1e-11, atol=1e-15)
-        return on.y[:, -1], time + step
+            past = solve_ivp(self.pace, (time, time + 1e-9), state, "DOP853", rtol=1e-11, atol=1e-15)
+            state, time = past.y[:, -1], time + 1e-9  # so that the event is not met again
+        raise AssertionError("the slip rate does not pass the pull rate again")

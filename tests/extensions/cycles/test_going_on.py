@@ -48,15 +48,16 @@ def test_cycles_of_twice_the_period_are_followed_from_the_edge_and_back_to_it() 
 
 
 class Stop:
-    """A function for the progress that presses Ctrl-C after some lines."""
+    """A function that presses Ctrl-C when it is called for the given time, such as with a line of progress."""
 
     def __init__(self, after: int) -> None:
         self.left = after
 
-    def __call__(self, line: str) -> None:
+    def __call__(self, *_: Any) -> tuple[()]:
         self.left -= 1
         if self.left == 0:
             raise KeyboardInterrupt
+        return ()
 
 
 @pytest.mark.parametrize("after", [1, 3, pytest.param(9, marks=pytest.mark.slow), pytest.param(12, marks=pytest.mark.slow)])
@@ -109,6 +110,24 @@ def test_the_command_writes_a_branch_of_too_many_cycles(tmp_path: Path, command:
     assert done.code == 0
     assert "Ended at loading.pull_rate" in done.out
     assert len(pd.read_csv(table, comment="#")) == 3
+
+
+def test_ctrl_c_leaves_what_there_is_of_a_branch_in_the_table_and_resume_ends_it(
+    tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The table is then that of the branch that was never interrupted, to the last digit."""
+    (tmp_path / "brake.toml").write_text(BRAKE, encoding="utf-8")
+    whole, table = tmp_path / "whole.csv", tmp_path / "a.csv"
+    given = "cycle", str(tmp_path / "brake.toml"), "--along", "pull_rate", "--to", "0.3", "--steps", "3", "--out"
+    assert command(*given, str(whole)).code == 0
+    with monkeypatch.context() as patched:
+        patched.setattr(following, "edges_between", Stop(2))
+        done = command(*given, str(table))
+    assert (done.code, done.err) == (130, "stickslip: interrupted\n")
+    assert "Interrupted at loading.pull_rate" in done.out
+    assert 1 <= len(pd.read_csv(table, comment="#")) < len(pd.read_csv(whole, comment="#"))
+    assert command(*given, str(table), "--resume").code == 0
+    pd.testing.assert_frame_equal(pd.read_csv(table, comment="#"), pd.read_csv(whole, comment="#"), check_exact=True)
 
 
 @pytest.mark.parametrize(("pull", "to"), [(0.28, 0.35), (0.28, 0.3), (0.14, 0.4)])

@@ -37,6 +37,7 @@ def test_a_fault_and_a_block_have_none(name: str) -> None:
     assert offered(ss.load_scenario(name)) == []
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", NAMES[:2])
 def test_what_the_dashpot_takes_is_a_part_of_the_energy_picture(name: str) -> None:
     """Parts add up to the total within 3e-4, as without a dashpot, and what is damped is what `energy` says within 1e-9."""

@@ -56,7 +56,7 @@ def everywhere(test):
     return pytest.mark.sampled(every=7)(pytest.mark.parametrize("name", names)(test))
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=14)
 @everywhere
 def test_run_is_that_of_simulate_bit_for_bit(name: str) -> None:
     own, other = answer(name).solution, ss.simulate(name)
@@ -325,6 +325,7 @@ def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pyt
         assert rough.parts[part] == pytest.approx(values, abs=1e-3 * float(np.ptp(values)))
 
 
+@pytest.mark.slow
 def test_energy_picture_of_a_slab_on_shaken_ground_is_that_of_the_run() -> None:
     """The work of the ground is part of the total, which the parts add up to."""
     found = answer("sliding-slab-shaken")
@@ -425,6 +426,7 @@ STEADY = ss.Problem(LAB, ss.friction.FromExpression("0.6 + 0.1*v"), pull_rate=1e
 RESTING = ss.Problem(LAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=5e-16, initial_excess=-7e5)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("problem", [STEADY, RESTING], ids=["slides steadily", "rests"])
 def test_a_run_over_a_million_million_round_trips_is_answered_with_pictures_of_the_usual_size(problem: ss.Problem) -> None:
     found = solve(Scenario(problem, YEARS * ss.YEAR))

@@ -60,7 +60,7 @@ def one_line(error: pytest.ExceptionInfo[InputError]) -> str:
 # ---- controls ---------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @everywhere
 def test_what_a_field_shows_reads_back(name: str) -> None:
     setting = Setting.bundled(name)
@@ -71,7 +71,7 @@ def test_what_a_field_shows_reads_back(name: str) -> None:
             assert (again.unit, again.size, again.slider) == (control.unit, control.size, control.slider)
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @everywhere
 def test_sliders_hold_the_value_and_what_they_give_is_read(name: str) -> None:
     setting = Setting.bundled(name)
@@ -155,7 +155,7 @@ def test_bad_entry_is_refused_in_one_line(path: str, typed: str, part: str) -> N
     assert part in one_line(error)
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=26)
 @everywhere
 def test_every_exchange_of_a_kind_makes_a_scenario(name: str) -> None:
     for setting in exchanged(name):
@@ -250,7 +250,7 @@ def test_unknown_kind_is_refused_in_one_line(table: str) -> None:
     one_line(error)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(
     "name", ["fig6-slab", "fig5-slab-printed", "fig6-block-reconstructed", "stress-pulse-slab", "direct-shear-block"]
 )
@@ -290,7 +290,7 @@ def test_scenarios_are_offered_once_each_with_the_paper_first() -> None:
 # ---- links ------------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @everywhere
 def test_links_reproduce_every_setting(name: str) -> None:
     for setting in exchanged(name):
@@ -374,7 +374,7 @@ def test_setting_that_is_too_large_for_a_link_says_so() -> None:
 # ---- files ------------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @everywhere
 def test_scenario_file_makes_the_same_problem(name: str) -> None:
     for setting in exchanged(name):

@@ -61,6 +61,7 @@ def test_a_range_can_be_typed_with_units_and_a_wrong_one_is_refused_in_the_bar(e
         assert explorer.strip == good
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     ("scenario", "parameter", "low", "high", "unit"),
     [
@@ -92,6 +93,7 @@ def test_a_typed_number_and_the_axis_of_the_strip_are_in_the_unit_of_the_field(e
     assert explorer.setting.scenario().problem.body.thickness == pytest.approx(5e3, rel=0.01)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("data", [None, 7, {}, {"parameter": 3}, {"parameter": "no.such"}, {"parameter": "run.selection"}])
 def test_a_message_that_makes_no_sense_changes_nothing(explorer: Explorer, view: StripView, data: Any) -> None:
     view.bar._handle_msg(data)

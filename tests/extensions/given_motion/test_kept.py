@@ -57,7 +57,7 @@ def check_same(one: Any, other: Any) -> None:
     pd.testing.assert_frame_equal(one.at(one.times), other.at(other.times), check_exact=True)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_file_gives_the_run_back(name: str, tmp_path: Path) -> None:
     moved, duration = RUNS[name]
@@ -67,7 +67,7 @@ def test_a_file_gives_the_run_back(name: str, tmp_path: Path) -> None:
     check_same(run, ss.open_solution(run.to_netcdf(tmp_path / "other.nc")))
 
 
-@pytest.mark.sampled(every=9)
+@pytest.mark.sampled(every=36)
 @pytest.mark.parametrize("share", [0.2, 0.55, 0.83, 0.999])
 @pytest.mark.parametrize("name", RUNS)
 def test_a_resumed_run_is_the_uninterrupted_one_bit_for_bit(name: str, share: float, tmp_path: Path) -> None:
@@ -96,7 +96,7 @@ class Stops:
         monkeypatch.setattr(StatesUnderWay, "advance", slowly)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize("calls", [1, 3, 6])
 @pytest.mark.parametrize("name", ["steps", "to and fro", "pulsing load", "with a rest"])
 def test_ctrl_c_leaves_a_file_that_goes_on(name: str, calls: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -264,7 +264,7 @@ WRONG = {
 }
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=17)
 @pytest.mark.parametrize("name", WRONG)
 def test_a_file_that_no_run_wrote_is_refused_in_one_line(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     change, why = WRONG[name]

@@ -77,6 +77,7 @@ def test_numbers_behind_a_table_of_events_are_found_within_their_errors(seed: in
     assert (found.table.uncertainty / found.table.value < 0.03).all()  # 1 % of scatter, 40 events: small, and not without bounds
 
 
+@pytest.mark.slow
 def test_a_table_without_scatter_gives_the_numbers_to_a_thousandth() -> None:
     table = events(0, scatter=1e-9)
     found = fit(dict(zip(forces(0), table.values(), strict=True)))

@@ -42,6 +42,7 @@ def line(figure: Figure, panel: int, text: str) -> Floats:
     return np.array(found.get_data())
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", RESULTS)
 def test_points_and_law_are_those_of_the_result_in_the_unit_of_the_axis(name: str) -> None:
     result, figure = result_of(name), plot_fit(result_of(name))

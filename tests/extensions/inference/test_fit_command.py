@@ -47,6 +47,12 @@ def test_parameters_are_shown_with_uncertainty_and_unit(command, points):
     assert re.search(r"^alpha +1 +s/m \(fixed\)", held.out, re.MULTILINE)
 
 
+def test_a_row_of_units_and_decimal_commas_are_repeated(command):
+    Path("rig.csv").write_text("v;mu\nmm/s;-\n0,1;0,7\n0,5;0,65\n1;0,6\n")
+    shown = command("fit", "rig.csv", "--law", "coulomb")
+    assert "Slip_rate (column 1) is in mm/s, as the row of units in line 2 says.\nDecimal commas are read as points." in shown.out
+
+
 def test_the_block_of_a_fit_takes_the_numbers_of_a_machine(command, points):
     machine = [f"--set={one}" for one in ("normal_force=50 kN", "mass=20 kg", "stiffness=1 MN/m", "pull_rate=1 mm/s")]
     fitting = ["fit", "data.csv", "--law", "hyperbolic-rate", "--body", "block", *machine]

@@ -346,6 +346,7 @@ def drawn_until(call: int, count: int, before: Any = None) -> Any:
     return drawn(residual, np.zeros(1), np.eye(1), count, before)
 
 
+@pytest.mark.slow
 def test_samples_that_were_drawn_before_ctrl_c_are_kept(capfd: pytest.CaptureFixture[str]) -> None:
     """16 walkers take 375 steps, and 38 before these: 16 calls are a step."""
     pytest.importorskip("emcee")

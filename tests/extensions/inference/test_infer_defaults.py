@@ -69,7 +69,7 @@ LONG = {"event by event", "features", "slide, hold, slide", "an event of a slab"
 """Kinds that take several seconds; other tests of this folder fit shorter records with one start."""
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("kind", [pytest.param(one, marks=pytest.mark.slow) if one in LONG else one for one in KINDS])
 def test_a_record_of_each_kind_gives_its_numbers_back_with_the_default_options(kind: str) -> None:
     problem, data, truth, options = KINDS[kind]

@@ -66,6 +66,7 @@ def check_holds(study: Inference, truth: dict[str, float]) -> None:
         assert row.low <= value <= row.high, (name, row.low, value, row.high)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("step", [2e-4, 1e-5])
 def test_features_do_not_depend_on_how_often_a_record_is_sampled(step: float) -> None:
     time = np.arange(0.0, 0.4, step)

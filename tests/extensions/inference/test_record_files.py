@@ -329,7 +329,7 @@ HEADS = {
 }
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize(
     "line", [" " * 40_000, "." * 40_000, "a:" * 20_000, "-1 " * 13_000, "(" * 40_000, "9" * 40_000, "1e" * 20_000]
 )
@@ -353,6 +353,7 @@ WHOLE = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.filterwarnings("ignore::stickslip.foundation.errors.InputWarning")
 @pytest.mark.parametrize("name", WHOLE)
 def test_a_damaged_file_is_read_or_refused_in_one_line(tmp_path: Path, name: str) -> None:

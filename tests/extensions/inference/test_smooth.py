@@ -106,6 +106,7 @@ def test_places_that_all_but_coincide_are_one() -> None:
     np.testing.assert_allclose(spline.curve(1e-14)(x), np.cos(x), rtol=0, atol=1e-9)
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("strength", [1e-10, 1e-7])
 @pytest.mark.parametrize("seed", range(2))
 def test_a_monotone_curve_lies_no_farther_from_a_falling_truth(strength: float, seed: int) -> None:

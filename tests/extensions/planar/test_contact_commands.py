@@ -98,6 +98,7 @@ def test_check_looks_at_every_place(command: Command, tmp_path: Path, outside: s
     assert warning in " ".join(command("check", "open.toml").out.split())
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", [name for name in COMMANDS if name not in WITHOUT_SCENARIO | WITH_CONTACT])
 def test_what_is_for_one_place_is_refused_in_one_line(command: Command, name: str) -> None:
     said = command(name, *IN_1D[name]).refusal

@@ -56,12 +56,14 @@ def assert_alike(found: list[Any], wanted: list[Any]) -> None:
         np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-13 * np.abs(other).max())
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("shape", [(30,), (12, 10)])
 def test_blocks_of_steps_give_what_each_step_alone_gives(shape: tuple[int, ...]) -> None:
     count = 4 * BLOCK + 3
     assert_alike(Followed(InBlocks, shape).told(0, count), Followed(StepByStep, shape).told(0, count))
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("shape", [(30,), (12, 10)])
 @pytest.mark.parametrize("first", [InBlocks, StepByStep])
 @pytest.mark.parametrize("then", [InBlocks, StepByStep])

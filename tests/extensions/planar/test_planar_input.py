@@ -90,6 +90,7 @@ def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         ss.simulate(patch(**GRID), 3.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("call", [ss.uniqueness, ss.catalogue, ss.explore, ss.resume])
 def test_what_is_for_problems_refuses_a_planar_slab(call: Any) -> None:
     with pytest.raises(ss.InputError) as error:
@@ -109,7 +110,7 @@ def rough(low: float, high: float) -> np.ndarray:
     return low + (high - low) * ROUGH.random(PLACES)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(
     ("problem", "along"),
     [

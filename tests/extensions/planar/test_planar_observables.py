@@ -24,6 +24,7 @@ def bell(centre: float, width: float = 0.3) -> np.ndarray:
     return np.exp(-(((TIMES - centre) / width) ** 2))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("rate", "count"),
     [

@@ -22,7 +22,7 @@ def test_every_option_of_the_solver_has_a_value_that_shows() -> None:
     assert PLANAR.takes - {"progress", "checkpoint", "checkpoint_every"} <= set(KNOWN)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("option", KNOWN)
 def test_an_option_is_obeyed_or_refused_by_name(option: str) -> None:
     check_option(PATCH, option, KNOWN)

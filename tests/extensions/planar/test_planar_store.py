@@ -247,7 +247,7 @@ def edited(path: Path, **changes: Any) -> None:
     netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(
     ("changes", "word"),
     [
@@ -269,6 +269,7 @@ def test_a_folder_made_by_hand_is_refused(store: Path, changes: dict[str, Any], 
     refused(lambda: ss.resume(store), str(store), word)
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("file", ["state.nc", "slip/c.1.0", "barrier/c.0", "waves/sent/c.0.0.0", "waves/zarr.json"])
 def test_a_folder_without_one_of_its_files_is_refused(store: Path, file: str) -> None:
     (store / file).unlink()
@@ -331,7 +332,7 @@ def bomb(path: Path) -> None:
     path.write_bytes(huge + google_crc32c.Checksum(huge).digest()[::-1])
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.skipif(os.name != "posix", reason="needs pipes and links")
 @pytest.mark.parametrize(
     ("attack", "words"),

@@ -116,6 +116,7 @@ def test_schemes_refuse_the_others(name: str) -> None:
         schemes(benchmark_of(name).scenario)
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("one", OF_ONE_CONTACT, ids=lambda one: one.name)
 def test_only_those_that_say_so_tell_rules_apart(one: Benchmark) -> None:
     """The exact series of each is judged right, and no file is needed for that."""

@@ -28,7 +28,7 @@ def balance(series: Series) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     return series.energies @ np.array([1.0, -1.0, 1.0, 1.0])
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=36)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("name", SCHEMES)
 def test_each_scheme_balances_its_own_energy_to_rounding(name: str, case: str) -> None:
@@ -46,7 +46,7 @@ def test_each_scheme_balances_its_own_energy_to_rounding(name: str, case: str) -
             assert damped[-1] > 0.0
 
 
-@pytest.mark.sampled(every=6)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize("name", SCHEMES)
 def test_the_heat_of_each_scheme_tends_to_that_of_the_exact_slab(name: str) -> None:
     regularised = name == "regularised"

@@ -160,6 +160,7 @@ FEW_ROWS: dict[str, tuple[str, int, Callable[[Series], Series]]] = {
 }
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("case", FEW_ROWS)
 def test_a_series_that_lies_beside_shocks_for_the_most_part_is_refused_with_the_rows_that_are_enough(case: str) -> None:
     name, rows, change = FEW_ROWS[case]

@@ -37,7 +37,7 @@ def test_all_names_the_numerical_schemes_and_others_may_follow(command):
 
 
 def test_every_benchmark_is_written_with_a_checksum_for_each_file(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [*BENCHMARKS][2:-1]:  # three are enough
+    for name in [*BENCHMARKS][3:]:  # three are enough, and those of a fault take seconds
         monkeypatch.delitem(BENCHMARKS, name)
     said = command("benchmark", "get", "all").out
     assert said.endswith("3 problems in .: sha256sum --check all.sha256\n")

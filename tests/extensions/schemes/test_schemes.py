@@ -37,7 +37,7 @@ def error(name: str, cells: int, exact: ss.Solution) -> float:
     return float(np.abs(series.slip - exact.slip(np.minimum(series.time, 4.0)) + SMOOTH.initial_slip)[inside].max())
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("name", STICK)
 def test_each_scheme_converges_at_its_declared_order(name: str, exact: ss.Solution) -> None:
     coarse, fine = (error(name, cells, exact) for cells in (80, 160))
@@ -46,7 +46,7 @@ def test_each_scheme_converges_at_its_declared_order(name: str, exact: ss.Soluti
     assert fine < 0.06 * float(exact.slip(4.0))
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("name", STICK)
 def test_each_scheme_hears_a_far_stress_that_grows(name: str) -> None:
     """Over a third of the slip is its work; every scheme is within a tenth of that of the exact slab."""

@@ -163,6 +163,7 @@ WRONG: dict[str, tuple[Any, str, str]] = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("wrong", WRONG)
 def test_an_echo_of_the_wrong_sign_or_size_is_named_with_its_place(wrong: str) -> None:
     make, name, words = WRONG[wrong]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -68,3 +70,25 @@ def test_a_number_that_changes_how_layers_fit_their_cells_has_no_derivative() ->
     slab = ss.load_scenario("low-velocity-zone")
     assert np.isnan(ss.studies.sensitivity(slab, "thickness[0]", "slip", at=20.0, duration=20.0).derivatives).all()
     assert np.isfinite(ss.studies.sensitivity(slab, "density[0]", "slip", at=20.0, duration=20.0).derivatives).all()
+
+
+@pytest.mark.parametrize(
+    ("body", "name"),
+    [
+        (ss.PositionLoop(1.0, 100.0, 10.0, 200.0, 8.0, reference_step=0.05, stop_ahead=0.06, restitution=0.5), "restitution"),
+        (ss.PositionLoop(1.0, 100.0, 10.0, 200.0, 8.0, reference_step=0.05, stop_ahead=0.06, restitution=0.5), "integral_gain"),
+        (ss.SpringBlock(1.0, 1e3, 10.0, backlash=4e-3), "backlash"),
+    ],
+    ids=["bounce", "integral", "play"],
+)
+def test_sensitivities_behind_impacts_and_in_a_play_are_differences_of_runs(body: Any, name: str) -> None:
+    """Slip behind an impact of a hunting axis, or behind a passage of the play: to 1e-6 of the derivative."""
+    loop = isinstance(body, ss.PositionLoop)
+    law, pull, time = ss.friction.Coulomb(0.6, 0.4 if loop else 0.05), 0.0 if loop else 0.1, 9.0 if loop else 0.6
+    problem = Problem(body, law, pull_rate=pull, initial_load=0.0)
+    found = ss.studies.sensitivity(problem, f"body.{name}", "slip", at=[time], duration=time)
+    one = problem.parameters[f"body.{name}"]
+    step = 1e-4 * one.value
+    ends = [ss.simulate(one.put(one.value + n * step), time, 1e-12).slip(time) for n in (-2.0, -1.0, 1.0, 2.0)]
+    assert found.derivatives[0, 0] != 0.0
+    assert found.derivatives[0, 0] == pytest.approx((ends[0] - 8.0 * ends[1] + 8.0 * ends[2] - ends[3]) / (12.0 * step), rel=1e-6)

@@ -88,7 +88,7 @@ def test_it_turns_round_at_once_where_the_load_holds_it_the_other_way():
 # ---- random records -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=12)
 @pytest.mark.parametrize("seed", range(60))
 def test_random_records_agree_with_forty_digits(seed: int):
     """Relative to the largest displacement that a push through the whole record can make; a touched yield may count as a slip."""

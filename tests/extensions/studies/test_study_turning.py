@@ -20,6 +20,7 @@ DOORS: dict[str, tuple[tuple[str, ...], str, str]] = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("door", "body"), [*product(DOORS, SCENARIOS)])
 def test_every_command_takes_what_turns_with_its_units_or_refuses_it_by_name(command: Command, door: str, body: str) -> None:
     words, of_string, of_disc = DOORS[door]

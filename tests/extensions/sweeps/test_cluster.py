@@ -161,6 +161,7 @@ def _alive(session: int) -> bool:
     return True
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere"])
 def test_a_scheduler_that_does_not_answer_is_refused(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.extensions.sweeps.execution.cluster.TIME_TO_ANSWER", 0.2)

@@ -38,7 +38,7 @@ MOVED = {
 """What moves a body, or nothing: without a spring a pull is that of a dashpot."""
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=20)
 @pytest.mark.parametrize("stiffness", [0.0, 30.0])
 @pytest.mark.parametrize("how", MOVED)
 @pytest.mark.parametrize("kind", [ss.SpringBlock, ss.RotatingBlock])

@@ -28,6 +28,7 @@ def test_show_repeats_the_summary_of_a_sweep(command: Command):
     assert "[run]\n" in command("show", "map.zarr", "--scenario").out
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

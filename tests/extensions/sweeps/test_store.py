@@ -89,6 +89,7 @@ class Stop:
             raise KeyboardInterrupt
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("after", [2, 6, 10])
 def test_a_stopped_sweep_continues_to_the_same_files(tmp_path: Path, whole: dict[str, bytes], after: int) -> None:
     path = tmp_path / "map.zarr"

@@ -128,6 +128,7 @@ def test_panels_have_letters_and_a_single_one_has_none() -> None:
     assert alone.get_title() == "load"
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("title", [r"$\frac{1$ of \bad", "$5 and $6", "two\nlines\tand \x07", "x" * 400])
 def test_titles_of_users_are_never_read_as_formulas(title: str) -> None:
     figure = Figure()

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 from typer import Context
 
-from stickslip.cli.options import complete_axis, complete_series, complete_vary
-from stickslip.extensions.sweeps.command import complete_design, complete_quantity
+from stickslip.cli.options import complete_axis, complete_vary
+from stickslip.extensions.sweeps.command import complete_design, complete_quantity, complete_series
 from stickslip.extensions.sweeps.results.store import ResultStore
 from stickslip.extensions.sweeps.sweep import SweepProgress
 

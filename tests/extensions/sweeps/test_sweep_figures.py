@@ -290,7 +290,7 @@ def test_words_are_an_axis_of_curves_and_of_maps(alphas: int, thicknesses: int) 
         assert meshes(figure, 1).get_array().tolist() == first.T.tolist()
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("names", [*permutations(("run.selection", ALPHA, STRESS)), *permutations(("run.selection", ALPHA))])
 def test_words_may_be_any_of_the_keys(names: tuple[str, ...]) -> None:
     sizes = {"run.selection": 3, ALPHA: 9, STRESS: 2}

@@ -6,8 +6,7 @@ else from time to time, the waves of the next one are expanded anew as they come
 in xi can describe in every cell are brought as one piece of load. Jumps of the load, and folds, stay where they are.
 
 Up to a fold the slip rate goes as the root of the time left. Steps that come to it in another variable get shorter and shorter;
-the waves are then written in that root, up to the jump where such steps end. `waves.merged_series` makes the series. A contact with
-mass or states has no folds, and its implicit steps know no such variable.
+the waves are then written in that root, up to the jump where such steps end. `waves.merged_series` makes the series.
 
 Where a round trip has too many pieces even so, because the load has as many jumps, short pieces are lumped: the waves of a group
 that is as long as the shortest event are replaced by their means.

@@ -111,8 +111,9 @@ def follow(
     -----
     Start and parameter are changed together along the branch (pseudo-arclength), so that it can turn back. Edges: a fold of cycles
     (multiplier +1), period doubling (-1), Neimark-Sacker (a pair on the unit circle), loss of stick (the arrest is grazed), first
-    stick, and steady sliding, where a cycle vanishes. Of the branches that begin at an edge those with and without rest that meet
-    where stick is lost are followed, and cycles of twice the period if they are wished.
+    stick, grazing of a hard stop, and steady sliding or the end of hunting, where a cycle vanishes. Of the branches that begin at
+    an edge those are followed that meet where stick is lost, with and without rest, or where a stop is grazed, with and without
+    impact; and cycles of twice the period if they are wished.
 
     Examples
     --------

@@ -17,6 +17,7 @@ from stickslip.engine import History, Positions
 from stickslip.engine.input import SHARE_OF_TOLERANCE
 from stickslip.extensions.cycles.exponent import MeasuredGrowth, along, law_in, whole_run
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed, without_load
+from stickslip.extensions.cycles.lag import is_wound
 from stickslip.extensions.cycles.orbit import extent_of
 from stickslip.extensions.cycles.section import Return, Section, coordinates, onsets, passages
 from stickslip.extensions.cycles.tangent import FIRST_STATE_ROW, RATE_ROW, values_at
@@ -49,7 +50,7 @@ def growth_of_rigid(problem: Problem, skip: float, duration: float, rtol: float,
     history = _begun(without_load(problem), skip, duration, rtol)
     tell(f"run of {brief(history.duration, 's')}")
     rests = len(onsets(history).time)
-    if rests > 1 and not problem.friction.states:
+    if rests > 1 and not problem.friction.states and not is_wound(problem):
         return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, history.duration, RESTS_END_ALL, events=rests)
     if is_steady(history):
         return _steady(problem)
@@ -67,7 +68,9 @@ def _begun(problem: Problem, skip: float, duration: float, rtol: float) -> Histo
 
 
 def is_steady(history: History) -> bool:
-    """Return True if the slip rate no longer varies in the last quarter of a run."""
+    """Return True if the slip rate no longer varies in the last quarter of a run; about a set point at rest it always may."""
+    if history.problem.first_pull_rate == 0.0:
+        return False
     late = np.flatnonzero(history.start + history.store.speed + history.store.bend >= 0.75 * history.duration)
     rates = _rates(history, late)
     pull = history.problem.first_pull_rate
@@ -88,10 +91,10 @@ def _steady(problem: Problem) -> MeasuredGrowth:
 
 def _along_returns(section: Section, history: History, duration: float, tell: TextProgress) -> MeasuredGrowth:
     """Return how disturbances grow along the returns after a run, up to `duration` (s)."""
-    met = passages(history)
+    met, passes = passages(history), "passes the pull rate" if section.problem.first_pull_rate > 0.0 else "slips forwards"
     if len(met.time) < 2:
         raise InputError(
-            f"lyapunov: in the first {brief(history.duration, 's')} the contact passes the pull rate fewer than two times:"
+            f"lyapunov: in the first {brief(history.duration, 's')} the contact {passes} fewer than two times:"
             " give a longer duration"
         )
     usual = float(met.time[-1] - met.time[0]) / (len(met.time) - 1)
@@ -120,11 +123,12 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
     grown_to.append(size)
     if len(times) <= FEWEST_RETURNS:
         raise InputError(
-            f"lyapunov: the contact passes the pull rate {len(times)} times between {brief(skip, 's')} and {brief(duration, 's')}:"
+            f"lyapunov: the contact {passes} {len(times)} times between {brief(skip, 's')} and {brief(duration, 's')}:"
             f" more than {FEWEST_RETURNS} are needed: give a longer duration"
         )
     counted = times[-1] - times[0]
-    how = f"measured over {len(times) - 1} returns to the pull rate in {brief(counted, 's')} (rtol {section.rtol:g})"
+    to = "the pull rate" if section.problem.first_pull_rate > 0.0 else "slip forwards"
+    how = f"measured over {len(times) - 1} returns to {to} in {brief(counted, 's')} (rtol {section.rtol:g})"
     known = max(section.rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps))
     every = -math.inf if rests else divergence / counted
     return along(np.array(times), np.array(grown_to), np.array(extents), how, events=len(times) - 1, sum_of_all=every, known=known)
@@ -152,7 +156,8 @@ def _trace(problem: Problem, values: Floats, direction: int) -> Floats:
     signs = np.ones(len(law.states))
     if direction < 0:
         signs[list(problem.friction.reverses)] = -1.0
-    rate, seen = np.abs(values[RATE_ROW]), [sign * state for sign, state in zip(signs, values[FIRST_STATE_ROW:], strict=True)]
+    states = values[FIRST_STATE_ROW : FIRST_STATE_ROW + len(signs)]
+    rate, seen = np.abs(values[RATE_ROW]), [sign * state for sign, state in zip(signs, states, strict=True)]
     found = np.zeros(len(rate))
     if direction:
         body = as_on_spring(problem.body)

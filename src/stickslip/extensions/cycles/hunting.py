@@ -3,7 +3,7 @@
 Near the set point slips are slow, and friction is S (mu0 + mu' v) there if it does not drop where slip begins. The slip that
 begins at a lag e under the load S mu0 obeys m v' = l - (c + S mu') v, l' = ki e - kp v, e' = -v from l = v = 0 on, until v is 0
 again. It ends at a lag of -rho e, and rho does not depend on e. Hunting grows from all small lags where the rho of both ways have a
-product above 1, and dies out below it. At 1 a cycle vanishes, whose rests have become infinitely long: the load grows by ki e.
+product above 1, and dies out below it. At 1 a cycle vanishes, and its rests have become infinitely long: the load grows by ki e.
 
 Source: Hensen, Van de Molengraft & Steinbuch 2003, Automatica 39, 2131, for hunting that ends.
 """
@@ -28,7 +28,7 @@ from stickslip.problem.bodies import as_on_spring
 STEPS_IN_HALF, MOST_HALVES = 64, 64
 """A swing back is looked for at so many times in each half of a free period, in so many of them (1)."""
 FIRST_WIDTH, LAST_WIDTH = 1e-6, 0.1
-"""The end is looked for from this far to that far from the last cycle (1, shares of the range)."""
+"""The end is looked for from this far to that far from the last cycle (1, shares of the range, or of the value)."""
 ROUNDING_OF_DROP = 1e-12
 """Friction that drops by less than this where slip begins does not drop (1)."""
 
@@ -36,18 +36,19 @@ ROUNDING_OF_DROP = 1e-12
 def growth_of_small_hunting(problem: Problem) -> float | None:
     """Return by what factor (1) small lags grow in a period about the set point; None if hunting never is small.
 
-    It is not small where friction drops as slip begins, and nothing is said of laws with states, or of a reference that moves.
+    It is 0 where a slip ends before the set point. Hunting is not small where friction drops as slip begins, and nothing is said of
+    laws with states, or of a reference that moves.
     """
     law = problem.friction
     if not is_wound(problem) or problem.first_pull_rate != 0.0 or law.states or not law.sticks:
         return None
-    factor = 1.0
+    factors = []
     for direction in (1, -1):
         one = law_in(problem, direction)
         if float(one.static_coefficient(0.0)) - float(one.coefficient(0.0)) > ROUNDING_OF_DROP:
             return None
-        factor *= _overshoot(problem, float(one.slopes(0.0, 0.0)[1]))
-    return factor
+        factors.append(_overshoot(problem, float(one.slopes(0.0, 0.0)[1])))
+    return factors[0] * factors[1] if min(factors) > 0.0 else 0.0
 
 
 def end_of_hunting(path: Path, last: PlaceOnBranch) -> float | None:
@@ -59,8 +60,9 @@ def end_of_hunting(path: Path, last: PlaceOnBranch) -> float | None:
     def growth(value: float) -> float:
         return (growth_of_small_hunting(path.section(value).problem) or 0.0) - 1.0
 
-    width = FIRST_WIDTH * path.range
-    while width <= LAST_WIDTH * path.range:
+    size = max(path.range, abs(last.value))
+    width = FIRST_WIDTH * size
+    while width <= LAST_WIDTH * size:
         for end in (last.value + width, last.value - width):
             with suppress(InputError):
                 if growth(end) * (now - 1.0) < 0.0:

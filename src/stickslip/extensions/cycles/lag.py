@@ -17,7 +17,7 @@ from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies import as_on_spring
 
 SMALL_RATE = 0.01
-"""Slip rate (1) at which a motion about a set point is cut, as a share of its `usual_rate`."""
+"""Slip rate (1) that cuts a motion about a set point, as a share of its `usual_rate`."""
 
 
 def is_wound(problem: Problem) -> bool:
@@ -36,7 +36,7 @@ def usual_rate(problem: Problem) -> float:
 
 
 def section_rate(problem: Problem) -> float:
-    """Return the slip rate (m/s) at which a motion is cut that never rests: the pull rate, or a small one if that is 0."""
+    """Return the slip rate (m/s) that cuts a motion without rest: the pull rate, or a small one if that is 0."""
     return problem.first_pull_rate or SMALL_RATE * usual_rate(problem)
 
 

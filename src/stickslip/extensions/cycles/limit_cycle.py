@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.extensions.cycles.found import FoundCycle
-from stickslip.extensions.cycles.measures import Measures, measures_of
+from stickslip.extensions.cycles.measures import Measures, measures_of, swing_of
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 from stickslip.problem.scenarios import Scenario
@@ -134,6 +134,11 @@ class LimitCycle(Study):
         return self.measures.slip
 
     @property
+    def swing(self) -> float:
+        """How far slip goes to and fro in one period (m), which is all of the motion about a set point at rest."""
+        return swing_of(self.orbit)
+
+    @property
     def stick_share(self) -> float:
         """The share of rest in the period (1)."""
         return self.measures.stick_share
@@ -155,8 +160,11 @@ class LimitCycle(Study):
         )
         if not self.orbit.sticks:
             rests = "never rests"
+        goes = f"slips {brief(found.slip, problem.unit_of('slip'))}"
+        if problem.first_pull_rate == 0.0:
+            goes = f"goes to and fro over {brief(self.swing, problem.unit_of('slip'), 6)}"
         return (
-            f"a cycle of {brief(self.period, 's', 9)}: the contact {rests}, slips {brief(found.slip, problem.unit_of('slip'))},"
+            f"a cycle of {brief(self.period, 's', 9)}: the contact {rests}, {goes},"
             f" at {rates[0]} to {rates[1]}, under a traction of {loads[0]} to {loads[1]}"
         )
 

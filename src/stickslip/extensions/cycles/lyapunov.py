@@ -68,8 +68,8 @@ def lyapunov(
     Parameters
     ----------
     problem : Problem, Scenario, str, Path or Chain
-        A rigid body on a spring under a steady pull, a slab or string without masses under a law of slip rate, a chain of blocks,
-        or a scenario of one of them: its name, its file or itself.
+        Any problem whose friction does not change with all slip, a chain of blocks, or a scenario of one of them: its name, its
+        file or itself.
     duration : float or str, optional
         Duration (s) of the run; by default that of the scenario.
     skip : float or str, optional
@@ -87,16 +87,18 @@ def lyapunov(
     Raises
     ------
     InputError
-        If no disturbances of such a body are followed, or if the run is too short.
+        If friction changes with all slip, if the contact comes to rest for ever, or if the run is too short.
     KeyboardInterrupt
         If the user presses Ctrl-C.
 
     Notes
     -----
     A shift in time is no disturbance here. Of a cycle the exponent is ln|multiplier| divided by the period. Disturbances of a rigid
-    body are taken from one return to the pull rate to the next by the linear equation along the run. Those of a slab are multiplied
-    by each echo, at each phase of the round trip by itself. Of a chain, disturbed runs are compared, as `ChainRun.predictability`
-    does it. The error is that of a mean of increments that depend on each other.
+    body are taken from one return to the pull rate to the next by the linear equation along the run. Those of a slab without masses
+    are multiplied by each echo, at each phase of the round trip by itself. Of a chain, disturbed runs are compared, as
+    `ChainRun.predictability` does it. Of all others two exact runs that differ by a millionth are compared after each round trip,
+    and then made as close again (Benettin et al. 1980, Meccanica 15, 9). The error is that of a mean of increments that depend on
+    each other.
 
     Examples
     --------

@@ -63,6 +63,15 @@ def measures_of(orbit: FoundCycle) -> Measures:
     )
 
 
+def swing_of(orbit: FoundCycle) -> float:
+    """Return the difference between the largest and the least slip in a period (m); slip turns back where pieces end."""
+    end: ClosedRun = orbit.closed
+    at = Positions.inside(
+        np.append(np.arange(end.first, end.piece + 1), end.piece), np.append(np.zeros(end.piece - end.first + 1), end.place)
+    )
+    return float(np.ptp(end.history.slipped_since(Positions.inside(end.first, 0.0), at)))
+
+
 def least_rate(orbit: FoundCycle) -> float:
     """Return the least slip rate (m/s) of a cycle."""
     return _extremes(orbit.closed)[0][0]

@@ -53,7 +53,9 @@ def near_end(history: History, problem: Problem, rtol: float) -> Orbit:
         found = closed(section, places[:, -1], leads.period)
     if at_onset or problem.friction.states or not found.sticks:
         return found
-    return closed(Section(problem, at_onset=True, rtol=rtol), np.zeros(0), found.period)
+    along = found.closed.history
+    begins = places_of(along, onsets(along), at_onset=True)
+    return closed(Section(problem, at_onset=True, rtol=rtol), begins[:, 0], found.period) if begins.shape[1] else found
 
 
 @dataclass(frozen=True)

@@ -99,7 +99,10 @@ class Section:
     def start_at(self, place: Floats) -> Problem:
         """Return the problem that starts at a place on the section."""
         states: dict[str, Any] = dict.fromkeys(INITIAL_STATES)
-        loads = {"initial_load": None if self.at_onset else float(place[0]), "initial_excess": 0.0 if self.at_onset else None}
+        loads: dict[str, Any] = {
+            "initial_load": None if self.at_onset else float(place[0]),
+            "initial_excess": 0.0 if self.at_onset else None,
+        }
         if is_wound(self.problem) or as_on_spring(self.problem.body).reference_step != 0.0:  # the step is behind it
             lag = float(place[-1]) if is_wound(self.problem) else 0.0
             loads = at_lag(self.problem, lag, loads["initial_load"])
@@ -136,7 +139,7 @@ class Section:
         raise InputError(f"cycle: the contact no longer {what} within {lasts / 2.0:.4g} s: there is no cycle near")
 
 
-def coordinates(values: Floats, at_onset: bool) -> Floats:
+def coordinates(values: Any, at_onset: bool) -> Any:
     """Return what may vary on a section, of load, slip rate, states and lag: at an onset only the lag."""
     return values[FIRST_STATE_ROW:] if at_onset else np.delete(values, RATE_ROW, axis=0)
 

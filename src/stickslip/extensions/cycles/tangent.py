@@ -83,8 +83,21 @@ class RigidMotion:
         """Return the equation and a run that obeys it, for compiled code."""
         problem, body, law = self.problem, as_on_spring(self.problem.body), numbers_of_law(self.problem.friction)
         spring = body.stiffness, body.total_damping, body.inertia, problem.normal, problem.first_pull_rate
-        held = lags_of(history), body.integral_gain, 0.5 * body.backlash, body.stop_ahead, -body.stop_behind, body.restitution
-        return RunNumbers(*history.store, *spring, law.calls, law.constants, law.reverses, law.sticks, law.has_knots, *held)
+        return RunNumbers(
+            *history.store,
+            *spring,
+            law.calls,
+            law.constants,
+            law.reverses,
+            law.sticks,
+            law.has_knots,
+            lags_of(history),
+            body.integral_gain,
+            0.5 * body.backlash,
+            body.stop_ahead,
+            -body.stop_behind,
+            body.restitution,
+        )
 
 
 def values_at(history: History, at: Positions) -> Floats:

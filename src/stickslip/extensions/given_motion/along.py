@@ -5,18 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
+from typing import TYPE_CHECKING, NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.extensions.given_motion.compiled.nodes import PLACES_OF_POINTS, WEIGHTS
 from stickslip.extensions.given_motion.intervals import MotionInIntervals
 from stickslip.extensions.given_motion.solve import StepsOfStates, solve_states
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import brief, number
 from stickslip.friction.contract import one_argument
 from stickslip.problem import STATUSES, Status, Stop
 
@@ -81,13 +79,7 @@ class FrictionAlongMotion:
     description: str = ""
 
     @classmethod
-    def along(
-        cls,
-        moved: MovedContact,
-        motion: MotionInIntervals,
-        duration: float,
-        rtol: float,
-    ) -> FrictionAlongMotion:
+    def along(cls, moved: MovedContact, motion: MotionInIntervals, duration: float, rtol: float) -> FrictionAlongMotion:
         """Return friction along a motion that is divided into intervals already. Raises InputError if it cannot be followed."""
         law = moved.friction
         steps = solve_states(law, motion, law.inner_states(moved.given_states), rtol) if law.states else None
@@ -117,7 +109,7 @@ class FrictionAlongMotion:
         return np.asarray(np.searchsorted(self.steps.interval, np.arange(len(self.motion.start))))
 
     @property
-    def _begun(self) -> Floats:
+    def begun(self) -> Floats:
         """The starts (s) of the intervals that the run has reached."""
         return self.motion.start[self.motion.start < self.duration]
 
@@ -135,18 +127,7 @@ class FrictionAlongMotion:
         last = np.append(self._first_step[1:], len(steps.length))[n] - 1
         k = np.searchsorted(self._step_starts, first.start[n] + since, side="right") - 1
         k = np.clip(k, self._first_step[n], last)
-        place = np.clip((since - steps.since[k]) / steps.length[k], 0.0, 1.0)
-        gaps = place[..., None] - PLACES_OF_POINTS
-        hit = gaps == 0.0
-        basis = WEIGHTS / np.where(hit, 1.0, gaps)
-        basis = np.where(hit.any(axis=-1, keepdims=True), hit, basis / basis.sum(axis=-1, keepdims=True))
-        states, errors = [], []
-        for i in range(steps.values.shape[1]):
-            begins = steps.values[k, i, :1]
-            states.append(np.asarray(begins[..., 0] + (basis * (steps.values[k, i] - begins)).sum(axis=-1)))
-            before = np.where(k > 0, steps.errors[k - 1, i], 0.0)
-            errors.append(np.asarray(before + steps.errors[k, i]))
-        return states, errors
+        return steps.within(k, since)
 
     def slip(self, t: ArrayLike) -> Floats:
         """Return the slip (m or rad) at times (s)."""
@@ -242,7 +223,7 @@ class FrictionAlongMotion:
     @cached_property
     def times(self) -> Floats:
         """Times (s) that show the run: even ones, and those where the motion has a kink, up to 20 000 of these."""
-        kinks = self._begun[:: max(1, -(-len(self._begun) // MOST_KINKS))]
+        kinks = self.begun[:: max(1, -(-len(self.begun) // MOST_KINKS))]
         return np.unique(np.concatenate((np.linspace(0.0, self.duration, ROWS + 1), kinks)))
 
     def at(self, t: ArrayLike) -> pd.DataFrame:
@@ -302,27 +283,9 @@ class FrictionAlongMotion:
 
     def lines(self) -> list[str]:
         """Return what is to be said of the run, a sentence each."""
-        law, unit, table = self.moved.friction, self.moved.load_unit, self.at(self.times)
-        low, high = float(np.nanmin(table.lowest_traction)), float(np.nanmax(table.highest_traction))
-        begun = f"{type(law).__name__} along a given motion of {number(self.duration)} s, in {len(self._begun)} intervals"
-        found = [begun if self.steps is None else f"{begun} and {len(self.steps.length)} steps"]
-        end = brief(float(self.slip(self.duration)), self.units["slip"])
-        found.append(f"slip rate {_span(table.slip_rate, self.moved.rate_unit)}, slip at the end {end}")
-        found.append(
-            f"traction {brief(low, unit)} to {brief(high, unit)}, with an error of at most {float(table.error.max()):.2g} {unit}"
-        )
-        lasting = np.diff(np.append(self._begun, self.duration))
-        rest = float(lasting[self.motion.direction[: len(lasting)] == 0.0].sum())
-        if rest and law.sticks:
-            found.append(f"at rest for {number(rest, 4)} s, where any traction up to static friction is possible")
-        if not self.status.ok:
-            found.append(f"{self.status}; it was to end at {number(self.asked_duration)} s")
-        return found
+        from stickslip.extensions.given_motion.in_words import lines_of
 
-
-def _span(values: Any, unit: str) -> str:
-    low, high = float(values.min()), float(values.max())
-    return brief(low, unit) if low == high else f"{brief(low, unit)} to {brief(high, unit)}"
+        return lines_of(self)
 
 
 def in_intervals(moved: MovedContact, duration: float) -> MotionInIntervals:

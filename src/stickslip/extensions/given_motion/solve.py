@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.engine import compile_formula
 from stickslip.extensions.given_motion.compiled import along_motion as at
-from stickslip.extensions.given_motion.compiled.nodes import PLACES_IN_STEP
+from stickslip.extensions.given_motion.compiled.nodes import PLACES_IN_STEP, PLACES_OF_POINTS, WEIGHTS
 from stickslip.extensions.given_motion.intervals import MotionInIntervals, Places
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -46,6 +46,21 @@ class StepsOfStates:
     def first(self, count: int) -> StepsOfStates:
         """Return the first steps."""
         return StepsOfStates(*(getattr(self, one.name)[:count] for one in fields(self)))
+
+    def within(self, k: Places, since: Floats) -> tuple[list[Floats], list[Floats]]:
+        """Return the states in steps k at times (s) since the starts of their intervals, and bounds of their errors."""
+        place = np.clip((since - self.since[k]) / self.length[k], 0.0, 1.0)
+        gaps = place[..., None] - PLACES_OF_POINTS
+        hit = gaps == 0.0
+        basis = WEIGHTS / np.where(hit, 1.0, gaps)
+        basis = np.where(hit.any(axis=-1, keepdims=True), hit, basis / basis.sum(axis=-1, keepdims=True))
+        states, errors = [], []
+        for i in range(self.values.shape[1]):
+            begins = self.values[k, i, :1]
+            states.append(np.asarray(begins[..., 0] + (basis * (self.values[k, i] - begins)).sum(axis=-1)))
+            before = np.where(k > 0, self.errors[k - 1, i], 0.0)
+            errors.append(np.asarray(before + self.errors[k, i]))
+        return states, errors
 
     @classmethod
     def joined(cls, parts: Sequence[StepsOfStates]) -> StepsOfStates:

@@ -21,7 +21,7 @@ from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
 from stickslip.problem import Problem, check_event_rate
 from stickslip.problem.scenarios import read_source
-from stickslip.run import CallOptions, RunsCompared, TextProgress, telling, uninterrupted
+from stickslip.run import CallOptions, Study, TextProgress, telling, uninterrupted
 from stickslip.run.study import MAX_PIECES
 from stickslip.solution import Solution
 from stickslip.solution.observables import LOST, Predictability, is_followed
@@ -30,13 +30,12 @@ from stickslip.solution.observables.predictability import predictability
 if TYPE_CHECKING:
     from stickslip.problem.scenarios import Scenario
 
-
 MAX_TOTAL = 2_000_000
 """Default limit on the pieces of history of all runs together."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble(RunsCompared):
+class Ensemble(Study):
     """The result of `ensemble`, which compares all runs from t = 0 to `until` (s).
 
     `runs` are those of the members that were finished, of `wanted` members, beside the undisturbed run `reference`. `pushes` were
@@ -59,6 +58,16 @@ class Ensemble(RunsCompared):
     def _all_runs(self) -> tuple[Solution, ...]:
         return self.reference, *self.runs
 
+    @cached_property
+    def until(self) -> float:
+        """The end (s) of the comparison of runs: the earliest end of a run."""
+        return min(run.history.span[1] for run in self._all_runs())
+
+    @property
+    def ok(self) -> bool:
+        """True if every run reached its end."""
+        return all(run.status.ok for run in self._all_runs())
+
     @property
     def note(self) -> str:
         """A warning if a disturbance of the initial load can only shift the whole run in time; otherwise ""."""
@@ -72,7 +81,10 @@ class Ensemble(RunsCompared):
     def stopped(self) -> str:
         """The reason why there are fewer members or a shorter time than asked for; "" if nothing is missing."""
         missing = f"interrupted: {len(self.runs)} of {self.wanted} members" if len(self.runs) < self.wanted else ""
-        return "; ".join(part for part in (missing, super().stopped) if part)
+        reasons = ", ".join(dict.fromkeys(run.status.name for run in self._all_runs() if not run.status.ok))
+        years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
+        short = f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if reasons else ""
+        return "; ".join(part for part in (missing, short) if part)
 
     @cached_property
     def _all_events(self) -> tuple[pd.DataFrame, ...]:

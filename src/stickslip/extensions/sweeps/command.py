@@ -15,7 +15,7 @@ from stickslip.cli.options import (
     Duration,
     ScenarioName,
     choices,
-    complete_series,
+    complete_curve,
     complete_vary,
     names_in,
     option,
@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 
 complete_design = choices("design", names_in("extensions.sweeps.design.design", "KINDS_OF_DESIGN"))
 complete_quantity = choices("quantity", names_in("extensions.sweeps.design.quantities", "QUANTITIES"))
+
+
+def complete_series(incomplete: str) -> list[str]:
+    """Return the lists of curves that begin with what is typed: names of curves with commas between them."""
+    before, comma, last = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in complete_curve(last) if name not in before.split(",")]
+
 
 VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key."
 Vary = Annotated[list[str] | None, option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]

@@ -53,6 +53,7 @@ class Points(CheckedArguments):
     Where slip was measured in both directions they are the points of forward slip, and `backward` has those of backward slip, with
     friction and slip rates as magnitudes. Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip
     rate. `name` is for messages and figures. `slips_in` is "rad" for a contact that turns, with rates in rad/s, and else empty.
+    `notes` say what was understood of a file: a row of units below the headings, or decimal commas.
     """
 
     friction: Floats
@@ -61,6 +62,7 @@ class Points(CheckedArguments):
     name: str = "points"
     slips_in: str = ""
     backward: Points | None = None
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def read(cls, source: Any, *, columns: Mapping[str, str | int] | None = None, normal_force: Any = None) -> Points:
@@ -88,7 +90,7 @@ class Points(CheckedArguments):
         for rows in (~back, back):
             slip, rate = (None if name not in found else found[name][rows] for name in ALONG)
             size = None if rate is None else np.abs(rate)
-            ways.append(cls(np.abs(found["friction"][rows]), slip, size, table.place, slips_in))
+            ways.append(cls(np.abs(found["friction"][rows]), slip, size, table.place, slips_in, notes=table.notes))
         ahead, behind = ways
         return replace(ahead, backward=behind) if len(ahead) and len(behind) else ahead if len(ahead) else behind
 

@@ -32,10 +32,8 @@ from stickslip.solution.files.soundness import (
 from stickslip.solution.files.zarr_store import (
     FolderFormat,  # One of the `KINDS` of folders, with the version of its layout.
     check_layout,  # Refuse arrays of another form than those of a layout, but for the number of rows of those that grow.
-    check_metadata,  # Compare what is known of each array in its own file with what was gathered from these files.
     # Let `lay_out` fill a folder under a temporary name, then rename it to `path`, so that it appears complete or not at all.
     create,
-    first_file_of,  # Return the name of the file of the first chunk of an array inside its folder.
     is_sound,  # Return True if a file is a chunk that ends in its checksum.
 )
 
@@ -48,11 +46,9 @@ __all__ = [
     "about_curves",
     "check_catalogue",
     "check_layout",
-    "check_metadata",
     "check_place",
     "checked_path",
     "create",
-    "first_file_of",
     "heading",
     "is_catalogue",
     "is_sound",

@@ -108,20 +108,6 @@ def _form(array: zarr.Array[Any], grows: bool) -> dict[str, Any]:
     return {**array.metadata.to_dict(), "shape": array.shape[grows:]}
 
 
-def first_file_of(array: zarr.Array[Any]) -> str:
-    """Return the name of the file of the first chunk of an array inside its folder."""
-    name: str = array.metadata.encode_chunk_key((0,) * array.ndim)
-    return f"{array.path}/{name}"
-
-
-def check_metadata(path: Path, group: zarr.Group) -> None:
-    """Compare what is known of each array in its own file with what was gathered from these files. Raises InputError."""
-    for name, array in group.arrays():
-        content = json.loads(read_bounded(path / name / zarr_folder.METADATA, zarr_folder.LARGEST_METADATA))
-        if content != json.loads(json.dumps(array.metadata.to_dict())):
-            raise InputError(f"{path}: damaged: {name}/{zarr_folder.METADATA} is not as it was written")
-
-
 def is_sound(file: Path) -> bool:
     """Return True if a file is a chunk that ends in its checksum. Raises InputError for a pipe and the like."""
     content = read_bounded(file, zarr_folder.LARGEST_CHUNK)

@@ -45,7 +45,6 @@ from stickslip.solution.observables.field import (
     # Raise InputError if waves that left the contact between two times (s since the epoch) left it in a leap over creep.
     check_known,
     extent_of,  # Return the places inside the body of a problem.
-    many_places,  # Return how often, at most, another piece may begin to hold between two times (s): see `WaveInterval`.
     slab_of,  # Return the slab or the string of a problem.
 )
 from stickslip.solution.observables.layers import (
@@ -108,7 +107,6 @@ __all__ = [
     "heat",
     "in_short",
     "is_followed",
-    "many_places",
     "predictability_of_events",
     "proven",
     "shaken",

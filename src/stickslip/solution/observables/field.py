@@ -73,12 +73,6 @@ def check_known(history: History, low: float, high: float) -> None:
         raise InputError(NOT_KNOWN)
 
 
-def many_places(history: History, low: float, high: float) -> float:
-    """Return how often, at most, another piece may begin to hold between two times (s): see `WaveInterval`."""
-    pieces = int(np.searchsorted(history.start, high, side="right"))
-    return (1.0 + 2.0 * pieces) * (2.0 + (high - low) / history.round_trip_time)
-
-
 class WaveInterval:
     """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
 

@@ -38,6 +38,7 @@ def two_slabs(slab: ss.ElasticSlab, sides: str) -> ss.TwoSlabs:
     return ss.TwoSlabs(*one, *one, slab.normal_stress, sides=sides, contact_damping=slab.contact_damping, **drivers)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("dashpot", [0.5, 2.0, 3.0])
 def test_each_round_trip_changes_coulomb_slip_by_the_factor_1_less_2_z_over_z_plus_d(dashpot: float) -> None:
     """Not pulled, v = excess / (Z + D) at first, and an echo brings the excess over sliding friction times 1 - 2 Z / (Z + D).
@@ -172,6 +173,7 @@ def test_loads_stay_within_the_bound_for_which_branches_are_sought() -> None:
     assert 0.5e9 < largest < load_bound(problem, resistance(problem))
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_from_its_file_bit_for_bit(tmp_path: Path) -> None:
     problem = ss.Problem(SLAB, WEAKENING, pull_rate=0.3, initial_excess=1e6)
     ss.simulate(problem, 2.0 * R).to_netcdf(tmp_path / "half.nc")

@@ -94,7 +94,7 @@ def with_drag(kind: str, **more: Any) -> Any:
     return ss.TwoSlabs(**FIRST, **OTHER, normal_stress=NORMAL, **SIDES[kind], **more)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("driver", [np.inf, 4e6, 0.0])
 @pytest.mark.parametrize("kind", SIDES)
 def test_energies_balance_with_what_drag_takes(kind: str, driver: float) -> None:
@@ -113,7 +113,7 @@ def test_energies_balance_with_what_drag_takes(kind: str, driver: float) -> None
     assert (events.damped > 0.0).all()
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", SIDES)
 def test_stress_at_rest_stays_and_layers_that_are_pulled_begin_steadily(kind: str) -> None:
     held = ss.simulate(ss.Problem(with_drag(kind), RATE_LAW, 0.0, initial_load=7e6), 1e4)

@@ -43,7 +43,7 @@ def test_the_inside_of_layers_of_equal_impedance_is_that_of_one_slab(name: str) 
         np.testing.assert_allclose(ours[name], known[name], rtol=1e-6, atol=1e-8 * known.heat.max(), err_msg=name)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("sides", ["apart", "joined"])
 @pytest.mark.parametrize("name", TWO)
 def test_the_inside_of_two_equal_slabs_is_that_of_one(name: str, sides: str) -> None:

@@ -29,7 +29,7 @@ def test_coulomb_friction_answers_each_round_trip_of_a_soft_layer() -> None:
     np.testing.assert_allclose(run.shocks.rate_after, rates, rtol=1e-6, atol=1e-12)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("shares", [(0.2, 0.8), (0.3, 0.4, 0.3)])
 @pytest.mark.parametrize("name", CASES)
 def test_layers_of_equal_impedance_are_one_slab(name: str, shares: tuple[float, ...]) -> None:

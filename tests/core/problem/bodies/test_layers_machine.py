@@ -211,6 +211,7 @@ def test_layers_with_contrast_move_as_an_own_program_says(seed: int, gain: float
     assert errors[1] < 0.4 * errors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("stop", [1.7, 9.3, 13.7])
 def test_a_run_that_is_taken_up_again_has_every_bit(stop: float, tmp_path: Path) -> None:

@@ -214,6 +214,7 @@ def test_energy_is_balanced_with_what_the_damper_takes(ratio: float) -> None:
     assert (np.diff(taken) >= -1e-12 * taken[-1]).all()
 
 
+@pytest.mark.slow
 def test_a_resumed_run_is_the_run_bit_for_bit(tmp_path: Path) -> None:
     problem = shaken(column(0.05))
     whole = ss.simulate(problem, 5.0)

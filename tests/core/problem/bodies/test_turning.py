@@ -44,6 +44,7 @@ SOFT = replace(STRING, driver_impedance=900.0)
 MACHINE = replace(SOFT, driver_inertia=2900.0, driver_integral_gain=500.0)
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("body", [STRING, replace(STRING, inertia=0.0), SOFT, MACHINE, DISC])
 def test_a_body_that_turns_moves_as_one_that_slides_with_the_same_numbers(body: ss.TorsionalString | ss.RotatingBlock) -> None:
     far: dict[str, Any] = {} if body.is_driven_rigidly or body.has_machine else {"far_stress": 13e3}

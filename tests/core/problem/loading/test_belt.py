@@ -71,6 +71,7 @@ def changes_of(run: ss.Solution) -> np.ndarray:
     return begin[np.append(not rests[0], rests[1:] != rests[:-1])]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("damping", [0.0, 0.8])
 @pytest.mark.parametrize(
     ("belt", "number"),

@@ -115,7 +115,7 @@ def same(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> Floats:
     return (abs(one[0] - other[0]) < 1e-7 * STRESS) & (abs(one[1] - other[1]) < 1e-7 * STRESS / Z)
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=16)
 @pytest.mark.parametrize("seed", range(16))
 def test_runs_at_random_are_those_of_an_own_recursion_and_keep_energy(seed: int) -> None:
     rng = np.random.default_rng([46, seed])
@@ -172,6 +172,7 @@ def test_rest_of_thousands_of_round_trips_is_leapt_over_between_changes(seed: in
     assert balance(run, np.sort(rng.uniform(0.0, trips * R, 12))) < 1e-9
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     "others",
     [
@@ -237,6 +238,7 @@ def test_a_driver_that_only_ever_is_rigid_does_not_feel_the_far_stress(body: Any
     assert found[0] == found[1]
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("stop", [0.4, 1.7, 2.6, 5.5, 300.0])
 def test_a_run_that_is_taken_up_again_has_every_bit_of_one_that_never_stopped(stop: float, tmp_path: Path) -> None:

@@ -109,6 +109,7 @@ def test_a_slab_is_the_sum_of_its_echoes(ground: dict[str, LoadingHistory], driv
     assert np.abs(energy.balance).max() < 1e-11 * np.abs(energy.stored).max()
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("mass", [0.0, 3000.0])
 def test_the_field_in_a_slab_is_that_of_the_absolute_motion(mass: float) -> None:
     """At the contact it moves with slip and ground; inside, velocity is the derivative of displacement, and stress that in x."""
@@ -134,6 +135,7 @@ def test_the_field_in_a_slab_is_that_of_the_absolute_motion(mass: float) -> None
     assert np.abs(energy.balance).max() < 1e-10 * np.abs(energy.stored).max()
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     "body",
     [slab(), slab(mass=3000.0), slab(0.4 * IMPEDANCE), ss.SpringBlock(5e4, 2e6, 1e6)],

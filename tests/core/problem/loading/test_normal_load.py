@@ -88,6 +88,7 @@ def test_a_slab_without_mass_jumps_where_the_normal_stress_steps() -> None:
     assert shocks.time.to_numpy() == pytest.approx([0.0, 1.3, 2.0, 3.3], abs=1e-12)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     ("history", "coupling"), [(Sinusoidal(1e6, 2e5, 20.0), 0.3), (PiecewiseLinear([0.0, 10.0], [1e6, 1.3e6]), 0.0)]
 )
@@ -263,6 +264,7 @@ def test_another_weight_than_that_of_the_body_is_refused(values: list[str], mess
         replace(STRING, body=torque, normal_load=Steps([0.0, 5.0], ["15 kN", "16 kN"]))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("pull", [PULL, Steps([0.0, 1.0], [PULL, 0.1])])
 def test_check_tells_under_which_load_and_at_which_rate_steady_sliding_is_examined(pull: object) -> None:
     law = ss.friction.RateAndState(0.6, 0.01, 0.015, "1 mm")

@@ -260,7 +260,7 @@ def compare(run: ss.Solution, own: Crawl) -> None:
     assert large.rate_after.to_numpy() == pytest.approx([after for _, after in known], abs=1e-4)
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=18)
 @pytest.mark.parametrize(("law", "kind", "driver", "seed"), drawn_cases())
 def test_slip_rates_and_jumps_are_those_of_an_own_program(law: str, kind: str, driver: str, seed: int) -> None:
     problem, own = case(law, kind, driver, seed)

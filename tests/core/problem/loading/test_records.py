@@ -90,6 +90,7 @@ def test_a_record_is_refused_as_a_pull_rate() -> None:
         ss.Problem(BLOCK, DRY, initial_load=0.0, pull_rate=Accelerogram([0.0, 1.0], 0.1))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     "make", [lambda t, a: PiecewiseLinear(t, a), lambda t, a: Steps(t, a), lambda t, a: Accelerogram(a, 0.005)]
 )

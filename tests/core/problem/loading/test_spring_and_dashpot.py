@@ -64,7 +64,7 @@ def test_sliding_under_a_pull_that_varies_is_the_closed_form(kind: str) -> None:
     assert np.abs(other.slip(times) - slip).max() > 1e-2
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("turns", [False, True])
 @pytest.mark.parametrize("kind", PULLS)
 def test_stick_and_slip_are_those_of_an_own_integrator(kind: str, turns: bool) -> None:

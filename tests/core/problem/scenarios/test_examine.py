@@ -27,7 +27,7 @@ def growth_in(text: str) -> float:
     return float(text.partition("grows at ")[2].split(" ")[0])
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("name", library.in_1d())
 def test_every_bundled_scenario_can_be_examined(name: str) -> None:
     found = examine(load_scenario(name))
@@ -254,6 +254,7 @@ def test_rate_and_state_is_judged_by_its_stiffness() -> None:
     assert not {fact.name for fact in slab.derived} & {"strength", "excess"}
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     ("given", "words"),
     [

@@ -46,6 +46,7 @@ CASES = [
 ]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("kind", "old", "new", "message"), CASES)
 def test_mistakes_in_nested_laws_are_refused_with_their_place(kind: str, old: str, new: str, message: str) -> None:
     text = template("slab", kind)

@@ -57,6 +57,7 @@ def test_values_as_the_message_writes_them_are_toml():
 UNSAFE = ["alpha = 1,5\x1b[31m", f"alpha = {'1' * 900_000}x", f"[{'a ' * 400_000}", f"alpha = {'1+' * 90_000}"]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("line", UNSAFE, ids=["escape", "digits", "heading", "sum"])
 def test_a_line_that_is_not_safe_to_show_is_cut_and_quoted(tmp_path: Path, line: str):
     file = tmp_path / "mine.toml"

@@ -46,6 +46,7 @@ def last_fracture(found: FoundEvents) -> Floats:
     return of_event
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals"])
 def test_a_column_on_pulses_is_that_of_the_whole_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The pulses are those of the events that are asked for, not those with which the history that is left begins."""
@@ -70,6 +71,7 @@ def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, m
         assert table.attrs["status"] == ss.simulate(problem, duration).status.name
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_files_hold_every_digit(suffix: str, tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]

@@ -20,6 +20,7 @@ def stop_of(solution):
     return [p.end for p in solution.pieces if p.rate(0.5 * (p.start + p.end)) != 0.0][-1]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("pull", [1e-9, 0.4])
 def test_a_coulomb_slab_has_its_closed_form(pull):
     exact = CoulombSlab(SLAB, 0.8, 0.3, pull)

@@ -30,6 +30,7 @@ def read_at(run: Solution, name: str, time: np.ndarray) -> tuple[np.ndarray, str
     return getattr(run, name.replace(" ", "_"))(time), run.problem.unit_of(name.replace(" ", "_"))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_curves_as_csv(kind: str, tmp_path: Path) -> None:
     run = run_of(kind)
@@ -47,7 +48,7 @@ def test_curves_as_csv(kind: str, tmp_path: Path) -> None:
         np.testing.assert_array_equal(table[heading].to_numpy(), expected, heading)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("kind", KINDS)
 def test_curves_as_netcdf(kind: str, tmp_path: Path) -> None:
     run = run_of(kind)
@@ -113,7 +114,7 @@ def of_events(run: Solution, table: pd.DataFrame) -> Iterator[tuple[str, np.ndar
     yield "traction_drop", (table.traction_before - table.traction_after).to_numpy(), loads
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("kind", KINDS)
 def test_slip_events_in_every_file(kind: str, tmp_path: Path) -> None:
     """In the table, with units in its headings, and in the file of the run; a slip back is negative."""

@@ -95,7 +95,7 @@ COUNTS = {
 }
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=6)
 @pytest.mark.parametrize(("name", "value"), COUNTS.items())
 def test_a_count_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, name: str, value: int) -> None:
     def edit(checkpoint: Checkpoint) -> None:
@@ -112,7 +112,7 @@ EDITS: dict[str, Callable[[Checkpoint], object]] = {
 }
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", EDITS)
 def test_a_state_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, name: str) -> None:
     check_edit(run, tmp_path, EDITS[name])
@@ -128,6 +128,7 @@ def check_edit(run: ss.Solution, tmp_path: Path, edit: Callable[[Checkpoint], ob
     refused(lambda: ss.resume(path, 30 * ss.YEAR), "run.nc: not a state that a run can have: ", "out of range")
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("trips", [{0: -1}, {1: 5, 2: 3}, {-1: NEVER}], ids=["negative", "descend", "beyond all"])
 def test_a_row_of_a_piece_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, trips: dict[int, int]) -> None:
     path = saved(run, tmp_path)
@@ -178,6 +179,7 @@ def test_links_out_of_the_file_are_not_followed(run: ss.Solution, tmp_path: Path
     refused(lambda: ss.open_solution(path), "run.nc: not a file of stickslip: 'elsewhere' in it is a link")
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["history_rate", "engine_count", "round_trip_time"])
 def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
     path = saved(run, tmp_path)
@@ -185,6 +187,7 @@ def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path
     refused(lambda: ss.open_solution(path), "run.nc: ")
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("value", ["", "x", np.inf, np.nan, [1, 2]])
 def test_an_attribute_that_is_no_number_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, value: Any) -> None:
     path = saved(run, tmp_path)
@@ -192,6 +195,7 @@ def test_an_attribute_that_is_no_number_is_refused_in_one_line(run: ss.Solution,
     refused(lambda: ss.open_solution(path), "run.nc: not a file that stickslip has written: ")
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", ["status", "status_message", "lumping", "rounding"])
 def test_texts_of_a_result_cannot_change_the_terminal(
     run: ss.Solution, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
@@ -294,7 +298,7 @@ def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
         pass
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc", ".k.checkpoint.nc.lock"])
 def test_a_folder_in_place_of_a_file_of_a_catalogue_is_named_before_anything_is_removed(tmp_path: Path, name: str) -> None:
     ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc")
@@ -306,6 +310,7 @@ def test_a_folder_in_place_of_a_file_of_a_catalogue_is_named_before_anything_is_
     assert contents(tmp_path) == before
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc"])
 def test_a_file_of_others_in_place_of_one_of_a_catalogue_is_never_replaced(tmp_path: Path, name: str) -> None:
     ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc")

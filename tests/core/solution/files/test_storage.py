@@ -31,7 +31,7 @@ RUNS = {
 }
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", RUNS)
 def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
     run = ss.simulate(*RUNS[name])

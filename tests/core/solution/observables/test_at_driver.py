@@ -139,6 +139,7 @@ def test_while_the_bit_rests_a_rigid_drive_winds_the_string_up() -> None:
     assert run.surface_torque(time) == pytest.approx(stiffness * 60.0 * RPM * time, rel=1e-12)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("drive", ["lossy", "machine"])
 def test_a_drive_obeys_its_own_equation(drive: str) -> None:
     body = replace(STRING, **DRIVES[drive])

@@ -34,6 +34,7 @@ RUNS = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", RUNS)
 def test_energy_balances(name: str) -> None:
     assert worst_imbalance(ss.simulate(*RUNS[name], rtol=1e-12)) < 1e-9
@@ -66,7 +67,7 @@ SPLIT = {
 }
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", SPLIT)
 def test_elastic_and_kinetic_energy_agree_with_the_field(name: str) -> None:
     """Stress and velocity inside the slab, squared and added up on a fine grid."""

@@ -107,6 +107,7 @@ def parallelogram(run: ss.Solution, speed: float = 1.0) -> Field:
     return Field(*sums)
 
 
+@pytest.mark.sampled(every=5)
 def test_the_field_obeys_the_wave_equation(run: ss.Solution) -> None:
     """d'Alembert: f(x, t + a) + f(x, t - a) = f(x + ca, t) + f(x - ca, t), for displacement, velocity and stress."""
     assert max(float(error.max()) for error in parallelogram(run)) < ROUNDING
@@ -121,6 +122,7 @@ def contact_errors(run: ss.Solution) -> Field:
     return Field(*(np.abs(error) / share for error, share in zip(errors, size, strict=True)))
 
 
+@pytest.mark.sampled(every=5)
 def test_the_field_meets_the_contact(run: ss.Solution) -> None:
     """Slip and slip rate are the contact's; the slab pulls it with beta - Z v, which without contact mass is the friction."""
     slab, time = slab_of(run), moments(run)
@@ -147,6 +149,7 @@ def driver_error(run: ss.Solution, wrong: float = 1.0) -> float:
     return float(np.abs(at.stress - by_driver).max() / size.stress)
 
 
+@pytest.mark.sampled(every=5)
 def test_the_field_meets_the_driver(run: ss.Solution) -> None:
     """It does so, and its stress (rigid) or rate (else) is not just what it was at the start."""
     assert driver_error(run) < ROUNDING
@@ -157,7 +160,7 @@ def test_the_field_meets_the_driver(run: ss.Solution) -> None:
         assert driver_error(run, wrong=1.01) > 1e-5
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("kind", ["hyperbolic-rate", "linear-slip-weakening", "sinusoidal-slip", "rate-and-state", "lagged"])
 @given(data=st.data())
 @few
@@ -188,6 +191,7 @@ def test_the_field_starts_from_uniform_shear(run: ss.Solution) -> None:
         assert np.abs(now - getattr(start, name))[inside].max() < 1e-15 * getattr(size, name)
 
 
+@pytest.mark.sampled(every=5)
 def test_a_shorter_run_knows_the_same_field(run: ss.Solution) -> None:
     """What is on its way to the contact comes from the past alone."""
     slab = slab_of(run)

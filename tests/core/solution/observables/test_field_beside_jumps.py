@@ -16,6 +16,7 @@ CREEPING = ss.Problem(
 JUMPING = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=0.1, initial_excess=0.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("problem", [CREEPING, JUMPING])
 def test_limits_at_the_contact_are_those_of_the_run(problem: ss.Problem, side: Literal["left", "right"]) -> None:

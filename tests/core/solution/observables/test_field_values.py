@@ -70,6 +70,7 @@ def test_stress_is_the_gradient_of_displacement(name: str, time: float) -> None:
     assert run.field(x, time).stress @ weight / MODULUS == pytest.approx(high - low, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", SMOOTH)
 @pytest.mark.parametrize("time", [1.3, 7.0])
 def test_the_energy_of_the_field_is_the_stored_one(name: str, time: float) -> None:

@@ -76,6 +76,7 @@ def test_a_wrong_engine_does_not_escape_its_proof(case: str) -> None:
     assert np.mean(noticed) >= 0.25
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", ["slab", "slab, implicit"])
 def test_a_finished_step_with_a_wrong_coefficient_is_noticed(case: str) -> None:
     problem, end = CASES[case]

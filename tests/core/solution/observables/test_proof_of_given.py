@@ -46,6 +46,7 @@ def wrong_by(monkeypatch: pytest.MonkeyPatch) -> Iterator[float]:
     forget()
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("load", LOADS, ids=lambda one: one.kind)
 def test_a_normal_load_that_the_engine_got_wrong_is_missed_by_what_the_proof_says(load: LoadingHistory, wrong_by: float) -> None:
     """The contact equation is missed by 1e-3 of how far the normal load has changed, times the friction coefficient."""

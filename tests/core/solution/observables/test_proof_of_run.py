@@ -97,6 +97,7 @@ WRONG = {
 }
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("kind", WRONG)
 def test_an_engine_with_a_wrong_number_is_noticed_by_what_it_concerns(kind: str) -> None:
     """The number is wrong by a permille; the measure is a thousand times that of the right engine, and no other one is needed."""
@@ -129,6 +130,7 @@ def test_no_state_misses_its_equation_by_more_than_is_said() -> None:
     assert max(missed) > 1.0 / 3.0
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("k", [0, 1, 6])
 def test_a_state_that_evolves_wrongly_in_one_step_is_noticed(k: int) -> None:
     run = ss.simulate(*CASES["two states"])

@@ -119,6 +119,7 @@ def test_a_file_that_breaks_off_or_has_letters_in_its_numbers_is_refused_in_one_
         assert re.search(r"says \d+ samples, but \d+ follow: the end is missing", message)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(12))
 def test_any_count_width_and_number_in_a_line_are_read(seed: int) -> None:
     """Random numbers of samples and of those in a line, and numbers of any size."""
@@ -282,7 +283,7 @@ LONG_LINES = [
 ]
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("line", LONG_LINES, ids=lambda line: line[:3].strip() or "blanks")
 def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
     """Behind the first one to three lines, or at their end; a pattern that tries all ways through one takes hours."""
@@ -292,7 +293,7 @@ def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
                 assert told("\n".join(text)).startswith("a")
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("seed", range(30))
 @pytest.mark.parametrize("layout", FILES)
 def test_a_damaged_file_is_read_or_refused_in_one_line(layout: str, seed: int) -> None:

@@ -24,7 +24,7 @@ WHOLE = ("events", "pulses", "shocks", "arrested", "irregular", "branches", "end
 """Numbers that are the same bit for bit."""
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("name", CASES)
 def test_members_equal_the_runs_of_simulate(name: str) -> None:
     case = CASES[name]
@@ -45,7 +45,7 @@ def test_members_equal_the_runs_of_simulate(name: str) -> None:
         assert found == pytest.approx(expected, nan_ok=True, **ROUNDING)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", ["rate", "slip", "driver", "linear block", "gauss"])
 def test_results_do_not_depend_on_threads_order_or_other_members(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     case = CASES[name]
@@ -60,7 +60,7 @@ def test_results_do_not_depend_on_threads_order_or_other_members(name: str, monk
         assert alone.results[quantity][order].tobytes() == shuffled.results[quantity].tobytes(), quantity
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=13)
 @pytest.mark.parametrize("name", CASES)
 def test_results_do_not_depend_on_what_a_workspace_held_before(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     case = CASES[name]

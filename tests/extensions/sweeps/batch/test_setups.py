@@ -72,7 +72,7 @@ def branch_of(setups: Setups, n: int) -> at.Floats:
     return row_of(setups.branch_table, n)[:count].T
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("name", CASES)
 def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
     case = CASES[name]

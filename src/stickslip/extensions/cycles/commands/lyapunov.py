@@ -26,13 +26,17 @@ def lyapunov(
     r"""Find how fast small disturbances grow, and how long events are predictable.
 
     The largest Lyapunov exponent, with its standard error: above 0 the motion
-    is chaotic, and single events mean nothing beyond a horizon. It is found of
-    rigid bodies under a steady pull, of slabs and strings without masses under
-    a law of slip rate, and of chains of blocks, whose disturbed runs are
-    compared. The figure shows how a disturbance grows along the run.
+    is chaotic, and single events mean nothing beyond a horizon. Rigid bodies
+    under a steady pull, and slabs and strings without masses under a law of
+    slip rate, have an equation of disturbances; of chains disturbed runs are
+    compared. Of all others (strings with a bit, layers, machines, position
+    loops, hard stops, loadings that vary) two runs that differ a little are
+    compared after each round trip. The figure shows how a disturbance grows
+    along the run.
 
     \b
       stickslip lyapunov mine.toml --duration "20 h"
+      stickslip lyapunov drill-string --duration "30 min"
       stickslip lyapunov mine.toml --skip "1 h" --figure growth.png
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.

@@ -31,7 +31,7 @@ from stickslip.foundation.kernels.memory.addresses import room_for
 def meets_stop(run: RunNumbers, piece: int) -> bool:
     """Return True if the body has met a hard stop where a piece begins."""
     one, past = pieces_of(run.pieces)[piece], pieces_of(run.pieces)[piece - 1]
-    return (past.mode > 0 and one.slip == run.stop_ahead) or (past.mode < 0 and one.slip == run.stop_behind)
+    return bool((past.mode > 0 and one.slip == run.stop_ahead) or (past.mode < 0 and one.slip == run.stop_behind))
 
 
 @kernel

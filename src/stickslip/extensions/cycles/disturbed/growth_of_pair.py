@@ -16,9 +16,10 @@ import numpy as np
 from stickslip.engine import History
 from stickslip.engine.input import SHARE_OF_TOLERANCE
 from stickslip.extensions.cycles.asked import not_steady
-from stickslip.extensions.cycles.disturbed.pair import Measure, Pair, first_disturbance
-from stickslip.extensions.cycles.disturbed.stand import Stand
+from stickslip.extensions.cycles.disturbed.measure import Measure, first_disturbance
+from stickslip.extensions.cycles.disturbed.pair import Pair
 from stickslip.extensions.cycles.exponent import ERROR_BATCHES, MeasuredGrowth, drift_of
+from stickslip.extensions.cycles.find_cycle import without_load
 from stickslip.extensions.cycles.section import onsets
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -43,44 +44,49 @@ ENDS_ALL = (
 
 def growth_of_pair(problem: Problem, skip: float, duration: float, rtol: float, tell: TextProgress) -> MeasuredGrowth:
     """Return how disturbances grow along a run from `skip` to `duration` (s). Raises InputError."""
+    _check(problem)
+    begin = skip + SETTLING_SHARE * (duration - skip)
+    pair = Pair.begin(without_load(problem), duration, rtol, shifts=not not_steady(problem) and problem.far_stress_rate == 0.0)
+    if not duration - begin > FEWEST_COMPARISONS * pair.interval:
+        fewest = math.ceil(FEWEST_COMPARISONS / (1.0 - SETTLING_SHARE) + 1.0)
+        raise InputError(
+            f"lyapunov: duration must be longer than skip by {fewest} round trips of {brief(pair.interval, 's')} or more"
+        )
+    measure, stand, found = Measure.of(pair.run), pair.stand, Growing()
+    measure.see(stand)
+    pair.differ_by(first_disturbance(stand, measure).times(APART))
+    while (time := stand.time) < duration:
+        stand, counts = pair.lead(), time >= begin
+        if not counts:
+            measure.see(stand)
+        way, apart = pair.apart(stand, measure)
+        if not apart > LOST * APART:
+            if counts:
+                return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, ENDS_ALL)
+            way, apart = first_disturbance(stand, measure), APART
+        if counts:
+            found.note(pair.run.history(), time, stand.time, math.log(apart / APART))
+        pair.differ_by(way.times(APART))
+        if len(found.times) % 64 == 1:
+            tell(f"{brief(time, 's')} of {brief(duration, 's')}")
+    if len(found.times) <= FEWEST_COMPARISONS:
+        raise InputError(
+            f"lyapunov: two runs could be compared {max(len(found.times) - 1, 0)} times only between {brief(begin, 's')} and"
+            f" {brief(duration, 's')}, and {FEWEST_COMPARISONS} are needed: give a longer duration"
+        )
+    each = ", each phase of the round trip by itself" if measure.by_phase else ""
+    how = f"measured on two runs that differ by {APART:g}{each}, compared {len(found.times) - 1} times in {{}} (rtol {rtol:g})"
+    return found.mean(how, max(rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps)))
+
+
+def _check(problem: Problem) -> None:
+    """Refuse friction that changes with all slip. Raises InputError."""
     law = problem.friction
     if law.depends_on_slip and (law.memory == "all" or law.states):
         raise InputError(
             f"lyapunov: under {type(law).__name__} friction changes with all slip: the motion never comes to one that stays, and a"
             " mean rate of growth says nothing; ss.studies.compare puts two runs side by side"
         )
-    begin = skip + SETTLING_SHARE * (duration - skip)
-    pair = Pair.begin(problem, duration, rtol, shifts=not not_steady(problem) and problem.far_stress_rate == 0.0)
-    if not duration - begin > FEWEST_COMPARISONS * pair.interval:
-        raise InputError(
-            f"lyapunov: duration must be longer than skip by {1.2 * FEWEST_COMPARISONS:.0f} round trips of"
-            f" {brief(pair.interval, 's')} or more"
-        )
-    measure, stand = Measure.of(pair.run), Stand(pair.run)
-    measure.see(stand)
-    pair.differ_by(first_disturbance(stand, measure).times(APART))
-    found = Growing()
-    while (time := stand.time) < duration:
-        stand, counts = pair.lead(), time >= begin
-        if not counts:
-            measure.see(stand)
-        between, apart = pair.apart(stand, measure)
-        if not apart > LOST * APART:
-            if counts:
-                return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, ENDS_ALL)
-            between, apart = first_disturbance(stand, measure), 1.0
-        if counts:
-            found.note(pair.run.history(), time, stand.time, math.log(apart / APART))
-        pair.differ_by(between.times(APART / apart))
-        if len(found.times) % 64 == 1:
-            tell(f"{brief(time, 's')} of {brief(duration, 's')}")
-    if len(found.times) <= FEWEST_COMPARISONS:
-        raise InputError(
-            f"lyapunov: two runs could be compared {len(found.times)} times only between {brief(begin, 's')} and"
-            f" {brief(duration, 's')}, and more than {FEWEST_COMPARISONS} are needed: give a longer duration"
-        )
-    how = f"measured on two runs that differ by {APART:g}, compared {len(found.times) - 1} times in {{}} (rtol {rtol:g})"
-    return found.mean(how, max(rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps)))
 
 
 @dataclass
@@ -91,8 +97,8 @@ class Growing:
     """Times (s) of comparisons, the first of which is the start."""
     growth: list[float] = field(default_factory=list)
     """Logarithm (1) of the size of a disturbance at these times."""
-    ranges: list[float] = field(default_factory=list)
-    """How far the slip rate goes (m/s) from one to the next."""
+    rates: list[Floats] = field(default_factory=list)
+    """Slip rates (m/s) from one to the next, the least and the greatest."""
     events: int = 0
     """Number of onsets of slip."""
 
@@ -105,7 +111,8 @@ class Growing:
         here = np.flatnonzero(history.start >= begin * (1.0 - 1e-12))
         if len(here):
             rate = history.store.rate[here]
-            self.ranges.append(float(np.ptp(np.append(rate[:, 0], rate.sum(axis=1)))))
+            ends = np.append(rate[:, 0], rate.sum(axis=1))
+            self.rates.append(np.array([ends.min(), ends.max()]))
             self.events += int((onsets(history).time >= begin).sum())
 
     def mean(self, how: str, known: float) -> MeasuredGrowth:
@@ -115,7 +122,8 @@ class Growing:
         exponent = slope_of(time, growth)
         count = min(ERROR_BATCHES, len(time) // FEWEST_IN_PART)
         parts = np.array([slope_of(*part) for part in np.array_split(np.array([time, growth]), count, axis=1)])
-        drift = drift_of(np.array(self.ranges))
+        ranges = np.array([np.ptp(part) for part in np.array_split(np.array(self.rates), ERROR_BATCHES) if len(part)])
+        drift = drift_of(ranges[ranges > 0.0])
         error = math.hypot(float(np.std(parts, ddof=1)) / math.sqrt(count), drift / counted)
         how, events = how.format(brief(counted, "s")), self.events or math.nan
         return MeasuredGrowth(time, growth, exponent, error, counted, how, events, known=known, drift=drift)

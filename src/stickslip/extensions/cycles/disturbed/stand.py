@@ -7,24 +7,18 @@ one that left its contact, and a rigid body none, whose run may stand anywhere.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, Self
 
 import numpy as np
 
 from stickslip.engine import TERMS
+from stickslip.extensions.cycles.disturbed.asked import COMPARED, ComparedKind
 from stickslip.foundation.arrays import Floats
 from stickslip.run import ExactRun
 
-POINTS = 10
-"""Points of Gauss and Legendre on each piece of a wave (1)."""
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
-WAVE_PLACES, WAVE_WEIGHTS = 0.5 * (_PLACES + 1.0), 0.5 * _WEIGHTS
-"""The points as places (1) on a piece, and their weights (1)."""
-POWERS_OF_VALUES = np.linalg.inv(np.vander(WAVE_PLACES, increasing=True))
-"""From values at the points to the coefficients of powers of the place (1)."""
-FIRST_ROW_OF_WAVES = 2
-"""Rows of waves in layers (1) before those of the history."""
+MOST_POINTS, FEWEST_POINTS, POINTS_IN_ALL = 10, 2, 2000
+"""Points of Gauss and Legendre on each piece of a wave (1), fewer where pieces are many, and about how many there are in all."""
 ROOM = 64
 """Room for more pieces of history (1) in a copy of a run."""
 SHORT_WAY = 1e-5
@@ -33,6 +27,24 @@ NUMBERS = ("rate_now", "slip_now", "law_slip", "driver_rate", "driver_push")
 RATE, SLIP, LAW_SLIP, DRIVER_RATE, DRIVER_PUSH, LOAD = range(len(NUMBERS) + 1)
 """Numbers of the state of a run, the load of a rigid body, and behind them the states of the law."""
 FIRST_STATE = LOAD + 1
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points of Gauss and Legendre on a piece of a wave, as places (1), their weights (1), and powers of values there."""
+
+    places: Floats
+    weights: Floats
+    powers: Floats
+    """From values at the points to the coefficients of powers of the place (1)."""
+
+    @classmethod
+    @lru_cache(maxsize=16)
+    def on(cls, pieces: int) -> Self:
+        """Return those for so many pieces."""
+        places, weights = np.polynomial.legendre.leggauss(int(np.clip(POINTS_IN_ALL // max(pieces, 1), FEWEST_POINTS, MOST_POINTS)))
+        places = 0.5 * (places + 1.0)
+        return cls(places, 0.5 * weights, np.asarray(np.linalg.inv(np.vander(places, increasing=True)), float))
 
 
 @dataclass(frozen=True)
@@ -56,64 +68,55 @@ class Stand:
 
     run: ExactRun
 
+    @property
+    def kind(self) -> ComparedKind:
+        """The answers of the kind of body."""
+        return COMPARED[self.run.problem.body.structure]
+
     @cached_property
     def pieces(self) -> slice:
         """The pieces of the history whose waves are still to come back."""
-        count = self.run.count
-        first, last = int(count.previous_from), int(count.previous_to)
-        return slice(first, last) if count.is_block == 0 else slice(last, last)
+        return self.kind.standing(self.run)
 
     @property
     def where(self) -> tuple[int, ...]:
-        """Numbers that runs must share to be compared: round trips to come and recorded, which way they slip, the law's piece."""
-        count, store = self.run.count, self.run.store
-        trips = (0, 0) if count.is_block else (int(count.trip), int(store.trip[count.previous_to - 1]))
-        return (*trips, int(count.mode), int(count.piece), int(count.side))
+        """Numbers that runs must share to be compared: those of their kind, which way they slip, the piece of the law."""
+        return (*self.kind.where(self.run), int(self.run.count.mode), int(self.run.count.piece))
 
     @property
     def time(self) -> float:
         """The time (s)."""
-        count, run = self.run.count, self.run
-        return run.time if count.is_block else float(count.trip * run.problem.round_trip_time)
+        return self.kind.time(self.run)
+
+    @property
+    def points(self) -> Points:
+        """The points on each piece of a wave."""
+        return Points.on(self.pieces.stop - self.pieces.start)
 
     @cached_property
     def series(self) -> Floats:
         """The waves as polynomials: (waves, pieces, TERMS)."""
-        run, here = self.run, self.pieces
-        if run.count.is_block:
-            return np.zeros((0, 0, TERMS))
-        if run.count.slots > 0:
-            return np.moveaxis(run.waves[self._rows], 1, 0)
-        doubled = 2.0 * run.params.impedance
-        return np.asarray(doubled * run.store.rate[here] - run.store.load[here])[None]
-
-    @property
-    def _rows(self) -> Any:
-        """The rows of the table of waves in layers that belong to the pieces."""
-        count = self.run.count
-        number = np.arange(self.pieces.start, self.pieces.stop)
-        return FIRST_ROW_OF_WAVES + (number + int(count.wave_shift)) % (len(self.run.waves) - FIRST_ROW_OF_WAVES)
+        return self.kind.series(self.run)
 
     @cached_property
     def phases(self) -> Floats:
         """The phases (s) of the points: of each piece a row."""
-        store, here, xi = self.run.store, self.pieces, WAVE_PLACES
+        store, here, xi = self.run.store, self.pieces, self.points.places
         return np.asarray(store.phase_from[here, None] + store.speed[here, None] * xi + store.bend[here, None] * xi * xi)
 
     @cached_property
     def weights(self) -> Floats:
         """The weights (1) of the points in a mean over the round trip."""
         store, here = self.run.store, self.pieces
-        lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * WAVE_PLACES
-        return np.asarray(lasts * WAVE_WEIGHTS / self.run.problem.round_trip_time)
+        lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * self.points.places
+        return np.asarray(lasts * self.points.weights / self.run.problem.round_trip_time)
 
     @cached_property
     def numbers(self) -> Floats:
         """The numbers, and the states of the law."""
-        state, count = self.run.state, self.run.count
-        states = [state.state_now[n] for n in range(int(count.states))]
-        load = self.run.scratch[0] @ state.xi ** np.arange(TERMS) if count.is_block else 0.0
-        return np.array([*(getattr(state, name) for name in NUMBERS), load, *states], float)
+        state = self.run.state
+        states = [state.state_now[n] for n in range(int(self.run.count.states))]
+        return np.array([*(getattr(state, name) for name in NUMBERS), self.kind.load(self.run), *states], float)
 
     def at(self, phases: Floats) -> Carried:
         """Return what is carried, with the waves at phases (s)."""
@@ -141,8 +144,8 @@ class Stand:
         store, here, last = self.run.store, self.pieces, self.run.length - 1
         found = np.zeros((len(self.series), self.phases.size))
         if self.phases.size:
-            lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * WAVE_PLACES
-            slopes = sum(k * self.series[:, :, k, None] * WAVE_PLACES ** (k - 1) for k in range(1, TERMS))
+            lasts = store.speed[here, None] + 2.0 * store.bend[here, None] * self.points.places
+            slopes = sum(k * self.series[:, :, k, None] * self.points.places ** (k - 1) for k in range(1, TERMS))
             found = (slopes / lasts).reshape(len(self.series), -1)
         pace = float(store.speed[last] + 2.0 * store.bend[last])
 
@@ -170,48 +173,34 @@ def copied(run: ExactRun, into: ExactRun) -> ExactRun:
 
 
 def disturb(run: ExactRun, by: Carried) -> None:
-    """Add a disturbance to what a run carries over the end of a round trip; its waves are given at the points of the run itself."""
-    end, state = Stand(run), run.state
-    here, count = end.pieces, here_count(end)
+    """Add a disturbance to what a run carries; its waves are given at the points of the run itself."""
+    stand, state = Stand(run), run.state
     for n, name in enumerate(NUMBERS):
         setattr(state, name, getattr(state, name) + float(by.numbers[n]))
     for n, change in enumerate(by.numbers[FIRST_STATE:].tolist()):
         state.state_now[n] += change
-    if not count:
-        run.scratch[0, 0] += by.numbers[LOAD]
-        return
-    series = by.waves.reshape(-1, count, POINTS) @ POWERS_OF_VALUES.T
-    if run.count.slots > 0:
-        run.waves[end._rows, :, :POINTS] += np.moveaxis(series, 0, 1)
-    else:
-        run.store.load[here, :POINTS] -= series[0]
-
-
-def here_count(end: Stand) -> int:
-    """Return the number of pieces of waves."""
-    return end.pieces.stop - end.pieces.start
+    stand.kind.add_load(run, float(by.numbers[LOAD]), float(by.numbers[SLIP]))
+    powers = stand.points.powers
+    pieces = stand.pieces.stop - stand.pieces.start
+    stand.kind.add_waves(run, by.waves.reshape(len(by.waves), pieces, len(powers)) @ powers.T)
 
 
 def flow_of_driver(flow: Carried, run: ExactRun, spare: ExactRun) -> Carried:
     """Return a flow with that of a driver which moves by itself, from a short way of a spare run, which is lost."""
     moved = copied(run, spare)
-    end, first = Stand(moved), int(moved.count.previous_from)
+    stand, first = Stand(moved), int(moved.count.previous_from)
     store, short = moved.store, SHORT_WAY * run.problem.round_trip_time
     speed, bend = float(store.speed[first]), float(store.bend[first])
     share = 2.0 * short / (speed + np.sqrt(speed * speed + 4.0 * bend * short))
-    powers = share ** np.arange(TERMS)
-    if moved.count.slots > 0:
-        moved.waves[end._rows[:1]] *= powers
-    store.load[first] *= powers
-    store.rate[first] *= powers
+    before, shrunk = stand.numbers, np.zeros_like(stand.series)
+    shrunk[:, 0] = stand.series[:, 0] * (share ** np.arange(TERMS) - 1.0)
+    stand.kind.add_waves(moved, shrunk)
     store.speed[first], store.bend[first] = share * speed, share * share * bend
     store.phase_to[first] = store.phase_from[first] + short
-    before = end.numbers
     moved.count.pause_at = int(moved.count.trip) + 1
     while moved.count.ready == 0:
         moved.advance(1)
-    after = Stand(moved).numbers
     numbers = flow.numbers.copy()
     driven = [DRIVER_RATE, DRIVER_PUSH]
-    numbers[driven] = (after - before)[driven] / short
+    numbers[driven] = (Stand(moved).numbers - before)[driven] / short
     return Carried(numbers, flow.waves)

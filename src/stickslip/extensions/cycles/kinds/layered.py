@@ -5,8 +5,17 @@ from __future__ import annotations
 from typing import cast
 
 from stickslip.extensions.cycles.kinds.uniform import CyclesOfUniform, not_repeated
+from stickslip.extensions.cycles.waves.orbit import WaveOrbit
+from stickslip.extensions.cycles.waves.path import WavePath
+from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
 from stickslip.problem.bodies import OfLayers
+from stickslip.problem.scenarios import ParameterPath, Scenario
+
+OF_DRIVERS = {"machine": "cycles behind layers and a machine with a motion of its own are not found"}
+"""Why no cycle is looked for, by kind of driver."""
+NUDGE = 1e-6
+"""A number is changed by this share (1) to see whether travel times change beside each other."""
 
 
 class CyclesOfLayered(CyclesOfUniform):
@@ -15,17 +24,32 @@ class CyclesOfLayered(CyclesOfUniform):
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle is looked for."""
         body = cast(OfLayers, problem.body)
-        if why := not_repeated(problem):
+        if why := not_repeated(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
             return why
         if all(one.reflection == 1.0 for one in body.stacks):
             return "a dead load holds the body nowhere"
-        if body.has_inertia and any(abs(one.reflection) == 1.0 and one.drag is None for one in body.stacks):
+        if body.has_inertia and any(abs(one.reflection) == 1.0 for one in body.stacks):
             where = "the driver sends" if len(body.stacks) == 1 else "a driver sends"
+            drags = "; drag is lumped between cells, and leaves waves that rest there" if body.has_drag else ""
             return (
                 f"{where} sharp waves back whole, and so does the {body.what_is_heavy}: they never fade, and no run comes"
-                " to a cycle; give the driver a finite impedance, or its layers drag"
+                f" to a cycle{drags}; give the driver a finite impedance"
             )
         return ""
+
+    def path(self, orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
+        """Return the path of a cycle along a number of its scenario, over a span (SI) of it.
+
+        Raises InputError if the number changes how travel times compare: the cells that layers are cut into then change in steps.
+        """
+        number = scenario.problem.parameters[parameter.name]
+        before, after = (cast(OfLayers, one.body).cells for one in (scenario.problem, number.put(number.value * (1.0 + NUDGE))))
+        if before.counts != after.counts or abs(after.error - before.error) > 1e-3 * NUDGE:
+            raise InputError(
+                f"follow: {parameter.name} changes how the travel times compare, and so, in steps, the cells that the layers are"
+                " cut into: follow a number that leaves them, such as an impedance or the pull rate, or find the cycles one by one"
+            )
+        return super().path(orbit, scenario, parameter, span)
 
 
 ANSWERS = CyclesOfLayered()

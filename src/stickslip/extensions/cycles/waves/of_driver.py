@@ -12,17 +12,14 @@ import numpy as np
 
 from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import Problem
+from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies import BodyWithWaves, as_waves
 
 
 def moving(problem: Problem) -> tuple[bool, bool]:
     """Return whether the rate of the driver is a number of its own, and whether the push of its integral gain is."""
-    if problem.driver_kind == "damper":
-        return True, False
-    body = cast(BodyWithWaves, problem.body)
-    is_machine = problem.driver_kind == "machine"
-    return is_machine and body.driver_inertia > 0.0, is_machine and body.driver_integral_gain > 0.0
+    body, moves = cast(BodyWithWaves, problem.body), driver_of(problem).moves
+    return moves and body.driver_inertia > 0.0, moves and body.driver_integral_gain > 0.0
 
 
 def rate_and_push(problem: Problem, kept: Floats) -> Floats:

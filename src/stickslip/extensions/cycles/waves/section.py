@@ -45,9 +45,10 @@ class WavePlace:
 
     @property
     def scale(self) -> Floats:
-        """Their extents: sizes of the states, and how far the wave goes, for what the driver keeps as well."""
-        sizes, reach = np.abs(self.states), np.full(len(self.kept) + len(self.wave), np.ptp(self.wave) + 1e-300)
-        return np.concatenate([np.where(sizes > NO_STATE, sizes, 1.0), reach])
+        """Their extents: sizes of the states, how far the wave goes, and both together for what the driver keeps."""
+        sizes, reach = np.abs(self.states), float(np.ptp(self.wave)) + 1e-300
+        states = np.where(sizes > NO_STATE, sizes, 1.0)
+        return np.concatenate([states, np.abs(self.kept) + reach, np.full(len(self.wave), reach)])
 
     @property
     def counts(self) -> tuple[int, int]:

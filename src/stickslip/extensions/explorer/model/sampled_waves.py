@@ -18,9 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
 from stickslip.solution import Readings, Solution, Window, choose_interval
-from stickslip.solution.observables import OfWave, Radiation, Sampled, WaveInterval, Waves, check_known, many_places, slab_of
+from stickslip.solution.observables import OfWave, Radiation, Sampled, WaveInterval, Waves, check_known, slab_of
 
 
 class ShownInterval(NamedTuple):
@@ -176,7 +177,7 @@ class SampledWaves:
         end, round_trip = self.shown.end, self.waves.round
         within = begin - self.first + round_trip, end - self.first + round_trip
         check_known(self.history, begin, end)
-        if many_places(self.history, begin, end) > MANY_PLACES or self.waves.inflow.many_edges(*within) > MANY_PLACES:
+        if _many_places(self.history, begin, end) > MANY_PLACES or self.waves.inflow.many_edges(*within) > MANY_PLACES:
             return self._means(begin)
         interval, slack = WaveInterval(self.waves, begin, end), NEARBY * round_trip
         edges = self.waves.inflow.edges(*within)
@@ -269,3 +270,9 @@ class SampledWaves:
     def _of_driver(self, waves: Waves, time: Floats) -> Floats:
         power = self.samples.mean(lambda leaving, moment: waves.power(leaving, moment - self.first))
         return np.interp(time - waves.half, self.leaving.time, summed(self.leaving.time, power))
+
+
+def _many_places(history: History, low: float, high: float) -> float:
+    """Return how often, at most, another piece may begin to hold between two times (s): see `WaveInterval`."""
+    pieces = int(np.searchsorted(history.start, high, side="right"))
+    return (1.0 + 2.0 * pieces) * (2.0 + (high - low) / history.round_trip_time)

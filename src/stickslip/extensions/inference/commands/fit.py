@@ -191,7 +191,7 @@ def _show_result(result: Fit | Smooth) -> None:
     screen = console()
     say(screen, clean(f"{result.points.name}: {result.title}"), style="bold")
     print_words(screen, ("", "value", "unit"), list(result.rows))
-    print_sentences(screen, *result.notes)
+    print_sentences(screen, *result.points.notes, *result.notes)
 
 
 def _best(points: Points) -> Fit:

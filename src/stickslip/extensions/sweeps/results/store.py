@@ -11,6 +11,7 @@ when, in what order or by what process chunks were done.
 
 from __future__ import annotations
 
+import json
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -35,9 +36,10 @@ from stickslip.extensions.sweeps.results.layout import (
     read_design,
 )
 from stickslip.foundation import zarr_folder
+from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, never_show
 from stickslip.foundation.locks import held
-from stickslip.solution.files import check_metadata, create, first_file_of, is_sound
+from stickslip.solution.files import create, is_sound
 
 
 class ResultStore:
@@ -135,11 +137,11 @@ def check_store(path: Path) -> zarr.Group:
     if not SWEEP_FORMAT.is_in(path):
         raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
     group = SWEEP_FORMAT.opened(path)
-    check_metadata(path, group)
+    _check_metadata(path, group)
     arrays = dict(group.arrays())
     others = {*read_design(group.attrs)[1], SAMPLE_TIME} & set(arrays)
     for name in sorted(others):
-        _check_file(path, first_file_of(arrays.pop(name)), "copy it from elsewhere, or choose another name")
+        _check_file(path, _first_file_of(arrays.pop(name)), "copy it from elsewhere, or choose another name")
     ends = {name: ".0" * (array.ndim - array_of(group, STATUS).ndim) for name, array in arrays.items()}
     for status in path.glob(f"{STATUS}/c.*"):
         if status.suffix != ".partial":
@@ -174,3 +176,17 @@ def open_store(path: str | Path) -> xr.Dataset:
         found: xr.Dataset = xr.open_zarr(zarr_folder.Folder(path), chunks=None)
         check_contents(found)
         return in_order(found)
+
+
+def _first_file_of(array: zarr.Array[Any]) -> str:
+    """Return the name of the file of the first chunk of an array inside its folder."""
+    name: str = array.metadata.encode_chunk_key((0,) * array.ndim)
+    return f"{array.path}/{name}"
+
+
+def _check_metadata(path: Path, group: zarr.Group) -> None:
+    """Compare what is known of each array in its own file with what was gathered from these files. Raises InputError."""
+    for name, array in group.arrays():
+        content = json.loads(read_bounded(path / name / zarr_folder.METADATA, zarr_folder.LARGEST_METADATA))
+        if content != json.loads(json.dumps(array.metadata.to_dict())):
+            raise InputError(f"{path}: damaged: {name}/{zarr_folder.METADATA} is not as it was written")

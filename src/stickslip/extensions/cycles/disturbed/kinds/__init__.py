@@ -1,0 +1,1 @@
+"""How a run of each kind of body is compared with another one, a module for each."""
