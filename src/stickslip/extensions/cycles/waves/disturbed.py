@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.engine import Cause
 from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, RunNumbers
 from stickslip.extensions.cycles.compiled.echo_parts import WAVE_PLACES, WAVE_POINTS, PartsOfRun, WavesOfRun
 from stickslip.extensions.cycles.compiled.echoes import NO_ROOM, carry, read_waves
@@ -19,8 +20,8 @@ TO_POINTS = np.vander(WAVE_PLACES, NODES, increasing=True) @ POWERS_OF_TERMS @ T
 """From the values of a mesh on a piece to those at the points of a part."""
 FIRST_ROOM, MORE_ROOM, MOST_ROOM = 2, 4, 200
 """Room for so many parts for each piece (1), by what factor it grows, and the most."""
-SAME_RATE = 1e-6
-"""A slip rate does not jump between two pieces if they differ by less than this share (1) of the largest."""
+SMALL_JUMP = 1e-2
+"""Jumps of the slip rate are small that are below this share (1) of the largest."""
 DRIVERS = ("rigid", "lossy")
 """Drivers that send a wave back as it is, or a share of it."""
 
@@ -39,11 +40,16 @@ def is_known(met: WaveReturn) -> bool:
 
 
 def _jumps(met: WaveReturn) -> bool:
-    """Return True if the slip rate jumps on the way: a jump that moves leaves more in the wave than a kink."""
-    rate = met.history.store.rate[met.first : met.piece + 1]
-    ends, rests = rate.sum(axis=1), met.history.rests[met.first : met.piece]
+    """Return True if the slip rate jumps on the way: a jump that moves leaves more in the wave than a kink.
+
+    Small jumps are echoes of places where the pieces of the wave do not quite meet, which do not move.
+    """
+    store = met.history.store
+    rate, rests = store.rate[met.first : met.piece + 1], met.history.rests[met.first : met.piece]
+    ends = rate.sum(axis=1)
     off = np.abs(np.where(rests, 0.0, ends[:-1]) - rate[1:, 0])
-    return bool(off.max(initial=0.0) > SAME_RATE * np.abs(ends).max())
+    leaps = (store.cause[met.first : met.piece + 1] == Cause.FOLD).any()
+    return bool(leaps or off.max(initial=0.0) > SMALL_JUMP * np.abs(ends).max())
 
 
 def numbers_along(met: WaveReturn) -> WavesOfRun:
