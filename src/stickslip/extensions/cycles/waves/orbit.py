@@ -276,7 +276,7 @@ def _newton_step(image: Image, section: WaveSection, now: WaveReturn, missed: Fl
         step, _, directions = solved(difference(image, section, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
         return step, directions
     try:
-        return np.linalg.solve(slopes - np.eye(len(slopes)), -missed), 0
+        return np.asarray(np.linalg.solve(slopes - np.eye(len(slopes)), -missed)), 0
     except np.linalg.LinAlgError:
         raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
 
