@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine import History, LadderCell
+from stickslip.engine import History, LadderCell, crossed
 from stickslip.engine.input import ladder_of
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Problem
