@@ -32,7 +32,7 @@ WAVES_AT_FIRST = 8
 
 @dataclass
 class Measure:
-    """Sizes of what is carried (1): how far each number and each wave has varied; numbers without any effect do not count."""
+    """Sizes of all that is carried (1): how far each number and each wave has varied; numbers without any effect do not count."""
 
     by_phase: bool
     """True if each moment of the round trip moves by itself, so that each has a disturbance of its own."""
