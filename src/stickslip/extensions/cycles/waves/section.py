@@ -20,6 +20,8 @@ from stickslip.solution import Solution
 
 LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
+BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
+"""Places (1) on a piece of the mesh, most of them near its ends, at which a wave is compared with its start."""
 PASSES = 20_000
 """Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
 
@@ -116,6 +118,14 @@ class WaveReturn:
     def on(self, mesh: WaveMesh) -> WavePlace:
         """Return the place of the return, on a mesh."""
         return WavePlace(mesh, self.states, self.kept, self.source.at(mesh.phases))
+
+    @cached_property
+    def between(self) -> float:
+        """By what share (1) of its extent the wave misses its start at places that are no points of the mesh."""
+        edges = self.start.mesh.edges
+        phases = (edges[:-1, None] + np.diff(edges)[:, None] * BESIDE).ravel()
+        off = self.source.at(phases) - self.start.mesh.at(self.start.wave, phases)
+        return float(np.abs(off).max() / self.start.scale[-1])
 
     @cached_property
     def sticks(self) -> bool:
