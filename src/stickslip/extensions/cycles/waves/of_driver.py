@@ -43,4 +43,4 @@ def kept_by_driver(history: History, time: float, begun: Floats) -> Floats:
     rate = 2.0 * body.echo_impedance * history.machine.at(np.array([now]))
     way = history.machine.way(np.array([0.5 * trip]), np.array([now]))
     push = begun[1] + body.driver_integral_gain * (problem.first_pull_rate * (time - trip) - way)
-    return np.concatenate([rate, push])[np.array(own)]
+    return np.asarray(np.concatenate([rate, push])[np.array(own)])

@@ -25,6 +25,8 @@ LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
 NO_STATE = 1e-15
 """A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
+BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
+"""Places (1) on a piece of the mesh, most of them near its ends, at which a wave is compared with its start."""
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,14 @@ class WaveReturn:
     def landed(self) -> WavePlace:
         """The place of the return on the mesh of the start."""
         return self.on(self.start.mesh)
+
+    @cached_property
+    def between(self) -> float:
+        """By what share (1) of its extent the wave misses its start at places that are no points of the mesh."""
+        edges = self.start.mesh.edges
+        phases = (edges[:-1, None] + np.diff(edges)[:, None] * BESIDE).ravel()
+        off = self.source.at(phases) - self.start.mesh.at(self.start.wave, phases)
+        return float(np.abs(off).max() / self.start.scale[-1])
 
     @cached_property
     def sticks(self) -> bool:
