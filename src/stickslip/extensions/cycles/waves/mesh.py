@@ -70,7 +70,7 @@ class WaveMesh:
         """Return a wave with these values at the points, at phases (s)."""
         piece, powers = self._found(phases)
         terms = self.series(values)[piece].reshape(len(phases), -1, TERMS)[..., :NODES]
-        return np.einsum("pck,pk->cp", terms, powers).ravel()
+        return np.asarray(np.einsum("pck,pk->cp", terms, powers).ravel())
 
     def matrix_at(self, phases: Floats) -> Floats:
         """Return the matrix that makes values at phases (s) of those at the points."""
