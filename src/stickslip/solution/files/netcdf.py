@@ -336,8 +336,8 @@ def _solution(tables: Tables, path: Path) -> Solution:
     ended, why = (printable(str(attributes[name])) for name in ("status", "status_message"))
     status = Status(ended, why, bool(attributes["status_ok"]))
     counted = scenario.max_events if status.name == STATUSES[ENOUGH_EVENTS].name else None
-    more = {"begun_with": tables.array("history_begun_with")} if "history_begun_with" in has else {}
-    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted, **more)
+    given = tables.array("history_begun_with") if "history_begun_with" in has else None
+    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted, begun_with=given)
     checkpoint = None
     if "engine" in attributes:
         arrays = {name: tables.array(f"engine_{name}") for name in ARRAYS if name != "waves" or "engine_waves" in has}
