@@ -28,7 +28,7 @@ class CyclesOfLayered(CyclesOfUniform):
             return why
         if all(one.reflection == 1.0 for one in body.stacks):
             return "a dead load holds the body nowhere"
-        if body.has_inertia and any(abs(one.reflection) == 1.0 for one in body.stacks):
+        if problem.body.has_inertia and any(abs(one.reflection) == 1.0 for one in body.stacks):
             where = "the driver sends" if len(body.stacks) == 1 else "a driver sends"
             drags = "; drag is lumped between cells, and leaves waves that rest there" if body.has_drag else ""
             return (

@@ -87,7 +87,7 @@ class Fronts:
             return np.zeros(times.shape)
         at, law = history.find(times.ravel(), "right"), self.problem.friction
         by_rate = law.slopes(history.law_slip(at) if law.depends_on_slip else 0.0, np.abs(history.rate(at)), history.state(at))[1]
-        resists = self.body.total_damping + self.problem.normal * by_rate
+        resists = self.problem.body.total_damping + self.problem.normal * by_rate
         return np.where(history.mode(at) == 0, 0.0, 1.0 / resists).reshape(times.shape)
 
     def left_after(self, history: History, begin: float, end: float) -> float:
