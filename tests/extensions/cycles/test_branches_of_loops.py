@@ -90,3 +90,13 @@ def test_the_exponent_of_a_loop_is_that_of_its_multiplier(pull: float) -> None:
     found = ss.studies.lyapunov(cycle.problem, 20.0 * cycle.period)
     assert found.exponent == pytest.approx(math.log(abs(cycle.multipliers[0])) / cycle.period, rel=1e-6)
     assert np.isfinite(found.exponent)
+
+
+def test_along_a_ramp_that_comes_to_steady_sliding_the_exponent_is_the_growth_of_that() -> None:
+    """The run swings into it: its own decay is not left out. The leading root is -0.5117543805 1/s, to rounding."""
+    body = ss.PositionLoop(MASS, KP, NORMAL, 50.0, 5.0)
+    law = F.ExponentialStribeck(static=0.5, dynamic=0.3, rate="50 mm/s")
+    problem = ss.Problem(body, law, pull_rate=1.0, initial_rate=1.1, initial_load=3.0)
+    found = ss.studies.lyapunov(problem, 80.0, skip=20.0)
+    assert found.exponent == pytest.approx(ss.studies.steady(problem).slidings[-1].growth, rel=1e-12)
+    assert found.exponent == pytest.approx(-0.5117543805, rel=1e-9)
