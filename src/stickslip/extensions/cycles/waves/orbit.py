@@ -40,7 +40,7 @@ CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
 RESOLVED_OF_MISS = 1e-2
-"""The mesh resolves a wave to this share (1) of what the return misses."""
+"""The mesh resolves a wave to this share (1) of the miss of the return."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MOST_COLUMNS = 800
