@@ -22,7 +22,7 @@ class Bordered:
     slopes: Floats | None
     """The derivative of the return by its start, if it is known from the run."""
     grown: Operator
-    """What differences of runs say of the miss, where it is not."""
+    """The derivative of the miss by differences of runs, for where it is not known."""
     by_value: Floats
     """The derivative of the miss by the parameter over its range."""
     plane: Floats

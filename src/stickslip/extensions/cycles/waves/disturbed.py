@@ -22,8 +22,6 @@ FIRST_ROOM, MORE_ROOM, MOST_ROOM = 2, 4, 200
 """Room for so many parts for each piece (1), by what factor it grows, and the most."""
 SMALL_JUMP = 1e-2
 """Jumps of the slip rate are small that are below this share (1) of the largest."""
-SENDS_A_SHARE = {"rigid": True, "lossy": True}
-"""Drivers that send a wave back as it is, or a share of it."""
 
 UNHINDERED: Any = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
 """Numbers of a run without a lag that matters, without play, and without stops."""
@@ -32,12 +30,7 @@ UNHINDERED: Any = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
 def is_known(met: WaveReturn) -> bool:
     """Return True if disturbances of a return are known from its run: else they are by differences of runs."""
     history, law = met.history, met.history.problem.friction
-    if (
-        not met.source.is_one_wave
-        or not SENDS_A_SHARE.get(history.problem.driver_kind, False)
-        or law.depends_on_slip
-        or history.store.bend.any()
-    ):
+    if not met.source.is_one_wave or len(met.start.kept) or law.depends_on_slip or history.store.bend.any():
         return False
     if law.states and history.rests[met.first : met.piece + 1].any():
         return False

@@ -32,7 +32,7 @@ SHORT_REST, TOUCHES = 1e-2, 1e-3
 """A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch; slip rate and load touch rest and
 strength where they come as near (1, of their extent) as the second."""
 LOOKED_AT = 33
-"""The least slip rate is looked for at these places (1) in each piece."""
+"""Number of places in each piece (1) where the least slip rate is looked for."""
 
 
 class EndOfPart(NamedTuple):
