@@ -14,7 +14,7 @@ import numpy as np
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE, Orbit, extent_of, missed_share
 from stickslip.extensions.cycles.section import Return, Section, crossings, places_of
-from stickslip.extensions.cycles.short_runs import ROUGH_RUN
+from stickslip.extensions.cycles.short_runs import ROUGH_RTOL
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
@@ -60,7 +60,7 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
 
 def roughly(section: Section) -> Section:
     """Return the same section with runs that only lead to the next place."""
-    return replace(section, rtol=max(section.rtol, ROUGH_RUN))
+    return replace(section, rtol=max(section.rtol, ROUGH_RTOL))
 
 
 def for_step(section: Section, step: Floats) -> Section:

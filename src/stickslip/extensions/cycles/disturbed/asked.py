@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.extensions.cycles.short_runs import PASSES
+from stickslip.extensions.cycles.short_runs import PASSES_AT_ONCE
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
 from stickslip.foundation.errors import InputError
@@ -122,7 +122,7 @@ class KindWithWaves(ComparedKind):
 
 def advance(run: ExactRun) -> Stop:
     """Let a run go on for a while. Raises InputError if it cannot, or if it rests for ever."""
-    code = Stop(run.advance(PASSES))
+    code = Stop(run.advance(PASSES_AT_ONCE))
     if code not in (Stop.NONE, Stop.END_AHEAD, Stop.LOCKED, Stop.FINISHED) and not (code == Stop.FULL and run.grow()):
         raise InputError(f"lyapunov: the run ended at {brief(run.time, 's', 4)}: {run.solution(code).status}")
     if run.count.sparse == 1:

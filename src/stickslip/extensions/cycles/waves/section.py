@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
-from stickslip.extensions.cycles.short_runs import PASSES, advanced
+from stickslip.extensions.cycles.short_runs import PASSES_AT_ONCE, advanced
 from stickslip.extensions.cycles.waves.begin import begin_with
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
 from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
@@ -172,7 +172,7 @@ class WaveSection:
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
         beside = np.concatenate([place.states, rate_and_push(self.problem, place.kept)])
         begin_with(run, place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
-        while (code := advanced(run, PASSES)) is None:
+        while (code := advanced(run, PASSES_AT_ONCE)) is None:
             pass
         return run, code
 
