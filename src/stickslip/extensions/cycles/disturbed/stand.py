@@ -30,7 +30,7 @@ FIRST_STATE = LOAD + 1
 
 
 @dataclass(frozen=True)
-class Points:
+class WavePoints:
     """Points of Gauss and Legendre on a piece of a wave, as places (1), their weights (1), and powers of values there."""
 
     places: Floats
@@ -89,9 +89,9 @@ class Stand:
         return self.kind.time(self.run)
 
     @property
-    def points(self) -> Points:
+    def points(self) -> WavePoints:
         """The points on each piece of a wave."""
-        return Points.on(self.pieces.stop - self.pieces.start)
+        return WavePoints.on(self.pieces.stop - self.pieces.start)
 
     @cached_property
     def series(self) -> Floats:
