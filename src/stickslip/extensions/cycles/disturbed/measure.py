@@ -32,7 +32,7 @@ WAVES_AT_FIRST = 8
 
 @dataclass
 class Measure:
-    """Sizes of a disturbance are shares of these: how far each number and each wave goes; numbers that decide nothing do not count."""
+    """Sizes of disturbances are shares of how far each number and each wave goes; numbers that decide nothing do not count."""
 
     by_phase: bool
     """True if each moment of the round trip moves by itself, so that each has a disturbance of its own."""
