@@ -31,7 +31,7 @@ class ComparedKind(ABC):
 
     @abstractmethod
     def lead(self, run: ExactRun, mark: int, interval: float) -> None:
-        """Lead a run to a mark, a count of the places where it can stand, or to the first one behind. Raises InputError."""
+        """Lead a run to a mark, the number of a place where it can stand, or to the first one behind. Raises InputError."""
 
     @abstractmethod
     def marks(self, run: ExactRun, interval: float) -> int:
