@@ -78,6 +78,7 @@ def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(tmp_path: P
         assert [one.value for one in again.points if not one.edge][: len(kept)] == pytest.approx(kept, rel=1e-12)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("pull", "to"), [(0.28, 0.35), (0.28, 0.3), (0.14, 0.4)])
 def test_a_finished_branch_that_goes_on_stays_as_it_is(pull: float, to: float, tmp_path: Path) -> None:
     """Back to where it began, at the end of its range and at the Hopf point, from its table and from itself: not one row more."""
