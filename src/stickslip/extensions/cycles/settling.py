@@ -10,7 +10,7 @@ from stickslip.extensions.cycles.near import NEAR_THE_RUN, Leads, meetings
 from stickslip.extensions.cycles.newton import closed_beyond
 from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.section import Crossings, Section, coordinates, passages, places_of
-from stickslip.extensions.cycles.short_runs import ROUGH, advanced, begun
+from stickslip.extensions.cycles.short_runs import ROUGH_RUN, advanced, begun
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -39,7 +39,7 @@ def settled(problem: Problem, times: tuple[float, float], rtol: float, tell: Tex
         return None
     section, (wait, lasts) = Section(problem, at_onset=False, rtol=rtol), times
     step = SHARE_OF_FIRST * lasts
-    run = begun(problem, wait + MOST_LOOKS * step, max(rtol, ROUGH), MAX_PIECES)
+    run = begun(problem, wait + MOST_LOOKS * step, max(rtol, ROUGH_RUN), MAX_PIECES)
     seen = 0
     for look in range(1, MOST_LOOKS + 1):
         code = None

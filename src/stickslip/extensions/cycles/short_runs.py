@@ -9,7 +9,7 @@ from stickslip.solution import Solution
 
 PASSES = 20_000
 """Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
-ROUGH = 1e-7
+ROUGH_RUN = 1e-7
 """Relative tolerance of runs that only lead to the next place (1): a cycle that is returned comes from runs as exact as wished."""
 
 

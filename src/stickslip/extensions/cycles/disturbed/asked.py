@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.extensions.cycles.short_runs import PASSES
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
 from stickslip.foundation.errors import InputError
@@ -17,8 +18,6 @@ from stickslip.problem import BODY_KINDS, Problem, Stop
 if TYPE_CHECKING:
     from stickslip.run import ExactRun
 
-PASSES = 20_000
-"""Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
 MOST_COMPARISONS = 2048
 """Two runs are compared no more often than this (1)."""
 
@@ -32,7 +31,7 @@ class ComparedKind(ABC):
 
     @abstractmethod
     def lead(self, run: ExactRun, mark: int, interval: float) -> None:
-        """Lead a run to a mark, by which places are counted where it can stand, or to the first one behind. Raises InputError."""
+        """Lead a run to a mark, a count of the places where it can stand, or to the first one behind. Raises InputError."""
 
     @abstractmethod
     def marks(self, run: ExactRun, interval: float) -> int:

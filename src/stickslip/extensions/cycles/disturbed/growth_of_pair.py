@@ -94,7 +94,7 @@ class Growing:
     """What is noted at each comparison."""
 
     times: list[float] = field(default_factory=list)
-    """Times (s) of comparisons, the first of which is the start."""
+    """Times (s) of comparisons, the start first."""
     growth: list[float] = field(default_factory=list)
     """Logarithm (1) of the size of a disturbance at these times."""
     rates: list[Floats] = field(default_factory=list)

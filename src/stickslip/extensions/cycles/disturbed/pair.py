@@ -10,7 +10,7 @@ from stickslip.extensions.cycles.disturbed.asked import COMPARED
 from stickslip.extensions.cycles.disturbed.measure import Measure
 from stickslip.extensions.cycles.disturbed.stand import (
     DRIVER_RATE,
-    LOAD,
+    LOAD_THERE,
     SLIP,
     Carried,
     Stand,
@@ -87,7 +87,7 @@ class Pair:
     def apart(self, stand: Stand, measure: Measure) -> tuple[Carried, float]:
         """Return how the other run differs from the run, without a shift in time: the direction, and the size (1)."""
         between = Stand(self.other).at(stand.phases) - stand.here
-        between.numbers[LOAD] = stand.kind.borne(self.run, float(between.numbers[LOAD]), float(between.numbers[SLIP]))
+        between.numbers[LOAD_THERE] = stand.kind.borne(self.run, float(between.numbers[LOAD_THERE]), float(between.numbers[SLIP]))
         if self.shifts and not measure.by_phase:
             flow = self.flow(stand, measure)
             along, vector = measure.scaled(flow, stand), measure.scaled(between, stand)

@@ -80,7 +80,7 @@ class WaveMesh:
         return found
 
     def _found(self, phases: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return the pieces in which phases (s) are, and the powers of the places (1) there."""
+        """Return the pieces where phases (s) are, and the powers of the places (1) there."""
         piece = np.clip(np.searchsorted(self.edges, phases, side="right") - 1, 0, len(self.edges) - 2)
         xi = (phases - self.edges[piece]) / (self.edges[piece + 1] - self.edges[piece])
         return piece, np.vander(xi, NODES, increasing=True)

@@ -40,7 +40,7 @@ CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
 RESOLVED_OF_MISS = 1e-2
-"""The mesh resolves a wave to this share (1) of what the return misses."""
+"""The mesh resolves a wave to this share (1) of the miss of the return."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MOST_COLUMNS = 800
@@ -276,7 +276,7 @@ def _newton_step(image: Image, section: WaveSection, now: WaveReturn, missed: Fl
         step, _, directions = solved(difference(image, section, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
         return step, directions
     try:
-        return np.linalg.solve(slopes - np.eye(len(slopes)), -missed), 0
+        return np.asarray(np.linalg.solve(slopes - np.eye(len(slopes)), -missed)), 0
     except np.linalg.LinAlgError:
         raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
 

@@ -37,7 +37,7 @@ NEWTON_ROUNDS, MOST_NO_NEARER = 8, 1
 CLOSED, STILL_CLOSED = 1e-8, 1e-6
 """A cycle of a branch closes to this share of its extent (1); where kinks forbid that, to the second."""
 MUCH_NEARER = 1e-2
-"""A step of Newton's iteration brings a return much nearer if what it misses is this share (1) of what it missed before."""
+"""A step of Newton's iteration brings a return much nearer if its miss is this share (1) of the one before."""
 MOST_SECTIONS = 8
 """Number of sections that a path remembers (1)."""
 DIRECTION_SHARE = 1e-3

@@ -9,6 +9,7 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
+from stickslip.extensions.cycles.short_runs import PASSES, advanced
 from stickslip.extensions.cycles.waves.begin import begin_with
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
 from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
@@ -24,8 +25,6 @@ LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
 NO_STATE = 1e-15
 """A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
-PASSES = 20_000
-"""Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
 
 
 @dataclass(frozen=True)
@@ -163,10 +162,9 @@ class WaveSection:
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
         beside = np.concatenate([place.states, rate_and_push(self.problem, place.kept)])
         begin_with(run, place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
-        while True:
-            code = run.advance(PASSES)
-            if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
-                return run, code
+        while (code := advanced(run, PASSES)) is None:
+            pass
+        return run, code
 
     def returned(self, place: WavePlace, guess: float, *, longer: float = LONGER_THAN_GUESS) -> WaveReturn:
         """Return the run from a place to its return next to a `guess` of the time (s) that it takes.
