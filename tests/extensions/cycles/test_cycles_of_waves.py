@@ -12,7 +12,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
-from stickslip.extensions.cycles.section import onsets
+from stickslip.extensions.cycles.section import onsets, passages
 
 A, B, DISTANCE, REFERENCE, MASS, NORMAL, DRIVE = 0.01, 0.015, 0.01, 0.6, 1e6, 1e8, 1e8
 SLAB = ss.ElasticSlab(2800, 3500, 1000, NORMAL, contact_mass=MASS, driver_impedance=DRIVE)
@@ -112,6 +112,31 @@ def test_an_own_method_of_steps_closes_after_the_period_where_slip_is_smooth() -
         waves.append(2.0 * z * now[0] - loads[2])
     at = np.array([cycle.begin + steps * step - cycle.period])
     assert now == pytest.approx([float(run.slip_rate(at)[0]), float(run.state(at)[0])], rel=1e-7)
+
+
+def bare(distance: float) -> ss.Problem:
+    """Return a slab without a mass behind a rigid driver, under rate and state: only slip takes something of its waves."""
+    law = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=distance)
+    slab = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
+    return ss.Problem(slab, law, pull_rate=0.05, initial_load=5.4e7, initial_state="steady")
+
+
+def test_a_slab_behind_a_rigid_driver_comes_to_a_cycle_next_to_where_steady_sliding_becomes_unstable() -> None:
+    """Its runs settle there: the last intervals between passages of a long run are the period, to 1e-9."""
+    found = ss.studies.cycle(bare(0.13), near=400.0)
+    assert found.stable is True
+    assert found.stick_share == 0.0
+    history = ss.simulate(bare(0.13), 1500.0).history
+    last = np.diff(passages(history).time)[-3:]
+    assert last == pytest.approx([found.period] * 3, rel=1e-9)
+
+
+def test_where_disturbances_of_a_slab_grow_no_cycle_is_near() -> None:
+    """Its exponent is above 0 by three standard errors, and the run never comes back to itself."""
+    growth = ss.studies.lyapunov(bare(0.05), 1200.0)
+    assert growth.exponent > 3.0 * growth.error
+    with pytest.raises(ss.InputError, match=r"the run does not come back: its wave is \d+ % off at best: it has not settled"):
+        ss.studies.cycle(bare(0.05), near=350.0)
 
 
 @pytest.mark.slow

@@ -46,10 +46,10 @@ def cycle(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        A rigid body on a spring, or a slab or string whose waves fade, of layers or sections or behind a machine too, under a steady
-        pull, or an axis in a position loop about a set point at rest (pull rate 0) or along a ramp; its scenario, the name of a
-        bundled scenario, or a scenario file. Where it starts decides which cycle is found. If it starts in steady sliding, the run
-        starts without load instead.
+        A rigid body on a spring, or a slab or string whose waves fade, of layers or sections or behind a machine too, under a
+        steady pull, or an axis in a position loop about a set point at rest (pull rate 0) or along a ramp; its scenario, the name
+        of a bundled scenario, or a scenario file. Where it starts decides which cycle is found. If it starts in steady sliding, the
+        run starts without load instead.
     near : float or str, optional
         Duration (s) of the run at whose end the cycle is looked for. By default it is long enough for some cycles, and is made
         longer up to three times if no cycle is found. To find an unstable cycle start near it, and give about two periods.

@@ -14,7 +14,7 @@ import numpy as np
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE, Orbit, extent_of, missed_share
 from stickslip.extensions.cycles.section import Return, Section, crossings, places_of
-from stickslip.extensions.cycles.short_runs import ROUGH
+from stickslip.extensions.cycles.short_runs import ROUGH_RTOL
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
@@ -40,7 +40,7 @@ class Miss(NamedTuple):
     missed: Floats
 
 
-class Steps(NamedTuple):
+class NextSteps(NamedTuple):
     """The next step, and Newton's own without curvature."""
 
     curved: Floats
@@ -60,7 +60,7 @@ def closed(section: Section, place: Floats, guess: float) -> Orbit:
 
 def roughly(section: Section) -> Section:
     """Return the same section with runs that only lead to the next place."""
-    return replace(section, rtol=max(section.rtol, ROUGH))
+    return replace(section, rtol=max(section.rtol, ROUGH_RTOL))
 
 
 def for_step(section: Section, step: Floats) -> Section:
@@ -109,7 +109,7 @@ def _once_round(orbit: Orbit) -> Orbit:
     return closed_beyond(orbit.section, orbit.section.returned(orbit.place, once), once)
 
 
-def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> Steps:
+def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> NextSteps:
     """Return the next steps from a return. Raises InputError if the cycles near here cannot be told apart.
 
     The miss of a step d is F + J d + a (s d)^2 / 2 where s leads to an earlier return, and a makes that miss what it does.
@@ -127,11 +127,11 @@ def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> Steps:
     if len(usable):
         n = int(usable[lengths[usable].argmin()])
         curved = curved_step(derivative, straight, ways[n], seen[n].missed / extent - missed)
-    return Steps(curved * extent, straight * extent)
+    return NextSteps(curved * extent, straight * extent)
 
 
 def curved_step(derivative: Floats, straight: Floats, way: Floats, change: Floats) -> Floats:
-    """Return the step with the curvature that the change of what is missed along a way shows; the straight one if there is none."""
+    """Return the step with the curvature that the change of a miss along a way shows; the straight one if there is none."""
     length = way @ way
     bend = np.linalg.solve(derivative, (change - derivative @ way) / length**2)  # a / 2, behind the derivative
     along, turns = straight @ way, bend @ way
@@ -143,7 +143,7 @@ def curved_step(derivative: Floats, straight: Floats, way: Floats, change: Float
     return found if np.linalg.norm(found) <= LARGER * np.linalg.norm(straight) else straight
 
 
-def _shortened(section: Section, now: Return, steps: Steps, share: float, extent: Floats) -> Return:
+def _shortened(section: Section, now: Return, steps: NextSteps, share: float, extent: Floats) -> Return:
     """Return the return after a step, shortened where it leads away. Raises InputError where it still does."""
     step = steps.curved
     for _ in range(MOST_HALVINGS):

@@ -10,7 +10,7 @@ from stickslip.extensions.cycles.near import NEAR_THE_RUN, Leads, meetings
 from stickslip.extensions.cycles.newton import closed_beyond
 from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.section import Crossings, Section, coordinates, passages, places_of
-from stickslip.extensions.cycles.short_runs import ROUGH, advanced, begun
+from stickslip.extensions.cycles.short_runs import ROUGH_RTOL, advanced, begun
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -23,7 +23,7 @@ SHARE_OF_FIRST, MOST_LOOKS = 0.5, 30
 """A run is looked at each time it has gone on for this share (1) of the time of its first part, at most so often."""
 NEARLY_CLOSES, SURELY_CLOSES = 0.03, 1e-3
 """A run that comes back this close (1, share of its extent) is taken to close there; with the second it need not come nearer."""
-MOST_STEPS = 4.0
+MOST_STEPS_AWAY = 4.0
 """The cycle to which a run leads is no farther from there than a share of the extent, or than so many of its last steps (1)."""
 PASSES_BETWEEN = 16
 """Number of passes of the engine's loop (1) between which the time of a run is looked at."""
@@ -39,7 +39,7 @@ def settled(problem: Problem, times: tuple[float, float], rtol: float, tell: Tex
         return None
     section, (wait, lasts) = Section(problem, at_onset=False, rtol=rtol), times
     step = SHARE_OF_FIRST * lasts
-    run = begun(problem, wait + MOST_LOOKS * step, max(rtol, ROUGH), MAX_PIECES)
+    run = begun(problem, wait + MOST_LOOKS * step, max(rtol, ROUGH_RTOL), MAX_PIECES)
     seen = 0
     for look in range(1, MOST_LOOKS + 1):
         code = None
@@ -76,7 +76,7 @@ def _closed(section: Section, history: History, met: Crossings) -> Orbit | None:
     except InputError:
         return None
     steps = np.abs(places[:, -1] - places[:, -2])
-    is_near = bool(np.all(np.abs(found.place - near) <= np.maximum(NEAR_THE_RUN * found.extent, MOST_STEPS * steps)))
+    is_near = bool(np.all(np.abs(found.place - near) <= np.maximum(NEAR_THE_RUN * found.extent, MOST_STEPS_AWAY * steps)))
     return found if is_near and is_stable(found.multipliers) else None
 
 

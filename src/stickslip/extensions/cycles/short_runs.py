@@ -7,9 +7,9 @@ from stickslip.problem import FULL_HISTORY, STATUSES, Problem, Stop
 from stickslip.run import CallOptions, ExactRun
 from stickslip.solution import Solution
 
-PASSES = 20_000
+PASSES_AT_ONCE = 20_000
 """Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
-ROUGH = 1e-7
+ROUGH_RTOL = 1e-7
 """Relative tolerance of runs that only lead to the next place (1): a cycle that is returned comes from runs as exact as wished."""
 
 
@@ -29,7 +29,7 @@ def advanced(run: ExactRun, passes: int) -> int | None:
 def short_run(problem: Problem, lasts: float, rtol: float) -> Solution:
     """Return the run of a problem that lasts so long (s). Raises InputError if it ends where it starts."""
     run = begun(problem, lasts, rtol)
-    while (code := advanced(run, PASSES)) is None:
+    while (code := advanced(run, PASSES_AT_ONCE)) is None:
         pass
     if not run.length:
         raise InputError(f"cycle: a run ends where it starts: {STATUSES[code].message}")

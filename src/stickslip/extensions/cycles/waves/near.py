@@ -16,6 +16,11 @@ from stickslip.problem import Problem
 
 MOST_MEETINGS, CLOSES = 16, 3e-2
 """A run is compared with itself so many meetings with the section ago (1); it closes where it comes as close (1) as this."""
+TOO_FAR = 0.3
+"""No cycle is near a run that comes no closer to itself than this (1)."""
+
+ONCE = 1e-6
+"""A cycle is back where it began if its wave misses that by no more than this share (1) of its extent."""
 
 
 def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
@@ -31,7 +36,19 @@ def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
     end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
     source = source_of(history, end)
     mesh = mesh_of(source, source.kinks(period))
-    return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
+    found = closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
+    once = _first_time_round(found)
+    return found if once is None else closed(section, found.closed.start, once)
+
+
+def _first_time_round(orbit: WaveOrbit) -> float | None:
+    """Return the period (s) of a cycle that has been found as several of its periods; None if it is found as one."""
+    run, mesh = orbit.closed, orbit.closed.start.mesh
+    for time in orbit.section.met(run.history).time.tolist():
+        there = source_of(run.history, time).at(mesh.phases) if time < run.end - ONCE * orbit.period else np.full(1, np.inf)
+        if np.abs(there - run.start.wave).max() <= ONCE * run.start.scale[-1]:
+            return float(time - run.begin)
+    return None
 
 
 def _mean_rate(history: History) -> float:
@@ -42,10 +59,16 @@ def _mean_rate(history: History) -> float:
 
 
 def _meetings(history: History, times: Floats) -> int:
-    """Return after how many meetings with the section the run comes back best, judged by its wave."""
+    """Return after how many meetings with the section the run comes back best, by its wave. Raises InputError if it never does."""
     phases = np.linspace(0.0, history.round_trip_time, 129, endpoint=False)
     last = source_of(history, float(times[-1])).at(phases)
     most = min(MOST_MEETINGS, int(np.sum(times > 1.001 * history.round_trip_time)) - 1)
     missed = [np.abs(source_of(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
-    close = np.flatnonzero(np.array(missed) <= CLOSES * np.ptp(last))
-    return 1 + int(close[0] if len(close) else np.argmin(missed))
+    shares = np.array(missed) / np.ptp(last)
+    if shares.min() > TOO_FAR:
+        raise InputError(
+            f"cycle: the run does not come back: its wave is {100.0 * shares.min():.2g} % off at best: it has not settled, or never"
+            " repeats itself: give a longer run (near), or ask lyapunov whether disturbances grow"
+        )
+    close = np.flatnonzero(shares <= CLOSES)
+    return 1 + int(close[0] if len(close) else np.argmin(shares))
