@@ -109,9 +109,9 @@ class Session(Generic[Options]):
         run = cls.begin(history.problem, options)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
-        capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        capacity = max(checkpoint.length, min(capacity, options.most_pieces + SPARE))
+        capacity = max(checkpoint.length, min(max(FIRST_CAPACITY, 3 * checkpoint.length // 2), options.most_pieces + SPARE))
         run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
+        run.begun_with = history.begun_with
         run.restore(checkpoint)
         return run
 
@@ -158,8 +158,8 @@ class Session(Generic[Options]):
         """Return the history so far, without the leaps over creep."""
         kept, round_trip = at.trimmed(self.store, self.length), self.problem.round_trip_time
         reached = float(kept.trip[-1] * round_trip + kept.phase_to[-1]) if len(kept.pieces) else 0.0
-        more = {"forgotten": self.forgotten, "begun_with": self.begun_with}
-        return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached, **more)
+        ramp, given = float(self.setup.params.ramp), self.begun_with
+        return History(kept, self.problem, round_trip, ramp, reached, forgotten=self.forgotten, begun_with=given)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""

@@ -166,11 +166,11 @@ class ProblemFields(CheckedArguments):
         if self.ground is not None and self._given_ground:
             from stickslip.problem.rare_checks import check_ground
 
-            check_ground(self.body, self.ground, [getattr(self, name) for name in self._varying if name in PULLS])
+            check_ground(self, self.ground, [getattr(self, name) for name in self._varying if name in PULLS])
         if self.driver_reflection is not None:
             from stickslip.problem.rare_checks import check_reflection
 
-            check_reflection(self.body, self.driver_reflection, SAME_DRIVER)
+            check_reflection(self, self.driver_reflection, SAME_DRIVER)
 
     def _check_two_drivers(self) -> None:
         """Raise InputError if a loading varies that acts through two drivers, and does not come through both alike."""

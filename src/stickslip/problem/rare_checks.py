@@ -10,8 +10,8 @@ import numpy as np
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import si_unit
-from stickslip.problem.bodies import MACHINE, BodyOnCharacteristics
 from stickslip.problem.bodies.rigid.on_spring import as_on_spring
+from stickslip.problem.features import DRIVEN_BY_MACHINE, refuse
 from stickslip.problem.ground import Ground
 from stickslip.problem.loading_history import LoadingHistory
 
@@ -19,13 +19,14 @@ MOST_PERIODS = 1e8
 """Number of periods (1) of a force that a run of a body without a spring may have; so many take an hour or more."""
 
 
-def check_ground(body: BodyOnCharacteristics, ground: Ground, pulls: list[LoadingHistory]) -> None:
+def check_ground(problem: Any, ground: Ground, pulls: list[LoadingHistory]) -> None:
     """Raise InputError for ground that moves as it may not under a body, with pulls or far stresses that vary."""
+    body = problem.body
     if not body.has_ground:
         why, cure = "each is the ground of the other", 'set sides = "joined", or leave the ground at rest'
         raise InputError(f"Problem: ground that moves is not followed under sides that are apart, as {why}: {cure}")
     if body.time_to_driver:
-        _refuse_machine(body, "Problem: ground that moves is not followed under", "leave the ground at rest")
+        refuse("Problem", problem, {DRIVEN_BY_MACHINE: "is not followed on ground that moves (leave it at rest)"})
     if body.has_inertia and ground.velocity_jumps:
         unit = si_unit("slip_rate", body.load_unit)
         why = f"an infinite force on a mass: join the points (piecewise-linear), beginning with 0 {unit}"
@@ -34,14 +35,14 @@ def check_ground(body: BodyOnCharacteristics, ground: Ground, pulls: list[Loadin
         raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
 
 
-def check_reflection(body: BodyOnCharacteristics, history: LoadingHistory, rounding: float) -> None:
+def check_reflection(problem: Any, history: LoadingHistory, rounding: float) -> None:
     """Raise InputError for a driver that changes as it may not behind a body; `rounding` is that of coefficients (1)."""
-    name = "Problem: driver_reflection"
+    body, name = problem.body, "Problem: driver_reflection"
     if not body.driver_may_change:
         why = "whose top stays free" if body.time_to_driver else "which sends no waves to its driver"
         why += ": give a slab or a string"
         raise InputError(f"{name} is not followed behind a {type(body).__name__}, {why}")
-    _refuse_machine(body, f"{name} is not followed for", "leave driver_reflection out")
+    refuse(name, problem, {DRIVEN_BY_MACHINE: "is not followed where it changes (leave driver_reflection out)"})
     if not history.is_stepped:
         raise InputError(f"{name} must change by steps, got {history.kind}: give kind steps")
     if history.lowest < RIGID or history.highest > 1.0:
@@ -50,11 +51,6 @@ def check_reflection(body: BodyOnCharacteristics, history: LoadingHistory, round
     if abs(history.first - body.reflection) > rounding:
         own = f"but that of the body's driver_impedance is {body.reflection:.9g}: make them equal"
         raise InputError(f"{name} begins with {history.first:.9g}, {own}")
-
-
-def _refuse_machine(body: BodyOnCharacteristics, what: str, cure: str) -> None:
-    if body.has_machine:
-        raise InputError(f"{what} {MACHINE}: set driver_inertia and driver_integral_gain to 0, or {cure}")
 
 
 def check_force(problem: Any) -> None:

@@ -107,6 +107,7 @@ def test_a_mistake_is_refused_in_one_line_with_the_cure(typed: str, capsys: pyte
     assert len(shown.err) < 420, shown.err
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.usefixtures("inside")
 @pytest.mark.parametrize("typed", ANSWERED)
 def test_what_can_be_understood_is_answered(typed: str, capsys: pytest.CaptureFixture[str]) -> None:

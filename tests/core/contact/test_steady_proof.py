@@ -58,6 +58,7 @@ def test_no_change_is_proven_where_there_is_none(b: float, share: float, stable:
     )
 
 
+@pytest.mark.slow
 def test_what_only_touches_is_not_proven_and_rounding_makes_no_changes():
     """With K = S (b - a)/Dc the block is unstable at any rate, but ever less so towards a rate of 0."""
     found = found_for(ss.friction.RateAndState(**WEAKER), CRITICAL)

@@ -264,6 +264,7 @@ CROWDS: dict[str, tuple[ss.Problem, float, dict[str, Any], set[str]]] = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", CROWDS)
 def test_each_cure_that_a_full_history_names_lets_the_run_finish(name: str) -> None:
     problem, duration, options, expected = CROWDS[name]

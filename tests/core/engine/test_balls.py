@@ -47,6 +47,7 @@ def descent(coefficients: np.ndarray) -> float:
     return float(first_descent(padded(coefficients), np.empty(TERMS)))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("radius", [0.3, 1.0, 8.0])
 def test_bounds_on_a_disc_hold_and_are_reached(radius: float) -> None:
     """Of value, mean and slope, at 64 places around the disc: 1e-13 above what they are for coefficients that are all positive."""

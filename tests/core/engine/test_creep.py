@@ -59,6 +59,7 @@ def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:
         assert (np.abs(means(solution, inside) - means(exact, inside)) <= tolerance * means(exact, inside)).all()
 
 
+@pytest.mark.slow
 def test_no_leap_passes_over_a_feature_of_the_law() -> None:
     """A bump a hundredth as wide as the leap is long, 1 % of whose height holds the contact back for thousands of round trips.
 

@@ -142,6 +142,7 @@ FAR = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=12)
 @pytest.mark.parametrize("impedance", [0.0, 4e6, 9.8e6, 3e7])
 @pytest.mark.parametrize("name", FAR)

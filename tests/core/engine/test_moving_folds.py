@@ -44,6 +44,7 @@ def test_fold_is_reached_at_the_slip_of_the_closed_form(sense: int, rtol: float)
     assert abs(float(energy.balance[0] / energy.heat[0])) < 10 * rtol * 1e-2
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("distance", "jumps"), [(0.5, True), (0.02, False)])
 def test_slip_weakening_lifts_slow_slip_over_its_upper_fold(distance: float, jumps: bool) -> None:
     """mu = 0.3 (1 - u / 3D), to its knot at D, + 0.3 + v exp(-v/0.3): slow slip ends at v_f, if that comes before the knot."""

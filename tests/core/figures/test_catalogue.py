@@ -151,6 +151,7 @@ def test_a_catalogue_with_its_run_is_legible_in_any_size(scenario: str, size: st
         assert illegible(figure) == []
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("size", "titles"),
     [

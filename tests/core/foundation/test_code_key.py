@@ -144,6 +144,7 @@ EDITS: dict[str, tuple[Callable[[str], str], bool]] = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("edit", EDITS)
 @pytest.mark.parametrize("name", RUN_CODE)
 def test_the_key_of_a_checkpoint_is_of_what_is_executed_in_every_folder_that_decides_a_run(

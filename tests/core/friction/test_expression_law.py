@@ -200,6 +200,7 @@ REFUSED = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(("text", "values", "message"), REFUSED)
 def test_expressions_that_are_no_friction_are_refused(text: str, values: dict[str, float | str], message: str) -> None:
     with refused(message):

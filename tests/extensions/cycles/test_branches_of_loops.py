@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root
 
 import stickslip as ss
 from stickslip.extensions.cycles.hunting import growth_of_small_hunting
@@ -82,6 +82,36 @@ def test_hunting_folds_where_its_return_touches_the_identity(tmp_path: Path) -> 
     assert again.edges[0].value == pytest.approx(edge.value, rel=1e-9)
 
 
+def test_stick_is_lost_where_the_arrest_meets_the_strength_the_other_way() -> None:
+    """By matrix exponentials a slip goes from lag e and strength to -e and minus the strength there: the gain to 1e-8."""
+    start = ss.studies.cycle(replace_gain(hunting(F.Coulomb(STATIC, DYNAMIC), 8.0), 1250.0))
+    branch = ss.studies.follow(start, "body.integral_gain", to=1400.0, steps=2)
+
+    def missed(tried: np.ndarray[tuple[int], np.dtype[np.float64]]) -> list[float]:
+        own = Axis(MASS, KP, 1e3 * float(tried[1]), 8.0, STATIC * NORMAL, DYNAMIC * NORMAL)
+        end, _, _ = own.slipped(np.array([tried[0], 0.0, STATIC * NORMAL - KP * tried[0]]), 1)
+        return [end[0] + tried[0], KP * end[0] + end[2] + STATIC * NORMAL]
+
+    assert [edge.name for edge in branch.edges] == ["loss of stick"]
+    assert branch.edges[0].value == pytest.approx(1e3 * root(missed, [0.078, 1.3], tol=1e-13).x[1], rel=1e-8)
+
+
+def test_hunting_ends_where_a_bounce_leaves_the_axis_at_its_set_point() -> None:
+    """By matrix exponentials the slip behind the impact ends at a lag of 0 there, to 1e-7 m of a way of 22 mm."""
+    problem = hunting(F.Coulomb(STATIC, DYNAMIC), 8.0, 0.05, stop_ahead=0.0503, restitution=0.5)
+    edge = ss.studies.follow(ss.studies.cycle(problem), "body.stop_ahead", to=0.0501, steps=2).edges[-1]
+    own, lag = Axis(MASS, KP, KI, 8.0, STATIC * NORMAL, DYNAMIC * NORMAL, stop=0.05 - edge.value), float(edge.orbit.place[0])
+    state, _, hit = own.slipped(np.array([lag, 0.0, STATIC * NORMAL - KP * lag]), 1)
+    state, _, _ = own.slipped(state * [1.0, -0.5, 1.0], -1)
+    assert hit
+    assert edge.name == "end of hunting"
+    assert state[0] == pytest.approx(0.0, abs=1e-7)
+
+
+def replace_gain(problem: ss.Problem, integral_gain: float) -> ss.Problem:
+    return problem.parameters["body.integral_gain"].put(integral_gain)
+
+
 @pytest.mark.parametrize("pull", [0.0, 0.01], ids=["set point", "ramp"])
 def test_the_exponent_of_a_loop_is_that_of_its_multiplier(pull: float) -> None:
     """To 1e-6; a rest does not end all disturbances, because the lag outlasts it."""
@@ -90,3 +120,13 @@ def test_the_exponent_of_a_loop_is_that_of_its_multiplier(pull: float) -> None:
     found = ss.studies.lyapunov(cycle.problem, 20.0 * cycle.period)
     assert found.exponent == pytest.approx(math.log(abs(cycle.multipliers[0])) / cycle.period, rel=1e-6)
     assert np.isfinite(found.exponent)
+
+
+def test_along_a_ramp_that_comes_to_steady_sliding_the_exponent_is_the_growth_of_that() -> None:
+    """The run swings into it: its own decay is not left out. The leading root is -0.5117543805 1/s, to rounding."""
+    body = ss.PositionLoop(MASS, KP, NORMAL, 50.0, 5.0)
+    law = F.ExponentialStribeck(static=0.5, dynamic=0.3, rate="50 mm/s")
+    problem = ss.Problem(body, law, pull_rate=1.0, initial_rate=1.1, initial_load=3.0)
+    found = ss.studies.lyapunov(problem, 80.0, skip=20.0)
+    assert found.exponent == pytest.approx(ss.studies.steady(problem).slidings[-1].growth, rel=1e-12)
+    assert found.exponent == pytest.approx(-0.5117543805, rel=1e-9)

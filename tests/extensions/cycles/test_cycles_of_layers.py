@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.engine import check_history
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.section import onsets
 from stickslip.extensions.cycles.waves.fronts import Fronts
@@ -91,6 +93,19 @@ def test_in_a_period_the_drive_of_layers_works_for_heat_and_radiation_and_stores
     assert work == pytest.approx(float(gained["heat"]) + radiated, rel=1e-6)
     for name in ("stored", "kinetic_in_layer", "elastic_in_layer"):
         assert np.abs(gained[name]).max() < 1e-9 * gained["heat"]
+
+
+def test_the_run_of_a_cycle_of_layers_comes_back_from_its_file_with_the_waves_inside(tmp_path: Path) -> None:
+    """Stress inside the second section and stored energy have the same bits; waves of another shape are refused."""
+    run, path = thick_and_thin().run, tmp_path / "cycle.nc"
+    run.to_netcdf(path)
+    kept = ss.open_solution(path)
+    assert kept.field(900.0, 3.0).stress == run.field(900.0, 3.0).stress
+    assert kept.energy(3.0).identical(run.energy(3.0))
+    given = run.history.begun_with
+    assert given is not None
+    with pytest.raises(ss.InputError, match="history_begun_with"):
+        check_history(replace(run.history, begun_with=given[:, :1]), path)
 
 
 def test_a_cycle_on_a_branch_along_the_impedance_of_a_section_is_that_found_there() -> None:

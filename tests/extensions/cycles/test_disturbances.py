@@ -39,7 +39,7 @@ def law_of(number: int, random: np.random.Generator) -> tuple[Any, dict[str, Any
     return made[number % len(made)]
 
 
-@pytest.mark.sampled(every=11)
+@pytest.mark.sampled(every=22)
 @pytest.mark.parametrize("number", range(60))
 def test_disturbances_grow_as_numpy_says(number: int) -> None:
     """Random laws without states, with one and with two, in slip, at rest and backwards: to 1e-9 of the largest entry."""

@@ -237,3 +237,11 @@ def test_what_no_pair_of_runs_tells_is_refused_in_one_line(problem: ss.Problem, 
     with pytest.raises(ss.InputError) as refused:
         ss.studies.lyapunov(problem, 1000.0)
     assert str(refused.value).startswith(said)
+
+
+@pytest.mark.slow
+def test_the_bundled_drill_string_becomes_chaotic_slowly() -> None:
+    """Its rigid drive sends all back, and waves become ever rougher: disturbances grow e times in about 270 s."""
+    found = ss.studies.lyapunov("drill-string", 5000.0)
+    assert found.chaotic is True
+    assert 0.002 < found.exponent < 0.006

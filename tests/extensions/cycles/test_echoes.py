@@ -38,7 +38,7 @@ def slab(law: ss.friction.FrictionLaw, mass: float = 1e6, **start: Any) -> ss.Pr
     return ss.Problem(body, law, pull_rate=0.02, initial_load=6.2e7, **start)
 
 
-AGEING = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": 0.01, "rate": 1e-6}
+AGEING: dict[str, Any] = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": 0.01, "rate": 1e-6}
 RUNS: dict[str, tuple[Any, float]] = {
     "a Stribeck law with rest": (lambda: string(8.7), 50.0),
     "a law that drops where slip begins": (lambda: string(3.0, 20.0, friction=F.Coulomb(0.8, 0.1)), 30.0),
@@ -69,7 +69,7 @@ def last_return(problem: ss.Problem, lasts: float) -> tuple[WaveSection, WaveRet
     history = ss.simulate(problem, lasts, 1e-12).history
     half = history.slipped(history.find(np.array([0.5, 1.0]) * lasts, "left"))
     mean = float(half[1] - half[0]) / (0.5 * lasts)
-    section = WaveSection(problem, len(onsets(history).time) > 2, 1e-12, mean / float(problem.pull_rate))
+    section = WaveSection(problem, len(onsets(history).time) > 2, 1e-12, mean / problem.first_pull_rate)
     met = section.met(history)
     source, period = WaveSource(history, float(met.time[-1])), float(met.time[-1] - met.time[-2])
     place = place_in(history, met, len(met.time) - 1, mesh_of(source, source.kinks(period), 1e-6))

@@ -105,6 +105,7 @@ def test_a_branch_goes_on_without_rest_from_the_loss_of_stick_to_the_hopf_point(
         assert numbers == sorted(numbers, reverse=True)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("pull", [0.3, 0.33])
 def test_no_edge_is_told_where_runs_beside_a_cycle_rest(pull: float) -> None:
     """Beyond the loss of stick the branch comes back to where it began, and its multipliers are far from +1."""

@@ -130,6 +130,7 @@ def test_ctrl_c_leaves_what_there_is_of_a_branch_in_the_table_and_resume_ends_it
     pd.testing.assert_frame_equal(pd.read_csv(table, comment="#"), pd.read_csv(whole, comment="#"), check_exact=True)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("pull", "to"), [(0.28, 0.35), (0.28, 0.3), (0.14, 0.4)])
 def test_a_finished_branch_that_goes_on_stays_as_it_is(pull: float, to: float, tmp_path: Path) -> None:
     """Back to where it began, at the end of its range and at the Hopf point, from its table and from itself: not one row more."""

@@ -17,6 +17,8 @@ F = ss.friction
 BRISTLES = F.LuGre(static=0.15, dynamic=0.1, rate="1 mm/s", stiffness="1e4 1/m", damping="3 s/m", viscosity="0.04 s/m")
 DAMPED = ss.SpringBlock(MASS, STIFFNESS, NORMAL, damping=DAMPING)
 HEAVY_DRIVER = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5, driver_impedance=1e6, driver_inertia=1e6)
+COLUMN = ss.SoilColumn(2000.0, 200.0, 20.0, 1e5, damping_ratio=0.05)
+RATE_AND_STATE = F.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
 LAGGED = F.LaggedFriction(rate=F.HyperbolicRate(0.8, 0.3, 10.0), time=0.05)
 
 
@@ -99,7 +101,9 @@ def test_static_friction_that_is_no_larger_than_dynamic_gives_no_multiplier() ->
     [
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)}, "each moment of the round trip"),
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5)}, "sharp waves back whole"),
-        ({"body": HEAVY_DRIVER}, "machine"),
+        ({"body": HEAVY_DRIVER}, "leave driver_inertia or contact_mass out"),
+        ({"body": replace(HEAVY_DRIVER, driver_impedance=0.0)}, "dead load"),
+        ({"body": COLUMN, "friction": RATE_AND_STATE, "initial_state": 1.0}, "dead load"),
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5, driver_impedance=0.0)}, "dead load"),
         ({"body": ss.SpringBlock(MASS, STIFFNESS, NORMAL, stop_ahead=1.0)}, "to its stop"),
         ({"body": ss.SpringBlock(MASS, 0.0, NORMAL, driver_damping=1.0)}, "spring"),

@@ -76,6 +76,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("name", "said"), REFUSED)
 def test_a_number_of_what_is_not_there_is_refused_in_one_line(name: str, said: str) -> None:
     with pytest.raises(ss.InputError) as error:

@@ -25,6 +25,7 @@ def test_every_file_is_there_and_nothing_else(folder: Path) -> None:
     assert {path.name for path in folder.iterdir()} == expected
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("number", range(1, 10))
 def test_data_reopen_with_units(number: int, folder: Path) -> None:
     dataset = xr.load_dataset(folder / f"figure{number}.nc", engine="h5netcdf")

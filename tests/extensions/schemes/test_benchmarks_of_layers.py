@@ -106,6 +106,7 @@ def errors(name: str, courant: float) -> list[float]:
     return found
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", CASES)
 def test_characteristics_converge_to_the_series_by_their_first_order_or_better(name: str) -> None:
     """Where the slip rate is constant or straight between echoes, they are right at once."""
@@ -114,6 +115,7 @@ def test_characteristics_converge_to_the_series_by_their_first_order_or_better(n
     assert found[-1] < ROUNDING or 0.5 * sum(orders(found)) > 0.9
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", [name for name in CASES if name != "bow-at-a-tenth"])  # whose slip hardly depends on fronts
 def test_finite_volumes_that_blunt_each_front_converge_by_half_an_order_or_better(name: str) -> None:
     found = errors(name, 0.5)

@@ -223,6 +223,7 @@ UNEQUAL: dict[str, tuple[str, tuple[tuple[float, float, int], ...]]] = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("steps", UNEQUAL)
 def test_a_right_series_of_unequal_steps_passes_and_a_wrong_one_does_not(steps: str) -> None:
     name, parts = UNEQUAL[steps]

@@ -42,6 +42,7 @@ def test_a_right_series_shows_nothing(name: str) -> None:
     assert traits(series_of(name), name) == ()
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     ("late", "words"), [(1.0, "a step late"), (-1.0, "a step early"), (0.5, "half a step late"), (-0.5, "half a step early")]
 )

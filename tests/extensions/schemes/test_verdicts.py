@@ -125,6 +125,7 @@ def test_finer_meshes_that_come_together_between_two_rules_have_an_answer_of_the
     assert settling(0.16, 0.08, 0.04, by=by) == SETTLES
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("left", [(0.1, -0.1, 0.1), (0.3, 0.2, 0.1), (0.1, 0.05), (0.1, 0.05, 0.05, 0.0)])
 def test_meshes_that_do_not_come_together_or_too_slowly_or_too_few_of_them_have_none(left: tuple[float, ...]) -> None:
     """Swings; equal changes; two meshes only; a last change that is larger than the one before."""

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from stickslip.engine.contact_step.certificate import RATIOS
 from stickslip.engine.history.history import History
 from stickslip.engine.history.status import Checkpoint
+from stickslip.engine.input.asked import INPUTS
 from stickslip.engine.input.branch_table import table_of_branches
 from stickslip.engine.input.prepare import prepare
 from stickslip.engine.state import layout as at
@@ -92,6 +93,10 @@ def _shapes_of_history(history: History) -> Iterator[Fault]:
     yield "number of pieces of the history", pieces < 1
     yield "shape or type of history_state", not _is(store.state, (pieces if states else 0, states, at.TERMS), "f")
     yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")
+    if (given := history.begun_with) is not None:
+        first, cells = int(np.searchsorted(store.trip, 1)), INPUTS[history.problem.body.structure].cells(history.problem).cells
+        yield "shape or type of history_begun_with", not first or not _is(given, (first, cells, at.TERMS), "f")
+        yield "number of history_begun_with", not np.isfinite(given).all()
 
 
 def _is(array: NDArray[Any], shape: tuple[int, ...], kind: str) -> bool:

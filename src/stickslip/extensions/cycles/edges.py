@@ -9,10 +9,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stickslip.contact import steady_slidings
+from stickslip.extensions.cycles.at_ends import grazes_arrest, rests_for_ever, touches_stop
 from stickslip.extensions.cycles.found import FoundCycle, kind_of
-from stickslip.extensions.cycles.lag import usual_rate
+from stickslip.extensions.cycles.lag import is_wound, usual_rate
 from stickslip.extensions.cycles.measures import least_rate
-from stickslip.extensions.cycles.near_stops import touches_stop
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -30,7 +30,7 @@ MEANING = {
     LOSS_OF_STICK: "the arrest is grazed: the contact no longer comes to rest",
     FIRST_STICK: "the slip rate touches 0: the contact begins to rest",
     STEADY_END: "the amplitude is 0: the cycle vanishes in steady sliding, which changes its stability there (Hopf)",
-    END_OF_HUNTING: "the amplitude is 0 and rests last for ever: hunting dies out beyond it, about a set point at rest",
+    END_OF_HUNTING: "rests last for ever, as the amplitude is 0 or a rest is at the set point: hunting dies out beyond it",
     GRAZING: "rest, slip or a hard stop is touched elsewhere in the period: beyond it another slip, rest or impact begins there",
     CORNER: "an event meets another, or an echo of one: beyond it the branch goes on in another direction",
     NOT_FOUND: "Newton's iteration finds no cycle beyond",
@@ -140,8 +140,16 @@ def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[Cycle
             bad = middle
             continue
         good, bad = (found, bad) if kind_of(found.orbit) == kind else (good, middle)
-    name = GRAZING if touches_stop(good.orbit) else LOSS_OF_STICK
-    return CycleEdge(name, 0.5 * (good.value + bad), good.orbit), good
+    return CycleEdge(_name_of_end(good.orbit), 0.5 * (good.value + bad), good.orbit), good
+
+
+def _name_of_end(orbit: FoundCycle) -> str:
+    """Return what happens next to the end of a branch of cycles of one kind."""
+    if touches_stop(orbit):
+        return GRAZING
+    if rests_for_ever(orbit):
+        return END_OF_HUNTING
+    return LOSS_OF_STICK if not is_wound(orbit.section.problem) or grazes_arrest(orbit) else NOT_FOUND
 
 
 def end_in_steady_sliding(path: Path, values: Floats, amplitudes: Floats) -> float | None:

@@ -46,10 +46,10 @@ def cycle(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        A rigid body on a spring, or a slab or string whose waves fade, of layers or sections too, under a steady pull, or an axis
-        in a position loop about a set point at rest (pull rate 0) or along a ramp; its scenario, the name of a bundled scenario, or
-        a scenario file. Where it starts decides which cycle is found. If it starts in steady sliding, the run starts without load
-        instead.
+        A rigid body on a spring, or a slab or string whose waves fade, of layers or sections or behind a machine too, under a
+        steady pull, or an axis in a position loop about a set point at rest (pull rate 0) or along a ramp; its scenario, the name
+        of a bundled scenario, or a scenario file. Where it starts decides which cycle is found. If it starts in steady sliding, the
+        run starts without load instead.
     near : float or str, optional
         Duration (s) of the run at whose end the cycle is looked for. By default it is long enough for some cycles, and is made
         longer up to three times if no cycle is found. To find an unstable cycle start near it, and give about two periods.
@@ -75,7 +75,8 @@ def cycle(
     The motion is cut where slip begins after a rest, or, if the contact never rests, where the slip rate passes the pull rate
     upwards; about a set point at rest, a small rate. Newton's iteration moves the start of a run until it comes back to it. The
     multipliers are the eigenvalues of the derivative of this return, from the linear equation of disturbances along the run. A slab
-    or string starts with the wave of a round trip as well, and its derivative is known by differences of runs.
+    or string starts with the wave of a round trip as well, and with rate and push of a machine. Where the equation of disturbances
+    does not know its driver or its law, the derivative is known by differences of runs.
 
     Examples
     --------

@@ -231,7 +231,7 @@ class _Following:
                 self._part(path, begun, 1.0 / self.steps)
 
     def _add(self, path: Path, place: PlaceOnBranch, length: float) -> None:
-        """Add a cycle of a branch, from which a step of this length (1) leads on."""
+        """Add a cycle of a branch, and the length (1) of the step that leads on from it."""
         if len(self.points) - self.had >= MOST_POINTS:
             raise FullBranchError
         self._keep(place, "", length * place.way * path.scales if place.orbit.is_kept else np.zeros(0))

@@ -109,6 +109,8 @@ def _along_returns(section: Section, history: History, duration: float, tell: Te
             times.append(time)
             grown_to.append(size)
         now = section.returned(place, usual, RETURN_TRIES)
+        if is_steady(now.history):  # its own decay is a disturbance that the section leaves out
+            return _steady(section.problem)
         way = now.slopes(exactly=False) @ way
         grown = float(np.linalg.norm(way / scale))
         if not grown > 0.0:

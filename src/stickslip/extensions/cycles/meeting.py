@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip.engine import Positions
-from stickslip.extensions.cycles.edges import CycleEdge
+from stickslip.extensions.cycles.edges import LOSS_OF_STICK, CycleEdge
 from stickslip.extensions.cycles.found import kind_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.section import coordinates, passages
@@ -20,7 +20,9 @@ CLOSE_PERIOD = 0.1
 
 
 def without_rest(path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
-    """Return where cycles without rest begin, at an edge where stick is lost."""
+    """Return where cycles without rest begin, at an edge where stick is lost; None at any other."""
+    if edge.name != LOSS_OF_STICK:
+        return None
     met = passages(last.orbit.closed.history)
     if not len(met.time):
         return None

@@ -112,7 +112,7 @@ class Leads:
 def limit_of(places: Floats, extent: Floats) -> Floats | None:
     """Return the fixed point of the linear map that a sequence shows; None if it is far from the last of them.
 
-    Only those last steps count whose squares, about what is not linear in them, are below the last step.
+    Only those last steps count whose squares are below the last step: squares are what a map that is not linear adds.
     Source: Sidi 2017, Vector Extrapolation Methods, chapter 1 (reduced rank extrapolation).
     """
     steps = np.diff(places, axis=1) / extent[:, None]

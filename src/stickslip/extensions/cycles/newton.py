@@ -131,7 +131,7 @@ def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> NextSteps:
 
 
 def curved_step(derivative: Floats, straight: Floats, way: Floats, change: Floats) -> Floats:
-    """Return the step with the curvature that the change of what is missed along a way shows; the straight one if there is none."""
+    """Return the step with the curvature that the change of a miss along a way shows; the straight one if there is none."""
     length = way @ way
     bend = np.linalg.solve(derivative, (change - derivative @ way) / length**2)  # a / 2, behind the derivative
     along, turns = straight @ way, bend @ way

@@ -248,6 +248,9 @@ def _history(solution: Solution) -> dict[str, Variable]:
     if solution.problem.kept_series:
         about = {"long_name": "states as the law's formulas see them, and rate of a machine behind layers: Taylor coefficients"}
         variables["history_state"] = Variable(("piece", "state_variable", "term"), store.state, about)
+    if history.begun_with is not None:
+        about = {"long_name": "waves with which layers began, minus the reference: Taylor coefficients"}
+        variables["history_begun_with"] = Variable(("first_piece", "layer_cell", "term"), history.begun_with, about)
     return variables
 
 
@@ -333,7 +336,8 @@ def _solution(tables: Tables, path: Path) -> Solution:
     ended, why = (printable(str(attributes[name])) for name in ("status", "status_message"))
     status = Status(ended, why, bool(attributes["status_ok"]))
     counted = scenario.max_events if status.name == STATUSES[ENOUGH_EVENTS].name else None
-    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted)
+    given = tables.array("history_begun_with") if "history_begun_with" in has else None
+    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted, begun_with=given)
     checkpoint = None
     if "engine" in attributes:
         arrays = {name: tables.array(f"engine_{name}") for name in ARRAYS if name != "waves" or "engine_waves" in has}

@@ -283,7 +283,7 @@ STRING = ss.load_scenario("drill-string").problem.body
         ),
         (
             {"body": replace(SLAB, driver_impedance=Z, driver_inertia=Z * R)},
-            "driver_reflection is not followed for a driver with a mass or an integral gain: set driver_inertia and driver",
+            "driver_reflection: a driver with a mass or an integral gain is not followed where it changes",
         ),
         (
             {"body": ss.SpringBlock(1.0, 1.0, 1.0)},

@@ -27,6 +27,7 @@ def test_slip_stops_at_a_hidden_barrier(name: str) -> None:
     assert float(run.slip(DURATION)) == pytest.approx(stops, rel=CLAIM, abs=0.0)
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", STEEP)
 def test_a_contact_settles_against_a_steep_barrier_in_few_steps(name: str) -> None:
     """Slip to 1e-9; explicit steps would be as short as the contact settles: 1e9 pieces for the steepest barrier."""

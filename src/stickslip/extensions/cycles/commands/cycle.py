@@ -44,7 +44,8 @@ def cycle(
 
     One period multiplies small disturbances by the multipliers: the cycle is
     stable if all are smaller than 1. A contact that rests forgets, and has 0.
-    The cycle is looked for near the end of a run of the scenario. With --along
+    The cycle is looked for near the end of a run of the scenario, of a rigid
+    body, or of a slab or string, also behind a machine. With --along
     and --to it is followed as one number changes, around folds: edges where
     stick is lost, the period doubles, or the cycle ends in steady sliding are
     found and named. The figure shows one period, or amplitude and period of

@@ -49,7 +49,8 @@ def event_before(waves: WavesOfRun, piece: int) -> int:
 @kernel
 def follows_rest(waves: WavesOfRun, piece: int) -> bool:
     """Return True if there is a rest that was not recorded before a piece."""
-    return waves.starts[piece] - waves.starts[piece - 1] - waves.lasts[piece - 1] > SAME_MOMENT * waves.trip
+    gap: float = waves.starts[piece] - waves.starts[piece - 1] - waves.lasts[piece - 1]
+    return gap > SAME_MOMENT * waves.trip
 
 
 @kernel

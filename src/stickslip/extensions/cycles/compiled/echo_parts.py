@@ -69,7 +69,7 @@ class PartsOfRun(NamedTuple):
     """By how much the last event, or the return, comes earlier, s."""
 
 
-class Echo(NamedTuple):
+class PartHeard(NamedTuple):
     """Where a disturbance of the load comes from."""
 
     part: int
@@ -97,18 +97,18 @@ def latest_part(ends: Floats2, count: int, time: float) -> int:
 
 
 @kernel
-def echo_behind(waves: WavesOfRun, ends: Floats2, count: int, time: float, delay: float) -> Echo:
+def echo_behind(waves: WavesOfRun, ends: Floats2, count: int, time: float, delay: float) -> PartHeard:
     """Return what is heard behind a time (s): what left the contact a delay (s) earlier, or longer ago if it has rested since."""
     same, share, until = SAME_MOMENT * waves.trip, 1.0, 1e300
     for _ in range(MOST_TRIPS_AT_REST):
         part = latest_part(ends, count, time - delay + same)
         if time - delay + same < ends[part, 1]:
-            return Echo(part, share, delay, min(until, ends[part, 1] + delay))
+            return PartHeard(part, share, delay, min(until, ends[part, 1] + delay))
         if part + 1 < count:
             until = min(until, ends[part + 1, 0] + delay)
         share *= -waves.back
         delay += waves.trip
-    return Echo(0, 0.0, delay, until)
+    return PartHeard(0, 0.0, delay, until)
 
 
 @kernel

@@ -40,7 +40,7 @@ from stickslip.extensions.cycles.compiled.echo_parts import (
     WAVE_COEFFICIENTS,
     WAVE_PLACES,
     WAVE_POINTS,
-    Echo,
+    PartHeard,
     PartsOfRun,
     WavesOfRun,
     add_row,
@@ -159,7 +159,7 @@ def is_rough_part(waves: WavesOfRun, part: PartInTime) -> bool:
 
 
 @kernel
-def write_loads(waves: WavesOfRun, parts: PartsOfRun, echo: Echo, part: PartInTime) -> None:
+def write_loads(waves: WavesOfRun, parts: PartsOfRun, echo: PartHeard, part: PartInTime) -> None:
     """Write disturbances of the load at the points of a part, an echo."""
     weights, begin = room_for(WAVE_POINTS), parts.ends[echo.part, 0]
     lasted = parts.ends[echo.part, 1] - begin

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stickslip.extensions.cycles.short_runs import PASSES_AT_ONCE
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.by_kind import ByKind
 from stickslip.foundation.errors import InputError
@@ -17,8 +18,6 @@ from stickslip.problem import BODY_KINDS, Problem, Stop
 if TYPE_CHECKING:
     from stickslip.run import ExactRun
 
-PASSES = 20_000
-"""Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
 MOST_COMPARISONS = 2048
 """Two runs are compared no more often than this (1)."""
 
@@ -32,7 +31,7 @@ class ComparedKind(ABC):
 
     @abstractmethod
     def lead(self, run: ExactRun, mark: int, interval: float) -> None:
-        """Lead a run to a mark, by which places are counted where it can stand, or to the first one behind. Raises InputError."""
+        """Lead a run to a mark, the number of a place where it can stand, or to the first one behind. Raises InputError."""
 
     @abstractmethod
     def marks(self, run: ExactRun, interval: float) -> int:
@@ -123,7 +122,7 @@ class KindWithWaves(ComparedKind):
 
 def advance(run: ExactRun) -> Stop:
     """Let a run go on for a while. Raises InputError if it cannot, or if it rests for ever."""
-    code = Stop(run.advance(PASSES))
+    code = Stop(run.advance(PASSES_AT_ONCE))
     if code not in (Stop.NONE, Stop.END_AHEAD, Stop.LOCKED, Stop.FINISHED) and not (code == Stop.FULL and run.grow()):
         raise InputError(f"lyapunov: the run ended at {brief(run.time, 's', 4)}: {run.solution(code).status}")
     if run.count.sparse == 1:

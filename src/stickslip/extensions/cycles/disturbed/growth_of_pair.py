@@ -27,15 +27,15 @@ from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 from stickslip.run import TextProgress
 
-APART = 1e-6
+KEPT_APART = 1e-6
 """The size of the disturbance (1, a share of the motion) after each comparison."""
 FEWEST_COMPARISONS = 16
-"""The smallest number of comparisons (1) over which an exponent is the mean."""
+"""The smallest number of comparisons (1) an exponent is the mean of."""
 FEWEST_IN_PART = 4
 """The smallest number of comparisons (1) in a part of the run, of whose slopes the error is made."""
 SETTLING_SHARE = 0.1
 """This share (1) of the time after what is skipped does not count: a disturbance turns to where it grows fastest then."""
-LOST = 1e-6
+ENDED_SHARE = 1e-6
 """A disturbance that falls to this share (1) of itself from one comparison to the next has ended but for rounding."""
 ENDS_ALL = (
     "from one comparison of two runs to the next a disturbance ends but for rounding (exponent minus infinity, or far below 0)"
@@ -54,19 +54,19 @@ def growth_of_pair(problem: Problem, skip: float, duration: float, rtol: float, 
         )
     measure, stand, found = Measure.of(pair.run), pair.stand, Growing()
     measure.see(stand)
-    pair.differ_by(first_disturbance(stand, measure).times(APART))
+    pair.differ_by(first_disturbance(stand, measure).times(KEPT_APART))
     while (time := stand.time) < duration:
         stand, counts = pair.lead(), time >= begin
         if not counts:
             measure.see(stand)
         way, apart = pair.apart(stand, measure)
-        if not apart > LOST * APART:
+        if not apart > ENDED_SHARE * KEPT_APART:
             if counts:
                 return MeasuredGrowth(np.zeros(1), np.zeros(1), -math.inf, 0.0, time, ENDS_ALL)
-            way, apart = first_disturbance(stand, measure), APART
+            way, apart = first_disturbance(stand, measure), KEPT_APART
         if counts:
-            found.note(pair.run.history(), time, stand.time, math.log(apart / APART))
-        pair.differ_by(way.times(APART))
+            found.note(pair.run.history(), time, stand.time, math.log(apart / KEPT_APART))
+        pair.differ_by(way.times(KEPT_APART))
         if len(found.times) % 64 == 1:
             tell(f"{brief(time, 's')} of {brief(duration, 's')}")
     if len(found.times) <= FEWEST_COMPARISONS:
@@ -75,7 +75,7 @@ def growth_of_pair(problem: Problem, skip: float, duration: float, rtol: float, 
             f" {brief(duration, 's')}, and {FEWEST_COMPARISONS} are needed: give a longer duration"
         )
     each = ", each phase of the round trip by itself" if measure.by_phase else ""
-    how = f"measured on two runs that differ by {APART:g}{each}, compared {len(found.times) - 1} times in {{}} (rtol {rtol:g})"
+    how = f"measured on two runs that differ by {KEPT_APART:g}{each}, compared {len(found.times) - 1} times in {{}} (rtol {rtol:g})"
     return found.mean(how, max(rtol * SHARE_OF_TOLERANCE, float(np.finfo(float).eps)))
 
 
@@ -94,7 +94,7 @@ class Growing:
     """What is noted at each comparison."""
 
     times: list[float] = field(default_factory=list)
-    """Times (s) of comparisons, the first of which is the start."""
+    """Times (s) of comparisons, behind that of the start."""
     growth: list[float] = field(default_factory=list)
     """Logarithm (1) of the size of a disturbance at these times."""
     rates: list[Floats] = field(default_factory=list)

@@ -13,9 +13,9 @@ from stickslip.extensions.cycles.disturbed.stand import (
     DRIVER_RATE,
     FIRST_STATE,
     LAW_SLIP,
-    LOAD,
-    RATE,
-    SLIP,
+    LOAD_NUMBER,
+    RATE_NUMBER,
+    SLIP_NUMBER,
     Carried,
     Stand,
 )
@@ -32,7 +32,7 @@ WAVES_AT_FIRST = 8
 
 @dataclass
 class Measure:
-    """Sizes of what is carried (1): by how much each number and each wave has varied; numbers that decide nothing do not count."""
+    """Sizes of disturbances are shares of how far each number and each wave goes; numbers that decide nothing do not count."""
 
     by_phase: bool
     """True if each moment of the round trip moves by itself, so that each has a disturbance of its own."""
@@ -46,15 +46,15 @@ class Measure:
         """Return one for the runs of a problem."""
         problem, count, law, kind = run.problem, run.count, run.problem.friction, Stand(run).kind
         decides = np.ones(FIRST_STATE + int(count.states))
-        decides[RATE] = count.has_inertia
+        decides[RATE_NUMBER] = count.has_inertia
         decides[LAW_SLIP] = law.depends_on_slip
-        decides[SLIP], decides[LOAD] = kind.has_place(problem), kind.has_load()
+        decides[SLIP_NUMBER], decides[LOAD_NUMBER] = kind.has_place(problem), kind.has_load()
         decides[[DRIVER_RATE, DRIVER_PUSH]] = problem.driver_kind in MOVING_DRIVERS
         least = LEAST_SHARE * abs(run.params.reference)
         rate, trip, numbers = least / run.params.impedance, problem.round_trip_time, np.zeros(len(decides))
-        numbers[RATE] = numbers[DRIVER_RATE] = rate
-        numbers[SLIP] = numbers[LAW_SLIP] = rate * trip
-        numbers[LOAD] = numbers[DRIVER_PUSH] = least
+        numbers[RATE_NUMBER] = numbers[DRIVER_RATE] = rate
+        numbers[SLIP_NUMBER] = numbers[LAW_SLIP] = rate * trip
+        numbers[LOAD_NUMBER] = numbers[DRIVER_PUSH] = least
         return cls(not decides.any(), decides, numbers, np.full(len(Stand(run).series), least))
 
     def see(self, stand: Stand) -> None:
@@ -63,10 +63,10 @@ class Measure:
         store, here = run.store, slice(run.length)
         trip = stand.run.problem.round_trip_time
         now = np.abs(stand.numbers)
-        now[RATE] = now[DRIVER_RATE] = _range(store.rate[here])
-        now[SLIP] = now[LAW_SLIP] = now[RATE] * trip
-        now[LOAD] = _range(store.load[here])
-        now[DRIVER_PUSH] = now[RATE] * run.params.impedance
+        now[RATE_NUMBER] = now[DRIVER_RATE] = _range(store.rate[here])
+        now[SLIP_NUMBER] = now[LAW_SLIP] = now[RATE_NUMBER] * trip
+        now[LOAD_NUMBER] = _range(store.load[here])
+        now[DRIVER_PUSH] = now[RATE_NUMBER] * run.params.impedance
         self.numbers = np.maximum(self.numbers, now)
         if self.waves.size:
             self.waves = np.maximum(self.waves, np.ptp(stand.here.waves, axis=1))
@@ -93,8 +93,8 @@ def first_disturbance(stand: Stand, measure: Measure) -> Carried:
     numbers[FIRST_STATE:] = measure.numbers[FIRST_STATE:]
     if not len(stand.series):
         stiffness = stand.run.params.stiffness
-        numbers[SLIP] = measure.numbers[SLIP]
-        numbers[LOAD] = -stiffness * numbers[SLIP]
+        numbers[SLIP_NUMBER] = measure.numbers[SLIP_NUMBER]
+        numbers[LOAD_NUMBER] = -stiffness * numbers[SLIP_NUMBER]
         return Carried(numbers, np.zeros((0, 0)))
     turns = np.pi * stand.phases.ravel() / stand.run.problem.round_trip_time
     way = sum(np.cos(n * turns + n) / (n + 1) for n in range(WAVES_AT_FIRST))

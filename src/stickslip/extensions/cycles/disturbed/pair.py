@@ -10,8 +10,8 @@ from stickslip.extensions.cycles.disturbed.asked import COMPARED
 from stickslip.extensions.cycles.disturbed.measure import Measure
 from stickslip.extensions.cycles.disturbed.stand import (
     DRIVER_RATE,
-    LOAD,
-    SLIP,
+    LOAD_NUMBER,
+    SLIP_NUMBER,
     Carried,
     Stand,
     copied,
@@ -25,8 +25,8 @@ from stickslip.problem.scenarios import Scenario
 from stickslip.run import CallOptions, ExactRun
 
 MOST_WAITS = 1000
-"""Round trips (1) after which two runs must rest or slip alike at the end of one."""
-STILL = 1e-6
+"""Two runs must rest or slip alike at the end of one of so many round trips (1)."""
+STILL_SHARE = 1e-6
 """In steady sliding, where all moves by less than this share (1) in a round trip, no disturbance is a shift in time."""
 SPARE_SHARE, SPARE_TRIPS = 0.1, 100.0
 """A run may go on for this share (1) of its duration and so many round trips (1) more, until both runs rest or slip alike."""
@@ -87,12 +87,13 @@ class Pair:
     def apart(self, stand: Stand, measure: Measure) -> tuple[Carried, float]:
         """Return how the other run differs from the run, without a shift in time: the direction, and the size (1)."""
         between = Stand(self.other).at(stand.phases) - stand.here
-        between.numbers[LOAD] = stand.kind.borne(self.run, float(between.numbers[LOAD]), float(between.numbers[SLIP]))
+        load, slip = (float(between.numbers[n]) for n in (LOAD_NUMBER, SLIP_NUMBER))
+        between.numbers[LOAD_NUMBER] = stand.kind.borne(self.run, load, slip)
         if self.shifts and not measure.by_phase:
             flow = self.flow(stand, measure)
             along, vector = measure.scaled(flow, stand), measure.scaled(between, stand)
             size = float(along @ along)
-            moves = math.sqrt(size) * self.run.problem.round_trip_time > STILL
+            moves = math.sqrt(size) * self.run.problem.round_trip_time > STILL_SHARE
             between -= flow.times(float(along @ vector) / size if moves else 0.0)
         return measure.parted(between, stand)
 

@@ -19,18 +19,18 @@ from stickslip.run import ExactRun
 
 MOST_POINTS, FEWEST_POINTS, POINTS_IN_ALL = 10, 2, 2000
 """Points of Gauss and Legendre on each piece of a wave (1), fewer where pieces are many, and about how many there are in all."""
-ROOM = 64
+SPARE_PIECES = 64
 """Room for more pieces of history (1) in a copy of a run."""
 SHORT_WAY = 1e-5
 """The motion of a driver is differenced over this share (1) of a round trip."""
-NUMBERS = ("rate_now", "slip_now", "law_slip", "driver_rate", "driver_push")
-RATE, SLIP, LAW_SLIP, DRIVER_RATE, DRIVER_PUSH, LOAD = range(len(NUMBERS) + 1)
+STATE_NUMBERS = ("rate_now", "slip_now", "law_slip", "driver_rate", "driver_push")
+RATE_NUMBER, SLIP_NUMBER, LAW_SLIP, DRIVER_RATE, DRIVER_PUSH, LOAD_NUMBER = range(len(STATE_NUMBERS) + 1)
 """Numbers of the state of a run, the load of a rigid body, and behind them the states of the law."""
-FIRST_STATE = LOAD + 1
+FIRST_STATE = LOAD_NUMBER + 1
 
 
 @dataclass(frozen=True)
-class Points:
+class WavePoints:
     """Points of Gauss and Legendre on a piece of a wave, as places (1), their weights (1), and powers of values there."""
 
     places: Floats
@@ -89,9 +89,9 @@ class Stand:
         return self.kind.time(self.run)
 
     @property
-    def points(self) -> Points:
+    def points(self) -> WavePoints:
         """The points on each piece of a wave."""
-        return Points.on(self.pieces.stop - self.pieces.start)
+        return WavePoints.on(self.pieces.stop - self.pieces.start)
 
     @cached_property
     def series(self) -> Floats:
@@ -116,7 +116,7 @@ class Stand:
         """The numbers, and the states of the law."""
         state = self.run.state
         states = [state.state_now[n] for n in range(int(self.run.count.states))]
-        return np.array([*(getattr(state, name) for name in NUMBERS), self.kind.load(self.run), *states], float)
+        return np.array([*(getattr(state, name) for name in STATE_NUMBERS), self.kind.load(self.run), *states], float)
 
     def at(self, phases: Floats) -> Carried:
         """Return what is carried, with the waves at phases (s)."""
@@ -153,10 +153,10 @@ class Stand:
             return series @ np.arange(TERMS) / pace
 
         numbers = np.zeros(len(self.numbers))
-        numbers[RATE] = changes(store.rate[last])
-        numbers[LOAD] = changes(store.load[last])
+        numbers[RATE_NUMBER] = changes(store.rate[last])
+        numbers[LOAD_NUMBER] = changes(store.load[last])
         numbers[LAW_SLIP] = abs(self.run.state.rate_now)
-        numbers[SLIP] = self.run.state.rate_now - self.run.problem.first_pull_rate
+        numbers[SLIP_NUMBER] = self.run.state.rate_now - self.run.problem.first_pull_rate
         if len(numbers) > FIRST_STATE:
             numbers[FIRST_STATE:] = changes(store.state[last])
         return Carried(numbers, found)
@@ -165,7 +165,7 @@ class Stand:
 def copied(run: ExactRun, into: ExactRun) -> ExactRun:
     """Make a run stand where another one stands, and return it."""
     length = run.length
-    into.reserve(length + ROOM)
+    into.reserve(length + SPARE_PIECES)
     into.store.pieces[:length], into.store.state[:length] = run.store.pieces[:length], run.store.state[:length]
     into.forgotten = run.forgotten
     into.restore(run.snapshot())
@@ -175,11 +175,11 @@ def copied(run: ExactRun, into: ExactRun) -> ExactRun:
 def disturb(run: ExactRun, by: Carried) -> None:
     """Add a disturbance to what a run carries; its waves are given at the points of the run itself."""
     stand, state = Stand(run), run.state
-    for n, name in enumerate(NUMBERS):
+    for n, name in enumerate(STATE_NUMBERS):
         setattr(state, name, getattr(state, name) + float(by.numbers[n]))
     for n, change in enumerate(by.numbers[FIRST_STATE:].tolist()):
         state.state_now[n] += change
-    stand.kind.add_load(run, float(by.numbers[LOAD]), float(by.numbers[SLIP]))
+    stand.kind.add_load(run, float(by.numbers[LOAD_NUMBER]), float(by.numbers[SLIP_NUMBER]))
     powers = stand.points.powers
     pieces = stand.pieces.stop - stand.pieces.start
     stand.kind.add_waves(run, by.waves.reshape(len(by.waves), pieces, len(powers)) @ powers.T)

@@ -14,7 +14,7 @@ from stickslip.problem.scenarios import ParameterPath, Scenario
 
 OF_DRIVERS = {"machine": "cycles behind layers and a machine with a motion of its own are not found"}
 """Why no cycle is looked for, by kind of driver."""
-NUDGE = 1e-6
+TRIED_SHARE = 1e-6
 """A number is changed by this share (1) to see whether travel times change beside each other."""
 
 
@@ -28,7 +28,7 @@ class CyclesOfLayered(CyclesOfUniform):
             return why
         if all(one.reflection == 1.0 for one in body.stacks):
             return "a dead load holds the body nowhere"
-        if body.has_inertia and any(abs(one.reflection) == 1.0 for one in body.stacks):
+        if problem.body.has_inertia and any(abs(one.reflection) == 1.0 for one in body.stacks):
             where = "the driver sends" if len(body.stacks) == 1 else "a driver sends"
             drags = "; drag is lumped between cells, and leaves waves that rest there" if body.has_drag else ""
             return (
@@ -43,8 +43,10 @@ class CyclesOfLayered(CyclesOfUniform):
         Raises InputError if the number changes how travel times compare: the cells that layers are cut into then change in steps.
         """
         number = scenario.problem.parameters[parameter.name]
-        before, after = (cast(OfLayers, one.body).cells for one in (scenario.problem, number.put(number.value * (1.0 + NUDGE))))
-        if before.counts != after.counts or abs(after.error - before.error) > 1e-3 * NUDGE:
+        before, after = (
+            cast(OfLayers, one.body).cells for one in (scenario.problem, number.put(number.value * (1.0 + TRIED_SHARE)))
+        )
+        if before.counts != after.counts or abs(after.error - before.error) > 1e-3 * TRIED_SHARE:
             raise InputError(
                 f"follow: {parameter.name} changes how the travel times compare, and so, in steps, the cells that the layers are"
                 " cut into: follow a number that leaves them, such as an impedance or the pull rate, or find the cycles one by one"

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from stickslip.engine import History
 from stickslip.extensions.cycles.asked import not_steady
 from stickslip.extensions.cycles.kinds.rigid import CyclesOfRigid
 from stickslip.extensions.cycles.lag import is_wound
+from stickslip.extensions.cycles.orbit import Orbit
+from stickslip.foundation.errors import InputError
 from stickslip.problem import Problem
 from stickslip.problem.bodies import as_on_spring
 
@@ -25,6 +28,15 @@ class CyclesOfLoop(CyclesOfRigid):
         if problem.first_pull_rate != 0.0 and as_on_spring(problem.body).has_stops:
             return "a ramp carries the axis to its stop, where it stays, or away from it: give a set point at rest (pull_rate 0)"
         return ""
+
+    def near_end(self, history: History, problem: Problem, rtol: float) -> Orbit:
+        """Return the cycle near the end of a run. Raises InputError if there is none."""
+        try:
+            return super().near_end(history, problem, rtol)
+        except InputError as error:
+            if problem.first_pull_rate != 0.0:
+                raise
+            raise InputError(f"{error}; an axis that comes to its set point does not hunt") from None
 
 
 ANSWERS = CyclesOfLoop()

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
+import math
+
 from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
 from stickslip.extensions.cycles.waves.near import near_end
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit
 from stickslip.extensions.cycles.waves.path import WavePath, path_of
-from stickslip.problem import Problem
+from stickslip.problem import Problem, driver_impedance
 from stickslip.problem.bodies import as_waves
 from stickslip.problem.scenarios import ParameterPath, Scenario
-
-OF_DRIVERS = {
-    "damper": "cycles of a column that is damped are not found",
-    "changing": "the driver changes in time",
-}
-"""Why no cycle is looked for, by kind of driver."""
 
 
 def not_repeated(problem: Problem) -> str:
     """Return why nothing repeats itself, or each moment by itself, in a body with waves; empty if there is no such reason."""
     law = problem.friction
-    if why := not_steady(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
+    if why := not_steady(problem):
         return why
+    if len(problem.driver_steps) > 1:
+        return "the driver changes in time"
     if problem.far_stress_rate != 0.0:
         return "the far stress grows, so that nothing repeats itself"
     if not problem.body.has_inertia and not law.states:
@@ -45,12 +43,14 @@ class CyclesOfUniform(CycleKind):
         body = as_waves(problem.body)
         if why := not_repeated(problem):
             return why
-        if body.front_reflection == 1.0:
-            return "a dead load holds the body nowhere"
+        if driver_impedance(body).steady == 0.0:
+            return "a dead load, or a driver that is one to slow motion, holds the body nowhere"
         if body.has_inertia and abs(body.front_reflection) >= 1.0:
+            mass = body.driver_inertia > 0.0 and math.isfinite(body.driver_inertia)
+            cure = f"leave driver_inertia or {body.mass_field} out" if mass else "give the driver a finite impedance"
             return (
-                f"the driver sends sharp waves back whole, and so does the {body.what_is_heavy}: they never fade, and no run comes"
-                " to a cycle; give the driver a finite impedance"
+                f"the {'mass of the driver' if mass else 'driver'} sends sharp waves back whole, and so does the"
+                f" {body.what_is_heavy}: they never fade, and no run comes to a cycle; {cure}"
             )
         return ""
 

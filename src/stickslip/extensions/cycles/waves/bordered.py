@@ -15,16 +15,16 @@ from stickslip.foundation.arrays import Floats
 
 @dataclass(frozen=True)
 class Bordered:
-    """The derivative of what a return misses by start and parameter, with a plane as its last row."""
+    """The derivative of the miss of a return by start and parameter, with a plane as its last row."""
 
     image: Image
-    """The place on a section at which it is taken."""
+    """The place on a section where it is taken."""
     slopes: Floats | None
     """The derivative of the return by its start, if it is known from the run."""
     grown: Operator
-    """What differences of runs say of what is missed, where it is not."""
+    """The derivative of the miss by differences of runs, for where it is not known."""
     by_value: Floats
-    """The derivative of what is missed by the parameter over its range."""
+    """The derivative of the miss by the parameter over its range."""
     plane: Floats
     """The row of the plane, by start and parameter."""
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.engine import Cause
 from stickslip.extensions.cycles.compiled.along_run import FIRST_STATE_ROW, RunNumbers
 from stickslip.extensions.cycles.compiled.echo_parts import WAVE_PLACES, WAVE_POINTS, PartsOfRun, WavesOfRun
 from stickslip.extensions.cycles.compiled.echoes import NO_ROOM, carry, read_waves
@@ -19,10 +20,8 @@ TO_POINTS = np.vander(WAVE_PLACES, NODES, increasing=True) @ POWERS_OF_TERMS @ T
 """From the values of a mesh on a piece to those at the points of a part."""
 FIRST_ROOM, MORE_ROOM, MOST_ROOM = 2, 4, 200
 """Room for so many parts for each piece (1), by what factor it grows, and the most."""
-SAME_RATE = 1e-6
-"""A slip rate does not jump between two pieces if they differ by less than this share (1) of the largest."""
-DRIVERS = ("rigid", "lossy")
-"""Drivers that send a wave back as it is, or a share of it."""
+SMALL_JUMP = 1e-2
+"""Jumps of the slip rate are small that are below this share (1) of the largest."""
 
 UNHINDERED: Any = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
 """Numbers of a run without a lag that matters, without play, and without stops."""
@@ -31,7 +30,7 @@ UNHINDERED: Any = (np.zeros(0), 0.0, 0.0, np.inf, -np.inf, 0.0)
 def is_known(met: WaveReturn) -> bool:
     """Return True if disturbances of a return are known from its run: else they are by differences of runs."""
     history, law = met.history, met.history.problem.friction
-    if not met.source.is_one_wave or history.problem.driver_kind not in DRIVERS or law.depends_on_slip or history.store.bend.any():
+    if not met.source.is_one_wave or len(met.start.kept) or law.depends_on_slip or history.store.bend.any():
         return False
     if law.states and history.rests[met.first : met.piece + 1].any():
         return False
@@ -39,11 +38,16 @@ def is_known(met: WaveReturn) -> bool:
 
 
 def _jumps(met: WaveReturn) -> bool:
-    """Return True if the slip rate jumps on the way: a jump that moves leaves more in the wave than a kink."""
-    rate = met.history.store.rate[met.first : met.piece + 1]
-    ends, rests = rate.sum(axis=1), met.history.rests[met.first : met.piece]
+    """Return True if the slip rate jumps on the way: a jump that moves leaves more in the wave than a kink.
+
+    Small jumps are echoes of places where the pieces of the wave do not quite meet, which do not move.
+    """
+    store = met.history.store
+    rate, rests = store.rate[met.first : met.piece + 1], met.history.rests[met.first : met.piece]
+    ends = rate.sum(axis=1)
     off = np.abs(np.where(rests, 0.0, ends[:-1]) - rate[1:, 0])
-    return bool(off.max(initial=0.0) > SAME_RATE * np.abs(ends).max())
+    leaps = (store.cause[met.first : met.piece + 1] == Cause.FOLD).any()
+    return bool(leaps or off.max(initial=0.0) > SMALL_JUMP * np.abs(ends).max())
 
 
 def numbers_along(met: WaveReturn) -> WavesOfRun:

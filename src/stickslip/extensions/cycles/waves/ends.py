@@ -32,7 +32,7 @@ SHORT_REST, TOUCHES = 1e-2, 1e-3
 """A rest that lasts a smaller share (1) of the period vanishes next to the end of a branch; slip rate and load touch rest and
 strength where they come as near (1, of their extent) as the second."""
 LOOKED_AT = 33
-"""Places in each piece (1) at which the least slip rate is looked for."""
+"""Number of places in each piece (1) where the least slip rate is looked for."""
 
 
 class EndOfPart(NamedTuple):
@@ -45,7 +45,7 @@ class EndOfPart(NamedTuple):
 
 def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
     """Return where cycles with rest end beyond the last place of a branch, by steps that become shorter."""
-    length, found = FIRST_SHORT, 0
+    length, found, changes = FIRST_SHORT, 0, _changes_in(last.orbit)
     for _ in range(MOST_SHORT):
         try:
             new = path.step(last, length)
@@ -56,13 +56,22 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
             length, found = 0.5 * length, 0
     name = _name_of_end(last.orbit)
     if found >= GOES_ON and name != LOSS_OF_STICK:
-        return EndOfPart(CycleEdge(CORNER, last.value, last.orbit), (path, last))
+        if length == FIRST_SHORT:
+            return EndOfPart(None, (path, last))
+        name = CORNER if _changes_in(last.orbit) == changes else GRAZING
+        return EndOfPart(CycleEdge(name, last.value, last.orbit), (path, last))
     edge = CycleEdge(name, last.value, last.orbit)
     begun = _without_rest(path, edge) if name == LOSS_OF_STICK else None
     if begun is None:
         return EndOfPart(edge, None)
     other, first = begun
     return EndOfPart(edge._replace(value=_value_of_touch(other, first)), (other, _led_away(other, first)))
+
+
+def _changes_in(orbit: FoundCycle) -> int:
+    """Return how often in a period (1) slip begins, or ends."""
+    modes = orbit.closed.history.store.mode[orbit.closed.first : orbit.closed.piece + 1]
+    return int(np.count_nonzero(np.diff(modes)))
 
 
 def _value_of_touch(path: Path, first: PlaceOnBranch) -> float:

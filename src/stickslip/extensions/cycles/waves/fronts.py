@@ -13,14 +13,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine import History, LadderCell
+from stickslip.engine import History, LadderCell, crossed
 from stickslip.engine.input import ladder_of
-from stickslip.engine.waves.interface import crossed
 from stickslip.foundation.arrays import Floats
 from stickslip.problem import Problem
 from stickslip.problem.bodies import OfLayers
 
-PHASES, PERIODS, MOST_STEPS = 8, 6, 20_000
+SEEN_PHASES, SEEN_PERIODS, MOST_STEPS = 8, 6, 20_000
 """Fronts at so many phases (1) are followed through so many periods, but no more round trips than the last number."""
 
 
@@ -88,16 +87,16 @@ class Fronts:
             return np.zeros(times.shape)
         at, law = history.find(times.ravel(), "right"), self.problem.friction
         by_rate = law.slopes(history.law_slip(at) if law.depends_on_slip else 0.0, np.abs(history.rate(at)), history.state(at))[1]
-        resists = self.body.total_damping + self.problem.normal * by_rate
+        resists = self.problem.body.total_damping + self.problem.normal * by_rate
         return np.where(history.mode(at) == 0, 0.0, 1.0 / resists).reshape(times.shape)
 
     def left_after(self, history: History, begin: float, end: float) -> float:
         """Return what a period from one time (s) of a history to another multiplies fronts by (1), in the mean over phases."""
         period, trip, cells = end - begin, history.round_trip_time, len(self.cells.impedance)
-        steps = int(np.clip(PERIODS * period / trip, 16 * cells, MOST_STEPS))
-        phases = trip * (np.arange(PHASES) + 0.5) / PHASES
+        steps = int(np.clip(SEEN_PERIODS * period / trip, 16 * cells, MOST_STEPS))
+        phases = trip * (np.arange(SEEN_PHASES) + 0.5) / SEEN_PHASES
         answers = self.answers(history, begin + np.mod(phases + trip * np.arange(steps)[:, None], period))
-        wave, grown = np.random.default_rng(1).standard_normal((cells, PHASES)), np.zeros((steps, PHASES))
+        wave, grown = np.random.default_rng(1).standard_normal((cells, SEEN_PHASES)), np.zeros((steps, SEEN_PHASES))
         for n in range(steps):
             wave = self.stepped(wave, answers[n])
             size = np.sqrt(np.sum(wave**2, axis=0)) + 1e-300

@@ -70,7 +70,7 @@ class WaveMesh:
         """Return a wave with these values at the points, at phases (s)."""
         piece, powers = self._found(phases)
         terms = self.series(values)[piece].reshape(len(phases), -1, TERMS)[..., :NODES]
-        return np.einsum("pck,pk->cp", terms, powers).ravel()
+        return np.asarray(np.einsum("pck,pk->cp", terms, powers).ravel())
 
     def matrix_at(self, phases: Floats) -> Floats:
         """Return the matrix that makes values at phases (s) of those at the points."""
@@ -80,7 +80,7 @@ class WaveMesh:
         return found
 
     def _found(self, phases: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return the pieces in which phases (s) are, and the powers of the places (1) there."""
+        """Return the pieces that hold phases (s), and the powers of the places (1) there."""
         piece = np.clip(np.searchsorted(self.edges, phases, side="right") - 1, 0, len(self.edges) - 2)
         xi = (phases - self.edges[piece]) / (self.edges[piece + 1] - self.edges[piece])
         return piece, np.vander(xi, NODES, increasing=True)

@@ -19,6 +19,9 @@ MOST_MEETINGS, CLOSES = 16, 3e-2
 TOO_FAR = 0.3
 """No cycle is near a run that comes no closer to itself than this (1)."""
 
+ONCE = 1e-6
+"""A cycle is back where it began if its wave misses that by no more than this share (1) of its extent."""
+
 
 def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
     """Return the cycle near the end of a run. Raises InputError if there is none."""
@@ -33,7 +36,19 @@ def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
     end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
     source = source_of(history, end)
     mesh = mesh_of(source, source.kinks(period))
-    return closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
+    found = closed(section, place_in(history, met, len(met.time) - 1, mesh), period)
+    once = _first_time_round(found)
+    return found if once is None else closed(section, found.closed.start, once)
+
+
+def _first_time_round(orbit: WaveOrbit) -> float | None:
+    """Return the period (s) of a cycle that has been found as several of its periods; None if it is found as one."""
+    run, mesh = orbit.closed, orbit.closed.start.mesh
+    for time in orbit.section.met(run.history).time.tolist():
+        there = source_of(run.history, time).at(mesh.phases) if time < run.end - ONCE * orbit.period else np.full(1, np.inf)
+        if np.abs(there - run.start.wave).max() <= ONCE * run.start.scale[-1]:
+            return float(time - run.begin)
+    return None
 
 
 def _mean_rate(history: History) -> float:

@@ -12,17 +12,14 @@ import numpy as np
 
 from stickslip.engine import History
 from stickslip.foundation.arrays import Floats
-from stickslip.problem import Problem
+from stickslip.problem import Problem, driver_of
 from stickslip.problem.bodies import BodyWithWaves, as_waves
 
 
 def moving(problem: Problem) -> tuple[bool, bool]:
     """Return whether the rate of the driver is a number of its own, and whether the push of its integral gain is."""
-    if problem.driver_kind == "damper":
-        return True, False
-    body = cast(BodyWithWaves, problem.body)
-    is_machine = problem.driver_kind == "machine"
-    return is_machine and body.driver_inertia > 0.0, is_machine and body.driver_integral_gain > 0.0
+    body, moves = cast(BodyWithWaves, problem.body), driver_of(problem).moves
+    return moves and body.driver_inertia > 0.0, moves and body.driver_integral_gain > 0.0
 
 
 def rate_and_push(problem: Problem, kept: Floats) -> Floats:
@@ -37,7 +34,7 @@ def kept_by_driver(history: History, time: float, begun: Floats) -> Floats:
     """Return the stresses (Pa) that the driver keeps at a cut at a time (s) of a run.
 
     They are what its motion sends, and its push. The latter is that at the first moment when the driver met a wave of the run,
-    which is in `begun` (m/s, Pa), with what has come since: its gain times the way by which it lags behind its pull rate.
+    (`begun`, m/s and Pa) with what has come since: its gain times its lag behind its pull rate.
     """
     problem, trip, own = history.problem, history.round_trip_time, moving(history.problem)
     if not any(own):
@@ -46,4 +43,4 @@ def kept_by_driver(history: History, time: float, begun: Floats) -> Floats:
     rate = 2.0 * body.echo_impedance * history.machine.at(np.array([now]))
     way = history.machine.way(np.array([0.5 * trip]), np.array([now]))
     push = begun[1] + body.driver_integral_gain * (problem.first_pull_rate * (time - trip) - way)
-    return np.concatenate([rate, push])[np.array(own)]
+    return np.asarray(np.concatenate([rate, push])[np.array(own)])

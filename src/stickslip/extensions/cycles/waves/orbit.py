@@ -40,7 +40,9 @@ CLOSED_SHARE, GOOD_ENOUGH = 1e-9, 1e-6
 SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
 RESOLVED_OF_MISS = 1e-2
-"""The mesh resolves a wave to this share (1) of what the return misses."""
+"""The mesh resolves a wave to this share (1) of the miss of the return."""
+TOO_NARROW = 1e-5
+"""Between the points of its mesh a wave misses its start by no more than this share (1) of its extent."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MOST_COLUMNS = 800
@@ -276,7 +278,7 @@ def _newton_step(image: Image, section: WaveSection, now: WaveReturn, missed: Fl
         step, _, directions = solved(difference(image, section, missed), -missed, LINEAR_SHARE, MOST_DIRECTIONS)
         return step, directions
     try:
-        return np.linalg.solve(slopes - np.eye(len(slopes)), -missed), 0
+        return np.asarray(np.linalg.solve(slopes - np.eye(len(slopes)), -missed)), 0
     except np.linalg.LinAlgError:
         raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
 
@@ -296,10 +298,14 @@ def _shortened(image: Image, section: WaveSection, step: Floats, share: float) -
 
 
 def checked(orbit: WaveOrbit) -> WaveOrbit:
-    """Refuse steady sliding. Raises InputError."""
+    """Refuse steady sliding, and waves that their mesh does not resolve. Raises InputError."""
     now = orbit.closed
     piece = np.repeat(np.arange(now.first, now.piece + 1), 3)
     rates = now.history.rate(Positions.inside(piece, np.resize([0.0, 0.5, 1.0], len(piece))))
     if np.ptp(rates) <= STEADY_SHARE * now.history.problem.first_pull_rate:
         raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
+    if now.between > TOO_NARROW:
+        raise InputError(
+            "cycle: the wave has a front too narrow for its mesh, and misses its start between the points: no cycle is found"
+        )
     return orbit

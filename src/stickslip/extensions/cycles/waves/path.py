@@ -12,6 +12,7 @@ from stickslip.extensions.cycles.edges import CycleEdge
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.bordered import Bordered
 from stickslip.extensions.cycles.waves.ends import EndOfPart, cut_anew, end_of_rests, with_rest
+from stickslip.extensions.cycles.waves.of_driver import moving
 from stickslip.extensions.cycles.waves.orbit import (
     LINEAR_SHARE,
     SMALL_NUDGE,
@@ -28,6 +29,7 @@ from stickslip.extensions.cycles.waves.orbit import (
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
 NEWTON_ROUNDS, MOST_NO_NEARER = 8, 1
@@ -35,7 +37,7 @@ NEWTON_ROUNDS, MOST_NO_NEARER = 8, 1
 CLOSED, STILL_CLOSED = 1e-8, 1e-6
 """A cycle of a branch closes to this share of its extent (1); where kinks forbid that, to the second."""
 MUCH_NEARER = 1e-2
-"""A step of Newton's iteration brings a return much nearer if what it misses is this share (1) of what it missed before."""
+"""A step of Newton's iteration brings a return much nearer if its miss is this share (1) of the miss before."""
 MOST_SECTIONS = 8
 """Number of sections that a path remembers (1)."""
 DIRECTION_SHARE = 1e-3
@@ -55,12 +57,19 @@ class WavePath(Path):
     """How many states there are, and how many numbers the driver keeps (1)."""
 
     def section(self, value: float) -> Any:
-        """Return the section of the problem with a value (SI) of the parameter. Raises InputError if the problem refuses it."""
+        """Return the section of the problem with a value (SI) of the parameter.
+
+        Raises InputError if the problem refuses it, or if the driver has other numbers of its own there.
+        """
         known = self._sections
         if value not in known:
             if len(known) >= MOST_SECTIONS:
                 known.clear()
-            known[value] = WaveSection(self.problem_at(value), self.at_onset, self.rtol, self.level)
+            problem = self.problem_at(value)
+            if sum(moving(problem)) != self.counts[1]:
+                at = f"{self.parameter.name} = {brief(value, self.parameter.unit)}"
+                raise InputError(f"follow: a driver with {at} has a number of its own more or less: begin and end beside 0")
+            known[value] = WaveSection(problem, self.at_onset, self.rtol, self.level)
         return known[value]
 
     @cached_property

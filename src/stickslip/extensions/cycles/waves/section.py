@@ -9,6 +9,7 @@ import numpy as np
 
 from stickslip.engine import History, Positions
 from stickslip.extensions.cycles.section import Crossings, onsets, passages
+from stickslip.extensions.cycles.short_runs import PASSES_AT_ONCE, advanced
 from stickslip.extensions.cycles.waves.begin import begin_with
 from stickslip.extensions.cycles.waves.mesh import WaveMesh, WaveSource
 from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
@@ -24,8 +25,8 @@ LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
 NO_STATE = 1e-15
 """A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
-PASSES = 20_000
-"""Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
+BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
+"""Places (1) on a piece of the mesh, most of them near its ends, at which a wave is compared with its start."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +46,10 @@ class WavePlace:
 
     @property
     def scale(self) -> Floats:
-        """Their extents: sizes of the states, and how far the wave goes, for what the driver keeps as well."""
-        sizes, reach = np.abs(self.states), np.full(len(self.kept) + len(self.wave), np.ptp(self.wave) + 1e-300)
-        return np.concatenate([np.where(sizes > NO_STATE, sizes, 1.0), reach])
+        """Their extents: sizes of the states, how far the wave goes, and both together for what the driver keeps."""
+        sizes, reach = np.abs(self.states), float(np.ptp(self.wave)) + 1e-300
+        states = np.where(sizes > NO_STATE, sizes, 1.0)
+        return np.concatenate([states, np.abs(self.kept) + reach, np.full(len(self.wave), reach)])
 
     @property
     def counts(self) -> tuple[int, int]:
@@ -129,6 +131,14 @@ class WaveReturn:
         return self.on(self.start.mesh)
 
     @cached_property
+    def between(self) -> float:
+        """By what share (1) of its extent the wave misses its start at places that are no points of the mesh."""
+        edges = self.start.mesh.edges
+        phases = (edges[:-1, None] + np.diff(edges)[:, None] * BESIDE).ravel()
+        off = self.source.at(phases) - self.start.mesh.at(self.start.wave, phases)
+        return float(np.abs(off).max() / self.start.scale[-1])
+
+    @cached_property
     def sticks(self) -> bool:
         """True if the contact rests on the way."""
         here = slice(self.first, self.piece + 1)
@@ -162,10 +172,9 @@ class WaveSection:
         run = ExactRun.begin(self.problem, _options(self.problem, self.problem.round_trip_time + lasts, self.rtol))
         beside = np.concatenate([place.states, rate_and_push(self.problem, place.kept)])
         begin_with(run, place.mesh.edges, place.mesh.series(place.wave), self.rate, beside)
-        while True:
-            code = run.advance(PASSES)
-            if code not in (Stop.NONE, Stop.END_AHEAD) and not (code == Stop.FULL and run.grow()):
-                return run, code
+        while (code := advanced(run, PASSES_AT_ONCE)) is None:
+            pass
+        return run, code
 
     def returned(self, place: WavePlace, guess: float, *, longer: float = LONGER_THAN_GUESS) -> WaveReturn:
         """Return the run from a place to its return next to a `guess` of the time (s) that it takes.

@@ -41,7 +41,7 @@ class ComparedRigid(ComparedKind):
         return 1
 
     def where(self, run: ExactRun) -> tuple[int, ...]:
-        """Return the side of a play on which the spring pulls."""
+        """Return the side of a play where the spring pulls."""
         return 0, int(run.count.side)
 
     def time(self, run: ExactRun) -> float:
