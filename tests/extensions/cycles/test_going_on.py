@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.cycles import follow as following
+from stickslip.extensions.cycles import following
 from tests.command_line import Command
 from tests.extensions.cycles.problems import BRAKE, coulomb, stribeck
 
