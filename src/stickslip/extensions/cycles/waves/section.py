@@ -21,7 +21,7 @@ from stickslip.solution import Solution
 LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
 BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
-"""Places (1) on a piece of the mesh, most of them near its ends, at which a wave is compared with its start."""
+"""Places (1) on a piece of the mesh, most of them near its ends, where a wave is compared with its start."""
 PASSES = 20_000
 """Number of passes of the engine's loop in one call (1), between which Ctrl-C is heard."""
 
