@@ -51,7 +51,8 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
             new = path.step(last, length)
             if abs(new.orbit.period - last.orbit.period) > SAME_MOTION * last.orbit.period:
                 raise NoCycleError("follow: this is another cycle")
-            last, found = new if new.way @ last.way >= 0.0 else replace(new, way=-new.way), found + 1
+            moved = path.together(new.orbit.place, new.value) - path.together(last.orbit.place, last.value)
+            last, found = new if new.way @ moved >= 0.0 else replace(new, way=-new.way), found + 1
         except NoCycleError:
             length, found = 0.5 * length, 0
     name = _name_of_end(last.orbit)
