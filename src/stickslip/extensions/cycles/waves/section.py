@@ -26,7 +26,7 @@ LONGER_THAN_GUESS = 1.25
 NO_STATE = 1e-15
 """A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
 BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
-"""Places (1) on a piece of the mesh, most of them near its ends, at which a wave is compared with its start."""
+"""Places (1) on a piece of the mesh, most of them near its ends, where a wave is compared with its start."""
 
 
 @dataclass(frozen=True)
