@@ -97,15 +97,19 @@ def test_stick_is_lost_where_the_arrest_meets_the_strength_the_other_way() -> No
 
 
 def test_hunting_ends_where_a_bounce_leaves_the_axis_at_its_set_point() -> None:
-    """By matrix exponentials the slip behind the impact ends at a lag of 0 there, to 1e-7 m of a way of 22 mm."""
-    problem = hunting(F.Coulomb(STATIC, DYNAMIC), 8.0, 0.05, stop_ahead=0.0503, restitution=0.5)
-    edge = ss.studies.follow(ss.studies.cycle(problem), "body.stop_ahead", to=0.0501, steps=2).edges[-1]
-    own, lag = Axis(MASS, KP, KI, 8.0, STATIC * NORMAL, DYNAMIC * NORMAL, stop=0.05 - edge.value), float(edge.orbit.place[0])
-    state, _, hit = own.slipped(np.array([lag, 0.0, STATIC * NORMAL - KP * lag]), 1)
-    state, _, _ = own.slipped(state * [1.0, -0.5, 1.0], -1)
-    assert hit
-    assert edge.name == "end of hunting"
-    assert state[0] == pytest.approx(0.0, abs=1e-7)
+    """By matrix exponentials: back from the set point at the strength, forth into the stop, and from it to the set point: 1e-6."""
+    problem = hunting(F.Coulomb(STATIC, DYNAMIC), 8.0, 0.05, stop_ahead=0.055, restitution=0.5)
+    branch = ss.studies.follow(ss.studies.cycle(problem), "body.stop_ahead", to=0.05, steps=6)
+    free = Axis(MASS, KP, KI, 8.0, STATIC * NORMAL, DYNAMIC * NORMAL)
+    lag = float(free.slipped(np.array([0.0, 0.0, -STATIC * NORMAL]), -1)[0][0])
+
+    def left(stop: float) -> float:
+        own = replace(free, stop=-stop)
+        met, _, _ = own.slipped(np.array([lag, 0.0, STATIC * NORMAL - KP * lag]), 1)
+        return float(own.slipped(met * [1.0, -0.5, 1.0], -1)[0][0])
+
+    assert [edge.name for edge in branch.edges] == ["end of hunting"]
+    assert branch.edges[0].value - 0.05 == pytest.approx(brentq(left, 1e-4, 1e-3, xtol=1e-15), abs=0.05e-6)
 
 
 def replace_gain(problem: ss.Problem, integral_gain: float) -> ss.Problem:

@@ -15,7 +15,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
-from stickslip.extensions.cycles.section import onsets
+from stickslip.extensions.cycles.section import onsets, passages
 
 A, B, DISTANCE, REFERENCE, NORMAL, FAR = 0.01, 0.015, 0.01, 0.6, 1e8, 5.5e7
 GAIN, INTEGRAL, INERTIA, PULL = 1e8, 3e7, 1e7, 0.02
@@ -71,6 +71,23 @@ def test_all_that_is_stored_comes_back_and_the_work_is_the_heat(found: Callable[
         assert abs(gained[name]) < 1e-9 * gained["heat"]
     assert gained["work"] == pytest.approx(gained["heat"], rel=1e-9)
     assert gained["radiated"] > 1e-3 * gained["heat"]
+
+
+@pytest.mark.slow
+def test_a_top_drive_with_inertia_under_soft_torque_leaves_a_cycle_of_a_higher_mode() -> None:
+    """Tuned to 5 s, at a bit without inertia under LuGre's law: a run has settled to the period to 1e-10, and the lag is none."""
+    problem = ss.load_scenario("drill-string").problem
+    law = ss.friction.LuGre(static=0.8, dynamic=0.5, rate=1.1, stiffness=100.0, viscosity=0.003)
+    body = replace(problem.body, inertia=0.0).with_soft_torque("5 s")
+    start: dict[str, Any] = {"initial_load": 0.5 * body.normal_load, "initial_state": 0.0}
+    driven = ss.Problem(body, law, pull_rate=4.0, **start)
+    cycle, run = ss.studies.cycle(driven, near=60.0, rtol=1e-10), ss.simulate(driven, 200.0, 1e-10)
+    section: Any = cycle.orbit.section
+    times = passages(run.history, section.rate).time
+    assert np.diff(times)[-3:] == pytest.approx(np.full(3, cycle.period), rel=1e-10)
+    assert cycle.slip == pytest.approx(4.0 * cycle.period, rel=1e-10)
+    assert cycle.period == pytest.approx(2.0 * body.round_trip_time, rel=1e-3)
+    assert cycle.stable
 
 
 def rate_of(load: float, state: float, guess: float) -> float:

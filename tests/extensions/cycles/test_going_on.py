@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.extensions.cycles import follow as following
+from stickslip.extensions.cycles import following
 from tests.command_line import Command
 from tests.extensions.cycles.problems import BRAKE, coulomb, stribeck
 
@@ -60,7 +60,7 @@ class Stop:
         return ()
 
 
-@pytest.mark.parametrize("after", [1, 3, pytest.param(9, marks=pytest.mark.slow), pytest.param(12, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("after", [3, *(pytest.param(one, marks=pytest.mark.slow) for one in (1, 9, 12))])
 def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(after: int, tmp_path: Path) -> None:
     """While the contact rests, and while it does not: the same cycles, not one more, from its table; and the same edges: to 1e-9.
 

@@ -56,7 +56,6 @@ def everywhere(test):
     return pytest.mark.sampled(every=7)(pytest.mark.parametrize("name", names)(test))
 
 
-@pytest.mark.sampled(every=14)
 @everywhere
 def test_run_is_that_of_simulate_bit_for_bit(name: str) -> None:
     own, other = answer(name).solution, ss.simulate(name)

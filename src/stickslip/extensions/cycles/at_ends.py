@@ -48,9 +48,15 @@ def grazes_arrest(orbit: FoundCycle) -> bool:
 
 def rests_for_ever(orbit: FoundCycle) -> bool:
     """Return True if a position loop rests at its set point, so that its integral hardly changes."""
-    history, last = orbit.closed.history, orbit.closed.piece
+    history = orbit.closed.history
     if not is_wound(history.problem) or history.problem.first_pull_rate != 0.0:
         return False
+    return abs(least_lag(orbit)) <= STANDS * float(np.ptp(history.store.slip))
+
+
+def least_lag(orbit: FoundCycle) -> float:
+    """Return the lag (m) nearest to 0 of a rest of a position loop; inf without a rest."""
+    history, last = orbit.closed.history, orbit.closed.piece
     rests = np.flatnonzero(history.store.mode[: last + 1] == 0)
     lags = lags_at(history, Positions.inside(rests, np.zeros(len(rests))))
-    return bool((np.abs(lags) <= STANDS * np.ptp(history.store.slip)).any())
+    return float(lags[np.abs(lags).argmin()]) if len(lags) else np.inf

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stickslip.contact import steady_slidings
-from stickslip.extensions.cycles.at_ends import grazes_arrest, rests_for_ever, touches_stop
+from stickslip.extensions.cycles.at_ends import grazes_arrest, least_lag, rests_for_ever, touches_stop
 from stickslip.extensions.cycles.found import FoundCycle, kind_of
 from stickslip.extensions.cycles.lag import is_wound, usual_rate
 from stickslip.extensions.cycles.measures import least_rate
@@ -131,7 +131,7 @@ def first_stick(path: Path, last: PlaceOnBranch) -> tuple[CycleEdge, PlaceOnBran
 
 def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[CycleEdge, PlaceOnBranch]:
     """Return where cycles of one kind end, with rest or stops, between a last one and a value (SI) without one, by bisection."""
-    good, bad, kind = last, beyond, kind_of(last.orbit)
+    before, good, bad, kind = last, last, beyond, kind_of(last.orbit)
     while abs(bad - good.value) > max(SMALLEST_BISECTED * path.range, 4.0 * np.spacing(abs(bad))):
         middle = 0.5 * (good.value + bad)
         try:
@@ -139,8 +139,15 @@ def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[Cycle
         except NoCycleError:
             bad = middle
             continue
-        good, bad = (found, bad) if kind_of(found.orbit) == kind else (good, middle)
-    return CycleEdge(_name_of_end(good.orbit), 0.5 * (good.value + bad), good.orbit), good
+        if kind_of(found.orbit) != kind:
+            bad = middle
+            continue
+        before, good = good, found
+    name = _name_of_end(good.orbit)
+    if name == END_OF_HUNTING and before is not good:  # runs end before it, where a rest lasts too long: on a line to a lag of 0
+        now, then = least_lag(good.orbit), least_lag(before.orbit)
+        return CycleEdge(name, good.value + (good.value - before.value) * now / (then - now), good.orbit), good
+    return CycleEdge(name, 0.5 * (good.value + bad), good.orbit), good
 
 
 def _name_of_end(orbit: FoundCycle) -> str:

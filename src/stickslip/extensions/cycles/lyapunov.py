@@ -13,6 +13,7 @@ from stickslip.extensions.cycles.disturbed.growth_of_pair import growth_of_pair
 from stickslip.extensions.cycles.exponent import LOST_SHARE, LyapunovExponent, MeasuredGrowth
 from stickslip.extensions.cycles.growth_along_returns import growth_of_rigid
 from stickslip.extensions.cycles.growth_of_echoes import growth_of_echoes, tell_growth
+from stickslip.extensions.cycles.lag import is_wound
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
@@ -49,7 +50,8 @@ def way_of(problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
     kind = problem.body.structure
     if kind == "uniform":
         return growth_of_echoes if tell_growth(problem, rtol) else growth_of_pair
-    if kind == "layered" or CYCLE_KINDS[kind].refusal(problem) or not problem.first_pull_rate > 0.0:
+    moves = problem.first_pull_rate > 0.0 or is_wound(problem)
+    if kind == "layered" or CYCLE_KINDS[kind].refusal(problem) or not moves:
         return growth_of_pair
     return growth_of_rigid
 

@@ -117,7 +117,7 @@ def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> NextSteps:
     derivative = (now.about - np.eye(len(now.start))) * extent / extent[:, None]
     missed = now.missed / extent
     try:
-        straight = -np.linalg.solve(derivative, missed)
+        straight: Floats = np.asarray(np.linalg.solve(derivative, -missed), np.float64)
     except np.linalg.LinAlgError:
         raise InputError("cycle: every motion near this run repeats itself: nothing brings it to one of them") from None
     ways = [(one.start - now.start) / extent for one in seen]

@@ -141,12 +141,13 @@ class Section:
 
 def coordinates(values: Any, at_onset: bool) -> Any:
     """Return what may vary on a section, of load, slip rate, states and lag: at an onset only the lag."""
-    return values[FIRST_STATE_ROW:] if at_onset else np.delete(values, RATE_ROW, axis=0)
+    return np.asarray(values[FIRST_STATE_ROW:] if at_onset else np.delete(values, RATE_ROW, axis=0))
 
 
 def places_of(history: History, met: Crossings, at_onset: bool = False) -> Floats:
     """Return what may vary on a section where a run crosses it, each in a row."""
-    return coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
+    found: Floats = coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
+    return found
 
 
 def crossings(history: History, at_onset: bool) -> Crossings:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from stickslip.engine import History, Positions
@@ -70,7 +72,8 @@ def _closed(section: Section, history: History, met: Crossings) -> Orbit | None:
         return None
     try:
         now = leads.at_limit() or leads.at_last()
-        if not is_stable(np.linalg.eigvals(now.about)):
+        multipliers: Any = np.linalg.eigvals(now.about)
+        if not is_stable(multipliers):
             return None
         found, near = closed_beyond(section, now, leads.period, leads.misses), now.start
     except InputError:

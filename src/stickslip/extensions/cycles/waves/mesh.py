@@ -36,7 +36,7 @@ FADED, MOST_ECHOES = 1e-9, 160
 """A kink is kept until its echo is this share of itself (1), and for no more round trips than this."""
 SHORTEST_PIECE, COARSE = 1e-5, 1.0 / 6.0
 """Shortest and longest piece of a mesh before it is divided (1, shares of a round trip)."""
-RESOLVED, MOST_PIECES, FINEST = 1e-9, 240, 1e-3
+RESOLVED, MOST_PIECES, FINEST = 1e-9, 240, 1e-4
 """Pieces are halved until the last terms are below this share (1) of the wave's extent, up to a number, down to a length (1)."""
 
 

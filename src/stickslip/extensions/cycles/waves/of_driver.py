@@ -34,7 +34,7 @@ def kept_by_driver(history: History, time: float, begun: Floats) -> Floats:
     """Return the stresses (Pa) that the driver keeps at a cut at a time (s) of a run.
 
     They are what its motion sends, and its push. The latter is that at the first moment when the driver met a wave of the run,
-    (`begun`, m/s and Pa) with what has come since: its gain times its lag behind its pull rate.
+    which is in `begun` (m/s, Pa), with what has come since: its gain times how far it has fallen behind its pull rate.
     """
     problem, trip, own = history.problem, history.round_trip_time, moving(history.problem)
     if not any(own):

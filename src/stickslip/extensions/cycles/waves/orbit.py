@@ -41,8 +41,8 @@ SAME_MESH = 1e-7
 """The mesh stays as it is where a return misses its start by no more than this share (1): kinks no longer move."""
 RESOLVED_OF_MISS = 1e-2
 """The mesh resolves a wave to this share (1) of the miss of the return."""
-TOO_NARROW = 1e-5
-"""Between the points of its mesh a wave misses its start by no more than this share (1) of its extent."""
+MISSED_BETWEEN = 1e-7
+"""Between the points of its mesh a wave misses its start by no more than this share (1) of its extent, in the mean."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
 MOST_COLUMNS = 800
@@ -304,7 +304,7 @@ def checked(orbit: WaveOrbit) -> WaveOrbit:
     rates = now.history.rate(Positions.inside(piece, np.resize([0.0, 0.5, 1.0], len(piece))))
     if np.ptp(rates) <= STEADY_SHARE * now.history.problem.first_pull_rate:
         raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
-    if now.between > TOO_NARROW:
+    if now.between > MISSED_BETWEEN:
         raise InputError(
             "cycle: the wave has a front too narrow for its mesh, and misses its start between the points: no cycle is found"
         )

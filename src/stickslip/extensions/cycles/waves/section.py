@@ -26,7 +26,7 @@ LONGER_THAN_GUESS = 1.25
 NO_STATE = 1e-15
 """A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
 BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
-"""Places (1) on a piece of the mesh, most of them near its ends, at which a wave is compared with its start."""
+"""Places (1) on a piece of the mesh, most of them near its ends, where a wave is compared with its start."""
 
 
 @dataclass(frozen=True)
@@ -132,11 +132,12 @@ class WaveReturn:
 
     @cached_property
     def between(self) -> float:
-        """By what share (1) of its extent the wave misses its start at places that are no points of the mesh."""
+        """By what share (1) of its extent the wave misses its start in the mean of the round trip, where the mesh has no points."""
         edges = self.start.mesh.edges
         phases = (edges[:-1, None] + np.diff(edges)[:, None] * BESIDE).ravel()
-        off = self.source.at(phases) - self.start.mesh.at(self.start.wave, phases)
-        return float(np.abs(off).max() / self.start.scale[-1])
+        off = np.abs(self.source.at(phases) - self.start.mesh.at(self.start.wave, phases)).reshape(-1, len(phases))
+        means = np.sum(0.5 * (off[:, 1:] + off[:, :-1]) * np.diff(phases), axis=1) / edges[-1]
+        return float(means.max() / self.start.scale[-1])
 
     @cached_property
     def sticks(self) -> bool:
