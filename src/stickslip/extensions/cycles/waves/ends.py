@@ -13,6 +13,7 @@ from stickslip.extensions.cycles.found import FoundCycle
 from stickslip.extensions.cycles.measures import least_rate, measures_of
 from stickslip.extensions.cycles.meeting import CLOSE_PERIOD, NEXT_TO_EDGE
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
+from stickslip.extensions.cycles.reaching import STRAIGHT
 from stickslip.extensions.cycles.waves.mesh import mesh_of
 from stickslip.extensions.cycles.waves.of_driver import kept_by_driver, rate_and_push
 from stickslip.extensions.cycles.waves.orbit import coordinates, spread
@@ -45,7 +46,7 @@ class EndOfPart(NamedTuple):
 
 def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
     """Return where cycles with rest end beyond the last place of a branch, by steps that become shorter."""
-    length, found, changes = FIRST_SHORT, 0, _changes_in(last.orbit)
+    length, found, changes, before, value = FIRST_SHORT, 0, _changes_in(last.orbit), last.way, last.value
     for _ in range(MOST_SHORT):
         try:
             new = path.step(last, length)
@@ -54,13 +55,13 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
             moved = path.together(new.orbit.place, new.value) - path.together(last.orbit.place, last.value)
             last, found = new if new.way @ moved >= 0.0 else replace(new, way=-new.way), found + 1
         except NoCycleError:
-            length, found = 0.5 * length, 0
+            length, found, value = 0.5 * length, 0, last.value
     name = _name_of_end(last.orbit)
     if found >= GOES_ON and name != LOSS_OF_STICK:
-        if length == FIRST_SHORT:
-            return EndOfPart(None, (path, last))
         name = CORNER if _changes_in(last.orbit) == changes else GRAZING
-        return EndOfPart(CycleEdge(name, last.value, last.orbit), (path, last))
+        if name == CORNER and abs(before @ last.way) >= STRAIGHT:
+            return EndOfPart(None, (path, last))
+        return EndOfPart(CycleEdge(name, value, last.orbit), (path, last))
     edge = CycleEdge(name, last.value, last.orbit)
     begun = _without_rest(path, edge) if name == LOSS_OF_STICK else None
     if begun is None:
