@@ -250,7 +250,8 @@ class SteadySlidings(ShownAsTable):
         found = [f"{at}{brief(one.rate, self._rate)}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
         if self.is_calm and self.settled and all(one.rate > abs(self.settled.rate) for one in self.changes):
             found.append(slides_on(self.settled, is_driven_rigidly=self.far_stress is None, unit=self._rate))
-        found += [self._given_way(), "at rest: the driver does not pull hard enough to free a contact that sticks" * self.can_rest]
+        rests = "at rest: the driver does not pull hard enough to free a contact that sticks" if self.can_rest else ""
+        found += [self._given_way(), rests]
         if not self.is_damped and any(one.stable is False for one in self.slidings):
             found.append("neither body nor driver damps: it is unstable wherever friction falls with the slip rate, however gently")
         return [line for line in [*found, self._changes()] if line]
@@ -313,7 +314,8 @@ class SteadySlidings(ShownAsTable):
         """Return the words for the pull rate that leads to a change, if it is not the slip rate."""
         if change.pull_rate is None or change.pull_rate == change.rate:
             return ""
-        back = " (the driver would have to move back)" * (self.far_stress is not None and change.pull_rate * self.pull_rate < 0.0)
+        is_back = self.far_stress is not None and change.pull_rate * self.pull_rate < 0.0
+        back = " (the driver would have to move back)" if is_back else ""
         return f", at a pull rate of {exactly(change.pull_rate, self._rate)}{back}"
 
 

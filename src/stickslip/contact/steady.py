@@ -141,7 +141,7 @@ class _Steady:
         if self.is_soft and far is None and slidings:
             far = slidings[0].traction + self._lost * slidings[0].rate
         strength = problem.strength if problem.friction.sticks else 0.0
-        rests = self.far_stress is not None and abs(self.drive) <= strength
+        rests = self.far_stress is not None and bool(abs(self.drive) <= strength)
         damped = not slidings or bool(problem.friction.states) or self.withstood.fall > 0.0 or problem.body.total_damping > 0.0
         return SteadySlidings(
             pull_rate=problem.first_pull_rate,

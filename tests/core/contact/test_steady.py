@@ -241,6 +241,14 @@ def test_a_dead_load_has_no_critical_pull_rate():
     assert found.changes == ()
 
 
+def test_what_is_said_of_steady_sliding_behind_a_soft_drive_can_be_printed():
+    """Of the bundled drill string, whose strength is a number of numpy."""
+    problem = ss.load_scenario("drill-string").problem.parameters["body.driver_impedance"].put(2000.0)
+    found = steady_slidings(problem.parameters["loading.pull_rate"].put(8.95))
+    assert found.can_rest is False
+    assert str(found).startswith("At ")
+
+
 def test_friction_that_turns_without_end_has_an_answer_without_critical_rates():
     """dmu/dv = 0.05 cos v, which keeps changing its sign: stable or not at the pull rate, and nothing is proven of the rest."""
     for rate, stable in ((1.0, True), (3.0, False)):
