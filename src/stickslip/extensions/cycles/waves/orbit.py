@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import STEADY_SHARE
-from stickslip.extensions.cycles.waves.disturbed import is_known, slopes_of
 from stickslip.extensions.cycles.waves.krylov import Operator, largest, leading, solved
 from stickslip.extensions.cycles.waves.mesh import RESOLVED, WaveMesh, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
+from stickslip.extensions.cycles.waves.slopes_of_return import is_known, slopes_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
