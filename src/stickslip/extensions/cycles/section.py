@@ -146,8 +146,7 @@ def coordinates(values: Any, at_onset: bool) -> Any:
 
 def places_of(history: History, met: Crossings, at_onset: bool = False) -> Floats:
     """Return what may vary on a section where a run crosses it, each in a row."""
-    found: Floats = coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset)
-    return found
+    return np.asarray(coordinates(values_at(history, Positions.inside(met.piece, met.place)), at_onset))
 
 
 def crossings(history: History, at_onset: bool) -> Crossings:
