@@ -164,7 +164,10 @@ def wrong_numbers(comment: str, code: str, said: str) -> list[str]:
     return [text for text in re.findall(number, comment) if not is_right(text)]
 
 
-LONG = ('"10 years" --catalogue', '"35 mm/year"', "pull_rate=0.5)", "stickslip analogy --figure")
+LONG = (
+    '"10 years" --catalogue', '"35 mm/year"', "pull_rate=0.5)", "stickslip analogy --figure",
+    "to=9.02, steps=1", "put(7.5), near", "collars = ss.studies.cycle", 'lyapunov(softer, "10 min")',
+)  # fmt: skip
 """Texts in blocks that take several seconds each, and on which no other block depends: they are run with the slow tests."""
 
 

@@ -106,6 +106,7 @@ def test_smaller_tolerances_give_the_exact_series(problem: str) -> None:
         assert np.abs(run.slip_rate(time) - rate).max() <= allowed * rate.max()
 
 
+@pytest.mark.slow
 def test_forty_digits_give_the_pulses() -> None:
     """Slip to 5e-12 and slip rate to 2e-11 of the largest, up to the first echo, which ends the event."""
     exact = right_limits("fig5-slab-reconstructed").query("time_s < 5.714")

@@ -102,6 +102,7 @@ def integrated(forward: FrictionLaw, backward: FrictionLaw, times: np.ndarray) -
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=6)
 @pytest.mark.parametrize("name", LAWS)
 def test_a_block_slides_as_an_integrator_of_two_laws_does(name: str) -> None:

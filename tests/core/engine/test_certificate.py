@@ -86,6 +86,7 @@ def test_the_contact_equation_is_met_where_the_last_coefficients_are_next_to_not
     assert off_the_law(solution, np.linspace(0.0, 2.0, 2001)) < 1e-10
 
 
+@pytest.mark.slow
 def test_bounds_hold_for_a_long_formula() -> None:
     """Seven wide bumps beside a narrow one: `radii` works out the values at the centre itself. The narrow one was jumped over."""
     wide = "".join(f"+0.001*exp(-((u-{centre})/0.5)**2)" for centre in range(3, 10))

@@ -112,6 +112,7 @@ WEAKENING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("law", WEAKENING, ids=lambda law: law.kind)
 def test_bounds_hold_where_slip_goes_up_and_down(law: F.FrictionLaw) -> None:

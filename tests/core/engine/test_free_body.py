@@ -171,6 +171,7 @@ def test_a_force_moves_a_body_as_an_integrator_says_with_stops(body: ss.SpringBl
     assert np.abs(run.slip_rate(times)).max() < 1e-8
 
 
+@pytest.mark.slow
 def test_a_slow_force_on_a_dry_oscillator_lets_it_stop_twice_in_each_period() -> None:
     push = Sinusoidal(mean=0.0, amplitude=24.0, period=12.0, phase=0.5 * math.pi)
     problem = ss.Problem(SPRUNG, DRY, force=push, initial_load=0.0)

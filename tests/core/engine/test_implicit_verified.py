@@ -164,6 +164,7 @@ def test_a_lagged_contact_leaves_rest(thickness: float) -> None:
     assert all(np.isfinite(table).all() for table in (store.load, store.rate, store.state, store.slip, store.law_slip))
 
 
+@pytest.mark.slow
 def test_rate_and_state_slides_through_a_load_of_zero() -> None:
     """The load passes through 0, where the slip rate is far below 1e-30 m/s, and grows again: theta by DOP853, v by bisection.
 

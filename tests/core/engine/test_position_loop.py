@@ -186,6 +186,7 @@ def way_of(pull: Any, times: Floats) -> Floats:
     return total
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("pull", PULLS)
 def test_bristles_under_a_moving_reference_meet_another_integrator(pull: str) -> None:

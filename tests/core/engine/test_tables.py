@@ -234,7 +234,7 @@ def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, 
     assert table.recurrence.to_numpy() == pytest.approx([np.nan, *since], rel=1e-15, abs=2e-9 * width, nan_ok=True)
 
 
-@pytest.mark.sampled(every=6)
+@pytest.mark.sampled(every=12)
 def test_every_shock_agrees_with_a_plain_walk(run: ss.Solution) -> None:
     history, shocks = run.history, run.shocks
     pieces = [n for n in range(len(history)) if history.store.cause[n] > 0]

@@ -58,6 +58,7 @@ def test_a_string_of_two_sections_alike_has_the_cycle_of_one() -> None:
     assert cut.multipliers[0] == pytest.approx(whole.multipliers[0], abs=1e-5)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("sides", "share"), [("apart", 2.0), ("joined", 0.5)])
 def test_two_slabs_alike_have_the_cycle_of_the_slab_that_they_are_together(sides: str, share: float) -> None:
     """Twice the impedance each where one slips on the other, half where both slip: period to 1e-10, multiplier to 1e-6."""

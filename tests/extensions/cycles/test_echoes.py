@@ -78,6 +78,7 @@ def last_return(problem: ss.Problem, lasts: float, meetings: int) -> tuple[WaveS
     return section, section.returned(place, period)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", RUNS)
 def test_what_a_return_makes_of_disturbances_is_what_differences_of_runs_say(name: str) -> None:
     """Two waves and each state, to 5e-6 of the largest number, for runs with events, without, and with echoes of either.

@@ -85,6 +85,7 @@ def test_a_table_without_scatter_gives_the_numbers_to_a_thousandth() -> None:
         assert found.table.loc[name].value == pytest.approx(truth, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_drops_and_times_say_the_same_as_levels_and_recurrences() -> None:
     table = events(4)
     whole = {

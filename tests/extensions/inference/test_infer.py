@@ -121,6 +121,7 @@ def test_a_number_on_a_bound_is_told_and_has_no_interval() -> None:
     assert any(note.startswith("friction.b lies on the lower end of its bounds, 0.0128") for note in study.notes)
 
 
+@pytest.mark.slow
 def test_a_prior_pulls_as_much_as_it_is_sure() -> None:
     tight = inferred(free=TWO, priors={"a": "lognormal(0.012, 1e-5)"})
     assert tight.values["friction.a"] == pytest.approx(0.012, rel=1e-3)

@@ -49,6 +49,7 @@ def test_infer_reads_what_is_known_and_writes_what_was_asked_for(command, tmp_pa
     assert ss.load_scenario("best.toml").problem.friction.a == pytest.approx(0.008, rel=0.05)
 
 
+@pytest.mark.slow
 def test_infer_compares_scenarios_by_what_they_predict(command):
     Path("other.toml").write_text(ss.load_scenario("velocity-steps-block").to_toml().replace('"ageing"', '"slip"'))
     options = ["--free", "a,b", "--held-out", "105 s", "--starts", "1", "--compare", "other.toml"]

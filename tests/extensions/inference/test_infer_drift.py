@@ -94,6 +94,7 @@ def test_a_drift_with_time_is_one_with_time_and_two_drifts_are_two() -> None:
         assert study.values[name] == pytest.approx(value, abs=4.0 * study.table.uncertainty[name]), name
 
 
+@pytest.mark.slow
 def test_from_two_plateaus_it_is_said_that_levels_cannot_tell_a_drift_from_the_effect_of_rate() -> None:
     study = ss.studies.infer(NEAR, replace(TWO, trend=-2.0).record(), ["b", "reference"], starts=1)
     assert any(one.startswith("each of the 2 rates comes once: levels cannot tell a drift") for one in study.notes)

@@ -195,6 +195,7 @@ def test_static_and_dynamic_friction_and_stiffness_come_out_of_levels_alone() ->
     assert (study.table.uncertainty / study.table.value).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_the_figure_has_a_panel_for_each_feature_with_record_and_run_in_readable_units(slab: Inference) -> None:
     figure = slab.plot()
     titles = ["peak stress", "stress at rest", "recurrence", "duration", "slip in the event"]

@@ -31,6 +31,7 @@ def record(problem: ss.Problem, **columns: Any) -> dict[str, Any]:
     return {"time (s)": TIME, "torque (N m)": torque, "bit speed (rpm)": bit, "drive speed (rpm)": drive} | columns
 
 
+@pytest.mark.slow
 def test_a_law_is_found_in_a_record_of_torque_and_rpm() -> None:
     begun = replace(TRUE, friction=replace(LAW, static=0.77, dynamic=0.46), pull_rate=1.0)
     found = ss.studies.infer(begun, record(TRUE), free=["static", "dynamic"], start="problem", observe=["torque", "slip_rate"])

@@ -61,6 +61,7 @@ def test_a_patch_slips_as_convolution_says(driver: float) -> None:
     assert np.abs(slip_at_the_end(case, DURATION, 256) - truth).max() < 1e-3 * truth.max()
 
 
+@pytest.mark.slow
 def test_a_plane_slips_as_in_the_volume() -> None:
     case = weakening_plane()
     truth = volume(case, 5.0, 128).slip[-1]

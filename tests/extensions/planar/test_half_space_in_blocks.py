@@ -90,6 +90,7 @@ def test_chunks_of_several_devices_hold_the_waves_of_each_together() -> None:
     np.testing.assert_array_equal(kind._waves(chunks, 1)[:, 0], rows)
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_where_our_machine_code_cannot_be_called(monkeypatch: pytest.MonkeyPatch) -> None:
     law = ss.friction.LinearSlipWeakening(static=0.7, dynamic=0.5, distance=0.4)
     bump = {"initial.load": lambda y: 60e6 + 11e6 * np.exp(-((y / 4e3) ** 2))}

@@ -135,6 +135,7 @@ def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, wh
     check_same(ss.resume(path), whole)
 
 
+@pytest.mark.slow
 def test_a_longer_run_is_the_run_that_was_long_from_the_start(tmp_path: Path, whole: Any) -> None:
     """Three round trips are prepared as four; the shorter run ends between two frames."""
     path = tmp_path / "run.zarr"

@@ -56,6 +56,7 @@ def test_each_round_trip_changes_coulomb_slip_by_the_factor_1_less_2_z_over_z_pl
     assert float(energy.heat[0]) == pytest.approx(0.5e8 * R * float(rates.sum()), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=10)
 @pytest.mark.parametrize("law", [WEAKENING, ROUGH, LAW], ids=["slip", "rate", "Coulomb"])
 @pytest.mark.parametrize("driver", [math.inf, 0.4 * Z], ids=["rigid", "leaky"])

@@ -194,6 +194,7 @@ def test_a_slab_whose_top_lets_waves_out_moves_by_its_transfer_function() -> Non
     assert run.traction(times) == pytest.approx(1e5 + (stress * turns).imag, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_stiff_slab_slips_as_the_rigid_block() -> None:
     """The difference falls with h/c: the masses are the same, and the free top follows the sooner."""
     ground, mass, law = record(1, size=6.0), DENSITY * THICKNESS, ss.friction.Coulomb(static=0.5, dynamic=0.5)

@@ -295,7 +295,7 @@ class Chosen(Crawl):
     [
         pytest.param("hyperbolic", "maxwell", "stiff", marks=pytest.mark.slow),
         ("hyperbolic", "maximal", "matched"),
-        ("waves", "minimal", "stiff"),
+        pytest.param("waves", "minimal", "stiff", marks=pytest.mark.slow),
         pytest.param("waves", "maximal", "stiff", marks=pytest.mark.slow),
     ],
 )

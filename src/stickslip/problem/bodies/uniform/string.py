@@ -39,8 +39,8 @@ def check_pipe(owner: str, outer: float, inner: float, entry: str = "") -> None:
 
 
 def polar_moment_of(outer: float, inner: float) -> float:
-    """Return the polar moment J (m^4) of a pipe; diameters in m."""
-    return math.pi / 32.0 * (outer**4 - inner**4)
+    """Return the polar moment J (m^4) of a pipe; diameters in m. Powers of an array may differ from those of a number by a bit."""
+    return math.pi / 32.0 * (outer * outer * outer * outer - inner * inner * inner * inner)
 
 
 @dataclass(frozen=True)
