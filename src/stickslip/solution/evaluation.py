@@ -81,7 +81,7 @@ class Readings(NamesAttributes):
     @property
     def shown(self) -> tuple[float, float]:
         """The first and the last time (s) that figures show by default."""
-        return self.history.span
+        return self.history.begun, self.history.span[1]
 
     @property
     def _observables(self) -> ObservablesOfKind:
@@ -147,6 +147,7 @@ class Readings(NamesAttributes):
 
     def _at_driver(self, t: ArrayLike | None, side: Side) -> tuple[AtDriver, tuple[int, ...]]:
         time = self._times(t)
+        self.history.check_begun(time)
         return self._observables.at_driver(self.history, np.atleast_1d(time).ravel(), side), time.shape
 
     def normal_load(self, t: ArrayLike | None = None, side: Side = "right") -> Floats:

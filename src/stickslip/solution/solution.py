@@ -269,10 +269,13 @@ class Solution(Exports, ShownAsTable):
         """Return what is said of the run, with its body, law and loading, in lines of a name and a text."""
         problem, account = self.problem, self.account
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
+        begins = f"initial load {brief(problem.load, problem.load_unit)}"
+        if self.history.given:
+            begins = f"from a given wave, with which the motion begins at {brief(self.history.begun, 's')}"
         return [
             ("body", repr(problem.body)),
             ("friction", problem.law_text),
-            ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
+            ("loading", f"{loading}, {begins}"),
             *account.lines(),
             ("events", self.events_in_words()),
             ("shocks", f"{len(self.shocks)}"),

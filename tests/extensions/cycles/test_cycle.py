@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -134,3 +135,13 @@ def test_the_derivative_of_the_return_is_that_of_differences_of_runs() -> None:
         columns.append((ends[0] - ends[1]) / (2.0 * step[n]))
     scaled = orbit.extent / orbit.extent[:, None]
     assert orbit.closed.slopes() * scaled == pytest.approx(np.array(columns).T * scaled, abs=1e-5)
+
+
+@pytest.mark.parametrize("near", [300.0, None])
+def test_a_motion_that_decays_slowly_to_steady_sliding_is_no_cycle(near: float | None) -> None:
+    """At 1.0001 times the critical stiffness (Gu et al. 1984) what is left of it loses 1e-4 of itself in a period."""
+    problem = rate_and_state()
+    stiff = ss.SpringBlock(HEAVY, 1.0001 * SOFT / 0.9, NORMAL)
+    disturbed = replace(problem, body=stiff, initial_rate=1.01 * SLOW, initial_state="steady", initial_load=6.0)
+    with pytest.raises(ss.InputError, match="leads to steady sliding: no other cycle is near this run"):
+        ss.studies.cycle(disturbed, near=near)

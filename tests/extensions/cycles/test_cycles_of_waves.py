@@ -13,6 +13,11 @@ import pytest
 import stickslip as ss
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.section import onsets, passages
+from stickslip.extensions.cycles.waves.image import missed_share
+from stickslip.extensions.cycles.waves.mesh import mesh_of
+from stickslip.extensions.cycles.waves.orbit import WaveOrbit, checked
+from stickslip.extensions.cycles.waves.section import WaveSection, place_in
+from stickslip.extensions.cycles.waves.sources import source_of
 
 A, B, DISTANCE, REFERENCE, MASS, NORMAL, DRIVE = 0.01, 0.015, 0.01, 0.6, 1e6, 1e8, 1e8
 SLAB = ss.ElasticSlab(2800, 3500, 1000, NORMAL, contact_mass=MASS, driver_impedance=DRIVE)
@@ -129,6 +134,20 @@ def test_a_slab_behind_a_rigid_driver_comes_to_a_cycle_next_to_where_steady_slid
     history = ss.simulate(bare(0.13), 1500.0).history
     last = np.diff(passages(history).time)[-3:]
     assert last == pytest.approx([found.period] * 3, rel=1e-9)
+
+
+def test_a_slight_motion_of_a_slab_that_decays_slowly_to_steady_sliding_is_no_cycle() -> None:
+    """A disturbance of 1e-3 of the pull rate fades at 1.3e-4 /s with a period of 29.6 s, so that each return nearly closes."""
+    problem = replace(bare(0.167), initial_rate=0.05005, initial_load=None, initial_state=None)
+    history = ss.simulate(problem, 150.0, 1e-12).history
+    section = WaveSection(problem, False)
+    met = section.met(history)
+    source = source_of(history, float(met.time[-1]))
+    period = float(met.time[-1] - met.time[-2])
+    back = section.returned(place_in(history, met, len(met.time) - 1, mesh_of(source, source.kinks(period))), period)
+    assert missed_share(back) < 0.03
+    with pytest.raises(ss.InputError, match="leads to steady sliding: no other cycle is near this run"):
+        checked(WaveOrbit(back, section, missed_share(back), 1, 0.0))
 
 
 def test_where_disturbances_of_a_slab_grow_no_cycle_is_near() -> None:

@@ -11,8 +11,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.cycles.section import onsets
+from stickslip.extensions.cycles.waves.image import Image
 from stickslip.extensions.cycles.waves.mesh import WaveSource, mesh_of
-from stickslip.extensions.cycles.waves.orbit import Image
 from stickslip.extensions.cycles.waves.section import WaveReturn, WaveSection, place_in
 from stickslip.extensions.cycles.waves.slopes_of_return import grown_columns, is_known
 

@@ -112,7 +112,22 @@ class History:
     forgotten: int = 0
     """Number of earlier pieces that a catalogue has discarded; pieces that are left need not follow on each other."""
     begun_with: Floats | None = None
-    """Waves with which a body of layers began (Pa), if they are given: a series for each of the first pieces and each cell."""
+    """Waves with which a body began (Pa), if they are given: a series for each of the first pieces and each cell of layers, or one."""
+
+    @property
+    def given(self) -> int:
+        """How many of its first pieces hold a given wave, and no motion of the contact (1)."""
+        return 0 if self.begun_with is None else len(self.begun_with)
+
+    @property
+    def begun(self) -> float:
+        """The time (s) when its motion begins: at the start, or behind a given wave."""
+        return float(self.start[self.given]) if self.given else self.span[0]
+
+    def check_begun(self, time: ArrayLike) -> None:
+        """Raise InputError for times (s) when it holds but a given wave: what else was in the body is not known."""
+        if self.given and np.any(np.asarray(time) < self.begun - 1e-12 * self.duration):
+            raise InputError(f"the run begins with a given wave: what is in the body is known from {self.begun:g} s on")
 
     def seen_from(self, epoch: Epoch) -> History:
         """Return the same history with its times counted from another epoch."""
@@ -161,7 +176,7 @@ class History:
         if not np.all((time >= begin) & (time <= end + 1e-12 * self.duration)):
             raise InputError(f"times must lie between {begin:g} and the end of the run, {end:g} s")
         piece = np.searchsorted(self.start, time, side="left" if side == "left" else "right") - 1
-        before = piece < 0
+        before = (piece < 0) & (self.given == 0)  # no start of the problem precedes a given wave
         last: NDArray[np.intp] = np.maximum(piece, 0)
         found = Positions(last.copy(), self.xi(last, time - self.start[last]), np.zeros(len(time)), before, last)
         late = time >= self.end[last] if side == "right" else time > self.end[last]

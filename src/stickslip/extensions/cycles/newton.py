@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine import Positions
-from stickslip.extensions.cycles.orbit import STEADY_SHARE, Orbit, extent_of, missed_share
+from stickslip.extensions.cycles.orbit import Orbit, extent_of, is_steady_sliding, missed_share
 from stickslip.extensions.cycles.section import Return, Section, crossings, places_of
 from stickslip.extensions.cycles.short_runs import ROUGH_RTOL
 from stickslip.foundation.arrays import Floats
@@ -163,5 +163,11 @@ def _check_that_it_moves(orbit: Orbit) -> None:
     now = orbit.closed
     piece = np.repeat(np.arange(now.piece + 1), 3)
     rates = now.history.rate(Positions.inside(piece, np.tile([0.0, 0.5, 1.0], now.piece + 1)))
-    if np.ptp(rates) <= STEADY_SHARE * now.section.problem.first_pull_rate:
+
+    def step() -> float:
+        beyond = now.slopes() - np.eye(len(now.start))
+        found = np.linalg.lstsq(beyond * orbit.extent / orbit.extent[:, None], -now.missed / orbit.extent, rcond=None)[0]
+        return abs(float(found[0]))  # of the load: a state that hardly matters may stand still
+
+    if is_steady_sliding(float(np.ptp(rates)), now.section.problem.first_pull_rate, step):
         raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")

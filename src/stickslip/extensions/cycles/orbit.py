@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -27,6 +28,9 @@ NEAR_HALF = 0.1
 """How far (1, share of the period) from half of it the middle of a doubled cycle may be."""
 STEADY_SHARE = 1e-9
 """A slip rate that varies by less than this share (1) of the pull rate is steady sliding."""
+SLIGHT_SHARE, LEFT_SHARE = 1e-2, 0.1
+"""One that varies by less than the first share (1) of the pull rate is, too, if the next step of Newton's iteration would take more
+than the second share (1) of that away: it is what the iteration has left of a motion that decays."""
 
 
 @dataclass(frozen=True)
@@ -126,6 +130,14 @@ class Orbit:
         if self.section.at_onset:  # the rest has left no more than these
             found = np.append(found, 0.0)
         return found[np.argsort(-np.abs(found), kind="stable")]
+
+
+def is_steady_sliding(swing: float, pull: float, step: Callable[[], float]) -> bool:
+    """Return True if a slip rate that goes to and fro by a swing (m/s) about a pull rate (m/s) is that of steady sliding.
+
+    `step` returns the next step of Newton's iteration, as a share (1) of how far the motion goes; only slight motion asks for it.
+    """
+    return swing <= STEADY_SHARE * pull or (swing <= SLIGHT_SHARE * pull and step() >= LEFT_SHARE)
 
 
 def extent_of(history: History, at_onset: bool, last: int) -> Floats:

@@ -180,7 +180,7 @@ def _at_drive(solution: Solution) -> dict[str, Variable]:
     """Return what the drive of a string measures at evenly spaced times, which are its own: other curves have those of shocks."""
     if not solution.at_drive:
         return {}
-    time, about = np.linspace(*solution.history.span, DRAWN_POINTS), about_curves(solution.problem)
+    time, about = np.linspace(*solution.shown, DRAWN_POINTS), about_curves(solution.problem)
     found = {name: Variable(("drive_time",), getattr(solution, name)(time), about[name]) for name in solution.at_drive}
     return found | {"drive_time": Variable(("drive_time",), time, about["time"])}
 
@@ -249,7 +249,7 @@ def _history(solution: Solution) -> dict[str, Variable]:
         about = {"long_name": "states as the law's formulas see them, and rate of a machine behind layers: Taylor coefficients"}
         variables["history_state"] = Variable(("piece", "state_variable", "term"), store.state, about)
     if history.begun_with is not None:
-        about = {"long_name": "waves with which layers began, minus the reference: Taylor coefficients"}
+        about = {"long_name": "waves with which the body began, minus the reference: Taylor coefficients"}
         variables["history_begun_with"] = Variable(("first_piece", "layer_cell", "term"), history.begun_with, about)
     return variables
 

@@ -38,6 +38,7 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     outside the slab, for times outside the run, and if the waves in the slab left the contact in a leap over creep.
     """
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
+    history.check_begun(time)
     answers = observables_of(history.problem)
     return answers.field(history, lambda: np.broadcast_to(slip(t), time.shape), place, time, side)
 

@@ -51,7 +51,7 @@ def _places(history: History, body: OfLayers) -> tuple[NDArray[np.intp], Floats]
     last = int(history.creep[:, 0].min(initial=store.trip[-1] + 1))
     many = int(np.clip(REPLAYED / (cells * max(last, 1)), LEAST_PHASES, PHASES))
     last = min(last, int(REPLAYED / (cells * many)) + 1)
-    own = np.flatnonzero(store.trip < last)
+    own = history.given + np.flatnonzero(store.trip[history.given :] < last)
     slips = own[store.mode[own] != 0]
     drawn = slips[np.linspace(0, len(slips) - 1, many // 2).astype(int)] if len(slips) else slips
     middles = store.phase_from[drawn] + 0.5 * store.speed[drawn] + 0.25 * store.bend[drawn]

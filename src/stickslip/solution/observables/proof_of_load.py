@@ -68,6 +68,7 @@ def comparable(history: History) -> Places:
     store, trips = history.store, history.store.trip
     lasting, since = store.speed + store.bend, trips * history.round_trip_time + store.phase_from
     known = lasting > SHORT_STEP * np.maximum(history.round_trip_time, since)
+    known[: history.given] = False
     for first, leaped in history.creep[:, :2]:
         known &= (trips < first) | (trips > first + leaped)
     return np.flatnonzero(known)

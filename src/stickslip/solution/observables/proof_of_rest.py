@@ -40,6 +40,7 @@ def _recorded(history: History) -> Places:
     """Return the recorded rests, without leaps over creep, or an even share of them."""
     store = history.store
     n = np.flatnonzero((store.mode == 0) & ~np.isin(store.trip, history.creep[:, 0]))
+    n = n[n >= history.given]
     return n[np.unique(np.linspace(0, len(n) - 1, RECORDED).astype(int))] if len(n) > RECORDED else n
 
 
@@ -112,6 +113,7 @@ def _where_slip_begins(history: History) -> float:
     rests = (store.mode[:-1] == 0) | history.rests[:-1]
     leaps = np.isin(store.trip, history.creep[:, 0])
     n = np.flatnonzero(rests & (store.mode[1:] != 0) & ~(leaps[:-1] | leaps[1:])) + 1
+    n = n[n > history.given]
     if not len(n):
         return 0.0
     varies = problem.normal_load is not None

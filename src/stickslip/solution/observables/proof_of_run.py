@@ -72,7 +72,7 @@ def proof_of_run(history: History) -> ProofOfRun:
         **{field.name: getattr(contact, field.name) for field in fields(Proof)},
         states=states.missed,
         states_unproven=states.unproven,
-        pieces=len(history),
+        pieces=len(history) - history.given,
     )
     if history.forgotten:
         return steps

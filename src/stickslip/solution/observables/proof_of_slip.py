@@ -70,6 +70,6 @@ def _of_times(history: History, n: Places) -> float:
 def _of_rates(history: History, n: Places) -> float:
     """Return the largest jump of the slip rate behind one of pieces n."""
     store = history.store
-    n = n[store.cause[n + 1] != Cause.STOP]
+    n = n[(store.cause[n + 1] != Cause.STOP) & (n >= history.given)]
     ends: Floats = store.rate[n].sum(axis=1)
     return float(np.max(np.abs(store.rate[n + 1, 0] - ends), initial=0.0))

@@ -67,7 +67,8 @@ def states_proven(history: History) -> StatesProven:
 
 def _with_states(history: History) -> Places:
     """Return the pieces of a history whose states are looked at: all but leaps, or a share of them in a long run."""
-    return chosen_steps(history.store, np.flatnonzero(~np.isin(history.store.trip, history.creep[:, 0])))
+    n = np.flatnonzero(~np.isin(history.store.trip, history.creep[:, 0]))
+    return chosen_steps(history.store, n[n >= history.given])
 
 
 def sizes(history: History, n: Places, i: int) -> Floats:
@@ -132,6 +133,7 @@ def missed_at_joints(history: History) -> float:
     trips = store.trip
     leaps = np.isin(trips, history.creep[:, 0])
     n = np.flatnonzero(~(leaps[:-1] | leaps[1:]))
+    n = n[n >= history.given]
     worst = 0.0
     for i, start in enumerate(problem.contact_states[: len(problem.friction.states)]):
         series = store.state[:, i]
@@ -141,7 +143,7 @@ def missed_at_joints(history: History) -> float:
             jump += _coupled(history, n)
         both = np.maximum(size[n], size[n + 1])
         worst = max(worst, float(np.max(np.abs(jump) / np.where(both > 0.0, both, 1.0), initial=0.0)))
-        if len(trips) and trips[0] == 0 and store.phase_from[0] == 0.0 and size[0] > 0.0:
+        if len(trips) and trips[0] == 0 and store.phase_from[0] == 0.0 and size[0] > 0.0 and not history.given:
             worst = max(worst, abs(float(series[0, 0]) - start) / float(size[0]))
     return worst
 

@@ -30,6 +30,8 @@ def begin_with(run: ExactRun, edges: Floats, series: Floats, rate: float, beside
         rows = series.reshape(len(series), -1, TERMS)
         run.begin_with_rows(rows)
         series = FirstCells.of(cast(OfLayers, run.problem.body)).as_one(rows)
+    else:
+        run.begun_with = series[:, None]
     _put_wave(run, edges, series)
 
 

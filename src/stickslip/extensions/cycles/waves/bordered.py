@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stickslip.extensions.cycles.path import NoCycleError
+from stickslip.extensions.cycles.waves.image import Image
 from stickslip.extensions.cycles.waves.krylov import Operator, solved
-from stickslip.extensions.cycles.waves.orbit import MOST_DIRECTIONS, Image
+from stickslip.extensions.cycles.waves.orbit import MOST_DIRECTIONS
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn
 from stickslip.foundation.arrays import Floats
 

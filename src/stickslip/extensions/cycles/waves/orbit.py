@@ -18,19 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import Positions
-from stickslip.extensions.cycles.orbit import STEADY_SHARE
-from stickslip.extensions.cycles.waves.krylov import Operator, largest, leading, solved
+from stickslip.extensions.cycles.orbit import is_steady_sliding
+from stickslip.extensions.cycles.waves.image import Image, difference, grown, missed_share, slopes_at
+from stickslip.extensions.cycles.waves.krylov import largest, leading, solved
 from stickslip.extensions.cycles.waves.mesh import RESOLVED, WaveMesh, mesh_of
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
-from stickslip.extensions.cycles.waves.slopes_of_return import is_known, slopes_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 from stickslip.solution import Solution
 
-SMALL_NUDGE, FINE_NUDGE = 1e-6, 5e-6
-"""Sizes of disturbances (1, shares of the extent): to one side for Newton's iteration, to both for multipliers."""
 EVEN_PIECES = 24
 """Number of pieces of the mesh on which waves of a branch are compared (1)."""
 MOST_ITERATIONS, MOST_HALVINGS = 14, 5
@@ -45,8 +43,6 @@ MISSED_BETWEEN = 1e-7
 """Between the points of its mesh a wave misses its start by no more than this share (1) of its extent, in the mean."""
 LINEAR_SHARE, MOST_DIRECTIONS = 1e-4, 60
 """Newton's equation is solved to this share (1), with no more disturbances than this."""
-MOST_COLUMNS = 800
-"""The derivative of a return is a matrix up to this number of rows (1): a larger one takes longer than differences of runs."""
 MANY_MULTIPLIERS, LEAST_LARGE = 6, 0.5
 """Most multipliers (1), and the size (1) below which all but the first are left out, or roughly known if by differences of runs."""
 
@@ -152,58 +148,6 @@ class WaveOrbit:
         return leading(grown(image, self.section), start, MANY_MULTIPLIERS, large, MOST_DIRECTIONS)
 
 
-@dataclass(frozen=True)
-class Image:
-    """The return as a map of vectors: states and wave at the points of the mesh of a place, over their extents."""
-
-    place: WavePlace
-    guess: float
-
-    @cached_property
-    def scale(self) -> Floats:
-        """The extents of its numbers and of its wave."""
-        return self.place.scale
-
-    @cached_property
-    def start(self) -> Floats:
-        """The place itself."""
-        return self.place.vector / self.scale
-
-    def of(self, vector: Floats, section: WaveSection) -> tuple[Floats, WaveReturn]:
-        """Return where a start on a section goes, and its run."""
-        place = self.place.moved_to(vector * self.scale).over(section.problem.round_trip_time)
-        met = section.returned(place, self.guess)
-        return met.on(place.mesh).vector / self.scale, met
-
-
-def slopes_at(met: WaveReturn) -> Floats | None:
-    """Return the derivative of a return over the scales of its `Image`; None if its run does not tell it."""
-    scale = Image(met.start, met.time).scale
-    return slopes_of(met, scale) if len(scale) <= MOST_COLUMNS and is_known(met) else None
-
-
-def grown(image: Image, section: WaveSection) -> Operator:
-    """Return what disturbances of a place become, by differences of two runs."""
-
-    def along(way: Floats) -> Floats:
-        step = FINE_NUDGE / np.abs(way).max()
-        ends = [image.of(image.start + sign * step * way, section)[0] for sign in (1.0, -1.0)]
-        return np.asarray((ends[0] - ends[1]) / (2.0 * step))
-
-    return along
-
-
-def difference(image: Image, section: WaveSection, missed: Floats) -> Operator:
-    """Return the derivative of the miss of a return, by differences from the miss at the place itself."""
-
-    def along(way: Floats) -> Floats:
-        step = SMALL_NUDGE / np.abs(way).max()
-        at = image.start + step * way
-        return np.asarray((image.of(at, section)[0] - at - missed) / step)
-
-    return along
-
-
 def fitted_mesh(met: WaveReturn, share: float) -> WaveMesh:
     """Return the mesh for the wave at a return that misses its start by a share (1): finer ones would resolve what is yet wrong."""
     return mesh_of(met.source, met.source.kinks(met.time), max(RESOLVED, RESOLVED_OF_MISS * share))
@@ -240,12 +184,6 @@ def spread(place: WavePlace) -> WavePlace:
 def coordinates(place: WavePlace) -> Floats:
     """Return the numbers of a place and its wave at points that are evenly spread over a round trip."""
     return spread(place).vector
-
-
-def missed_share(met: WaveReturn) -> float:
-    """Return by what share (1) of the extent a return misses its start."""
-    start = Image(met.start, met.time)
-    return float(np.abs(met.landed.vector / start.scale - start.start).max())
 
 
 def closed(section: WaveSection, place: WavePlace, guess: float) -> WaveOrbit:
@@ -299,10 +237,18 @@ def _shortened(image: Image, section: WaveSection, step: Floats, share: float) -
 
 def checked(orbit: WaveOrbit) -> WaveOrbit:
     """Refuse steady sliding, and waves that their mesh does not resolve. Raises InputError."""
-    now = orbit.closed
+    now, problem = orbit.closed, orbit.section.problem
     piece = np.repeat(np.arange(now.first, now.piece + 1), 3)
-    rates = now.history.rate(Positions.inside(piece, np.resize([0.0, 0.5, 1.0], len(piece))))
-    if np.ptp(rates) <= STEADY_SHARE * now.history.problem.first_pull_rate:
+    at = Positions.inside(piece, np.resize([0.0, 0.5, 1.0], len(piece)))
+    rates = now.history.rate(at)
+
+    def step() -> float:
+        image = Image(now.start, now.time)
+        found, _ = _newton_step(image, orbit.section, now, now.landed.vector / image.scale - image.start)
+        wave = np.abs(found * image.scale)[-len(now.start.wave) :]
+        return float(wave.max() / np.ptp(2.0 * problem.body.echo_impedance * rates - now.history.excess(at)))
+
+    if is_steady_sliding(float(np.ptp(rates)), problem.first_pull_rate, step):
         raise InputError("cycle: Newton's iteration leads to steady sliding: no other cycle is near this run")
     if now.between > MISSED_BETWEEN:
         raise InputError(

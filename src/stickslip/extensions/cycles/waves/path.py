@@ -12,20 +12,9 @@ from stickslip.extensions.cycles.edges import CycleEdge
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.bordered import Bordered
 from stickslip.extensions.cycles.waves.ends import EndOfPart, cut_anew, end_of_rests, with_rest
+from stickslip.extensions.cycles.waves.image import SMALL_NUDGE, Image, difference, missed_share, slopes_at
 from stickslip.extensions.cycles.waves.of_driver import moving
-from stickslip.extensions.cycles.waves.orbit import (
-    LINEAR_SHARE,
-    SMALL_NUDGE,
-    Image,
-    WaveOrbit,
-    checked,
-    coordinates,
-    difference,
-    even_mesh,
-    missed_share,
-    slopes_at,
-    with_sharp_kinks,
-)
+from stickslip.extensions.cycles.waves.orbit import LINEAR_SHARE, WaveOrbit, checked, coordinates, even_mesh, with_sharp_kinks
 from stickslip.extensions.cycles.waves.section import WavePlace, WaveReturn, WaveSection
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
     """Return the energies of a run at times (s) since the history's epoch, as differences from their values at an origin (s).
 
-    The origin is by default the start of the run. The dataset holds work, stored (elastic + kinetic), elastic, kinetic, heat,
+    The origin is by default the start of the run, or of its motion behind a given wave. The dataset holds work, stored (elastic + kinetic), elastic, kinetic, heat,
     damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). For layers it has elastic_in_layer and
     kinetic_in_layer, too, along a dimension `layer`: 1 is that at the contact, and -1 that on its other side. Work is the energy
     input of the driver, net of the energy radiated through a driver of finite impedance. Balance is work - stored - heat - damped,
@@ -37,7 +37,8 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     import xarray as xr  # here, because it takes a quarter of a second to import
 
     time = np.atleast_1d(np.asarray(t, float))
-    begin = history.span[0] if origin is None else origin
+    begin = history.begun if origin is None else origin
+    history.check_begun(np.append(begin, time))
     parts = energies(history, history.find(np.append(begin, time), "right"))
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
     since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
