@@ -109,7 +109,7 @@ def test_help_needs_few_seconds_of_the_processor():
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("name", templates.template_names())
 def test_new_prints_the_template(command, name):
     assert command("new", name).out == templates.template(name)
