@@ -38,7 +38,7 @@ def page(chromium: Any, server: Served) -> Iterator[Any]:
     assert watched.faults == []
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(("width", "height"), SIZES)
 @pytest.mark.parametrize("large", [False, True])
 def test_the_sentence_is_shown_whole(page: Any, width: int, height: int, large: bool) -> None:
