@@ -61,7 +61,7 @@ WORDS = [
 ]
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("typed", "wanted"), WORDS, ids=[" ".join(typed) for typed, _ in WORDS])
 def test_a_command_in_the_words_of_a_trade_is_answered_with_ours(
     typed: list[str], wanted: str, capsys: pytest.CaptureFixture[str]

@@ -126,7 +126,7 @@ OPTIONS: list[tuple[str, Any, str]] = [
 ]
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("run", [ss.simulate, ss.catalogue])
 @pytest.mark.parametrize(("name", "given", "message"), OPTIONS)
 def test_options_of_a_run_are_checked(run: Callable[..., Any], name: str, given: Any, message: str) -> None:
@@ -248,7 +248,7 @@ def takes_arguments(one: Any) -> bool:
     return not issubclass(one, (tuple, Exception, *MADE_BY_RUNS)) and not inspect.isabstract(one)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("name", [name for name, one in PUBLIC.items() if takes_arguments(one)])
 def test_everything_public_refuses_wrong_and_missing_arguments_in_one_line(name: str) -> None:
     call, who = PUBLIC[name], PUBLIC[name].__name__

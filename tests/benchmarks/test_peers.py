@@ -54,6 +54,7 @@ def test_jitcdde_agrees_with_the_reference() -> None:
         assert error(jitcdde_peer, DRIVEN, 1e-8) < 5e-7
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_same_algorithm_in_c_takes_the_same_steps(case: Case) -> None:

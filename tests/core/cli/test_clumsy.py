@@ -93,7 +93,7 @@ def stand_in_order(wanted: str, text: str) -> bool:
     return True
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.usefixtures("inside")
 @pytest.mark.parametrize("typed", REFUSED)
 def test_a_mistake_is_refused_in_one_line_with_the_cure(typed: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -70,6 +70,7 @@ def test_version_prints_the_version(command):
     assert command("--version").out == f"stickslip {__version__}\n"
 
 
+@pytest.mark.slow
 def test_figures_have_the_size_and_the_dots_asked_for(command, tmp_path):
     """16 cm x 10 cm at 300 dots per inch, one column of 3.5 inches, 200 dots per inch by default; a PDF in points of 1/72 inch."""
     assert command("check", "fig6-slab", "--figure", "a.png", "--size", "16 x 10 cm", "--dpi", "300").code == 0
@@ -109,7 +110,7 @@ def test_help_needs_few_seconds_of_the_processor():
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("name", templates.template_names())
 def test_new_prints_the_template(command, name):
     assert command("new", name).out == templates.template(name)

@@ -9,7 +9,7 @@ import pytest
 from tests.command_line import SHELLS, Command, completions
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("shell", SHELLS)
 @pytest.mark.parametrize(
     ("typed", "offered"),

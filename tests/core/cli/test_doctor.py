@@ -203,6 +203,7 @@ def test_machine_code_that_did_not_come_is_a_fault_only_without_the_compiler(
     assert shown.err.endswith(f"{fault}\n" if fault else "")
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     ("there", "said"), [(True, ""), (False, "NUMBA_DISABLE_JIT is set, so that nothing compiles it: unset it\n")]

@@ -80,7 +80,7 @@ CASES = [
 ]
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("arguments", "message"), CASES)
 def test_bad_input_gives_one_line_and_writes_nothing(command: Command, arguments: list[str], message: str) -> None:
     check_refusal(command, arguments, message)

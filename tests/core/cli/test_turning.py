@@ -50,7 +50,7 @@ LONG = {("run", "string"), ("field", "sections")}
 """Doors and bodies whose pictures take seconds: those of the other string are drawn in every run of the tests."""
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize(
     ("door", "body"),
     [pytest.param(*one, marks=pytest.mark.slow) if one in LONG else one for one in product(DOORS, SCENARIOS)],

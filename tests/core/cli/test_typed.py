@@ -44,7 +44,7 @@ def told(process: Any, ctx: Any, value: Any) -> tuple[str, str]:
     return "made", repr(made)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("name", [*get_command(app).commands])
 def test_every_option_takes_what_typer_takes(name: str) -> None:
     command = get_command(app).get_command(None, name)

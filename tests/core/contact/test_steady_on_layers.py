@@ -62,7 +62,7 @@ def test_layers_of_one_kind_resist_as_a_uniform_slab_does(driver: float):
         assert response(cut(0.2, 0.8), slow) * slow == pytest.approx(Z * SPEED / THICKNESS, rel=1e-14)
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=11)
 @pytest.mark.parametrize("driver", [math.inf, 3.0, 0.4, 0.0, 1.0])
 @pytest.mark.parametrize("share", [-1.1, -0.97, -0.5, -1e-7, 0.0, 0.3])
 def test_without_mass_they_grow_as_on_a_uniform_slab(driver: float, share: float):

@@ -13,7 +13,7 @@ from tests.core.engine.problems import KINDS, away_from_jumps
 from tests.core.run.reference.method_of_steps import method_of_steps
 
 
-@pytest.mark.sampled(every=39)
+@pytest.mark.sampled(every=78)
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_every_law_under_every_body_balances_energy_and_agrees_with_scipy(kind: str, body: str) -> None:

@@ -238,6 +238,7 @@ def test_a_long_run_that_was_stopped_goes_on_without_a_number_of_pieces(tmp_path
     assert len(more.history) > 1.25 * len(stopped.history)
 
 
+@pytest.mark.slow
 def test_a_history_takes_a_share_of_the_memory_that_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """12 MB are counted on, of which a history may take 2: some 4 000 pieces."""
     file, short = tmp_path / "run.nc", 0.5 * EXACT_TRIPS * ROUND

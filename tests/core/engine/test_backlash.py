@@ -265,6 +265,7 @@ def turning(play: float = 0.02, **more: Any) -> ss.Problem:
     return ss.Problem(body, ss.friction.Coulomb(0.25, 0.18), pull_rate=pull, initial_load=0.0)
 
 
+@pytest.mark.slow
 def test_a_body_that_turns_obeys_the_same_numbers_and_a_run_is_resumed_to_the_bit(tmp_path: Any) -> None:
     given, t = turning(), np.linspace(0.0, 5.0, 201)
     whole = ss.simulate(given, 5.0)

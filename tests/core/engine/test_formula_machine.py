@@ -76,7 +76,7 @@ def test_functions_of_a_law_do_what_their_text_says(kind: str) -> None:
         assert agreement(writer, part, rng) > 0.97, part
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("seed", range(24))
 def test_random_formulas_do_what_their_text_says(seed: int) -> None:
     rng, states = random.Random(seed), seed % 3
@@ -101,7 +101,7 @@ HELPERS |= {"exp_radius": 3, "sine_radius": 3, "log_radius": 2, "power_radius": 
 HELPERS |= {"fused": 3, "min": 2, "max": 2, "abs": 1, "sqrt": 1, "sin": 1, "cos": 1, "exp": 1, "log": 1}
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=10)
 @pytest.mark.parametrize("part", ["radii", "radii_in_lanes"])
 @pytest.mark.parametrize("helper", HELPERS)
 def test_helpers_do_what_their_text_says(helper: str, part: str) -> None:

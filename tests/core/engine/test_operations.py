@@ -147,7 +147,7 @@ CHECKS = {
 """What compares each rule; `test_discs` compares those on discs."""
 
 
-@pytest.mark.sampled(every=6)
+@pytest.mark.sampled(every=14)
 @pytest.mark.parametrize("name", OPERATIONS)
 @pytest.mark.parametrize("check", list(dict.fromkeys(CHECKS.values())), ids=lambda check: check.__name__)
 def test_every_rule_of_every_operation_agrees_with_mpmath(name: str, check: Callable[[Operation], None]) -> None:

@@ -140,7 +140,6 @@ ON_A_SLAB: dict[str, tuple[Truth, float, tuple[float, ...]]] = {
 """Law, load (Pa) and states at first."""
 
 
-@pytest.mark.slow
 @pytest.mark.sampled(every=14)
 @pytest.mark.parametrize("name", ON_A_SLAB)
 def test_a_slab_follows_the_method_of_steps(name: str) -> None:

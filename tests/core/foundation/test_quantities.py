@@ -113,7 +113,7 @@ def test_other_units_are_refused(unit: str, si: str, message: str) -> None:
     assert str(caught.value) == message
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=15)
 @pytest.mark.parametrize("name", sorted(set(TABLE_OF_UNITS) - set(SPELLINGS) - {f"{prefix}Nm" for prefix in _TORQUES}))
 def test_every_name_of_the_table_is_what_the_library_of_units_says(name: str) -> None:
     assert tabulated(name) == _looked_up(name, "")

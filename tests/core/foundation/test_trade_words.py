@@ -113,7 +113,7 @@ WORDS = [
 ]
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("typed", "wanted"), WORDS, ids=[" ".join(typed) for typed, _ in WORDS])
 def test_a_command_in_the_words_of_a_trade_is_answered_with_ours(
     typed: list[str], wanted: str, capsys: pytest.CaptureFixture[str]
@@ -190,7 +190,7 @@ CALLS: list[tuple[Callable[[], Any], str]] = [
 ]
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("call", "wanted"), CALLS, ids=[wanted for _, wanted in CALLS])
 def test_python_in_the_words_of_a_trade_is_answered_with_ours(call: Callable[[], Any], wanted: str) -> None:
     with pytest.raises((AttributeError, InputError), match=re.escape(wanted)):

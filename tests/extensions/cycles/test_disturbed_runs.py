@@ -63,6 +63,7 @@ STEEL = ss.friction.ExponentialStribeck(static=0.5, dynamic=0.3, rate="50 mm/s")
 STRONGER = ss.friction.RateAndState(reference=0.6, a=0.015, b=0.01, distance="10 um")
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("problem", "times", "to"),
     [

@@ -145,6 +145,7 @@ def test_with_a_lag_no_disturbance_grows_faster_than_in_1d() -> None:
     assert rates[-1] == pytest.approx(2.25**2 / 100.0**2, rel=0.05, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_disturbance_of_steady_sliding_grows_as_the_closed_form_says() -> None:
     """Wavenumber 0.3 over c times the lag, at 0.5 m/s; runs with steps in a ratio of two, extrapolated at order 2, to 0.3 %."""
     slab = ss.ElasticSlab(2800.0, SPEED, 1e4, 1e8, driver_impedance=IMPEDANCE)

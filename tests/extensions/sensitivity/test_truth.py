@@ -79,7 +79,7 @@ def test_the_recurrence_is_that_of_the_closed_form_and_the_last_event_may_be_ask
 
 
 @pytest.mark.parametrize("seed", range(30))
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=8)
 def test_the_error_estimate_covers_the_error_and_is_small(seed: int) -> None:
     draw = np.random.default_rng(seed)
     numbers = {name: value * float(draw.uniform(0.7, 1.4)) for name, value in BLOCK.items()}

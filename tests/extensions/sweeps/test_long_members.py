@@ -51,6 +51,7 @@ def test_long_members_run_when_all_others_are_done(monkeypatch: pytest.MonkeyPat
             assert np.array_equal(found[name].values[n], by_itself[name].values[0], equal_nan=name not in ("reason", "status"))
 
 
+@pytest.mark.slow
 def test_a_sweep_stopped_before_its_long_members_has_all_others_and_continues_to_the_same_files(tmp_path: Path) -> None:
     sweep(tmp_path / "whole.zarr")
 

@@ -272,7 +272,7 @@ class Integrator:
             self.onsets += [self.t] * (way != 0 and side.way == 0)
 
 
-@pytest.mark.sampled(every=99)
+@pytest.mark.sampled(every=90)
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("kind", ["steps", "ramps", "sinusoid"])
 @pytest.mark.parametrize("body", BODIES)

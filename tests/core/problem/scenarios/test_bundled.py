@@ -26,7 +26,7 @@ def test_every_scenario_has_its_trade_and_only_those_of_the_paper_are_of_the_pap
     assert set(found["The source paper"]) == {"block-or-slab", *PAPERS}
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=10)
 @pytest.mark.parametrize("name", library.names())
 def test_every_scenario_explains_itself_and_round_trips(name: str) -> None:
     scenario = load_scenario(name)

@@ -27,7 +27,7 @@ def growth_in(text: str) -> float:
     return float(text.partition("grows at ")[2].split(" ")[0])
 
 
-@pytest.mark.sampled(every=6)
+@pytest.mark.sampled(every=15)
 @pytest.mark.parametrize("name", library.in_1d())
 def test_every_bundled_scenario_can_be_examined(name: str) -> None:
     found = examine(load_scenario(name))

@@ -43,7 +43,7 @@ def test_other_values_are_those_of_an_edited_file(name: str, values: dict[str, A
     assert typed.problem == expected.problem
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=18)
 @pytest.mark.parametrize("name", sorted(ss.scenarios))
 def test_each_parameter_can_be_given_the_value_that_it_has(name: str) -> None:
     scenario = ss.scenarios[name]

@@ -43,7 +43,7 @@ def document(body: type, law: type) -> str:
     return f'[body]\nkind = "{body.kind}"\n{values(body)}{friction}[initial]\nload = 1.0\n{state}[run]\nduration = 2\n'
 
 
-@pytest.mark.sampled(every=6)
+@pytest.mark.sampled(every=15)
 @pytest.mark.parametrize("law", LAWS.values())
 @pytest.mark.parametrize("body", BODIES.values())
 def test_every_body_with_every_law_is_read_and_written(body: type, law: type) -> None:
@@ -93,7 +93,7 @@ def test_starters_explain_every_key_and_run_as_they_are(name: str) -> None:
     assert all(f'kind = "{law}"' in text for law in LAWS)
 
 
-@pytest.mark.sampled(every=10)
+@pytest.mark.sampled(every=27)
 @pytest.mark.parametrize("name", library.STARTERS)
 @pytest.mark.parametrize("law", LAWS.values())
 def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[FrictionLaw]) -> None:

@@ -41,6 +41,7 @@ def test_a_contact_settles_against_a_steep_barrier_in_few_steps(name: str) -> No
 NEEDLES = "0.3+0.3*(sin(3*pi*v)**16)**4"
 
 
+@pytest.mark.slow
 def test_a_block_meets_needles_of_the_slip_rate() -> None:
     """m = 1, K = 20, N = 10: peak slip 0.769388 m, where the slip rate first returns to zero. To 1e-7."""
     block = ss.SpringBlock(1.0, 20.0, 10.0)

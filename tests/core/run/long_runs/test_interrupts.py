@@ -25,6 +25,7 @@ def test_a_signal_at_any_phase_of_a_run_is_heard(steps: int, monkeypatch: pytest
     assert not lost(lambda: ss.simulate(problem, duration), heard)
 
 
+@pytest.mark.slow
 def test_a_signal_at_any_phase_of_a_catalogue_is_heard(tmp_path: Path) -> None:
     problem, duration = bundled("cycles-block", 10.0)
 

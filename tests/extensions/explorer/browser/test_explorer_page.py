@@ -144,6 +144,7 @@ def test_one_cursor_moves_through_all_panels_by_slider_key_click_and_mark(shown:
     page.locator(".clock", has_text="5.71").wait_for()
 
 
+@pytest.mark.slow
 def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
     page = shown.page
     page.locator(".bar > .start").click()

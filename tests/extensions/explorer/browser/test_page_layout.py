@@ -38,7 +38,7 @@ def page(chromium: Any, server: Served) -> Iterator[Any]:
     assert watched.faults == []
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(("width", "height"), SIZES)
 @pytest.mark.parametrize("large", [False, True])
 def test_the_sentence_is_shown_whole(page: Any, width: int, height: int, large: bool) -> None:
@@ -54,11 +54,13 @@ def test_the_sentence_is_shown_whole(page: Any, width: int, height: int, large: 
     assert below["y"] + below["height"] <= panels["y"] + 1
 
 
+@pytest.mark.slow
 def test_sentences_have_the_font_of_the_page(page: Any) -> None:
     first = "(one) => getComputedStyle(one).fontFamily.split(',')[0]"
     assert page.locator(".sentence").evaluate(first) == page.locator("body").evaluate(first)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_buttons_of_the_bar_have_one_height_one_baseline_and_room_between_them(page: Any, width: int, height: int) -> None:

@@ -293,7 +293,7 @@ def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
                 assert told("\n".join(text)).startswith("a")
 
 
-@pytest.mark.sampled(every=8)
+@pytest.mark.sampled(every=20)
 @pytest.mark.parametrize("seed", range(30))
 @pytest.mark.parametrize("layout", FILES)
 def test_a_damaged_file_is_read_or_refused_in_one_line(layout: str, seed: int) -> None:
