@@ -214,8 +214,10 @@ class Following:
             new = path.step(now, step)
         except NoCycleError:
             return None
-        same = (shortest and path.at_onset) or abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
-        straight = abs(float(new.way @ now.way)) >= STRAIGHT
+        same = abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
+        # Next to where rest is grazed a branch turns at once.
+        straight = abs(float(new.way @ now.way)) >= STRAIGHT or (shortest and path.at_onset and same)
+        same = same or (shortest and path.at_onset)
         if not (same and straight) or not is_of_kind(new.orbit, now.orbit, exactly=not shortest):
             return None
         return new if new.way @ now.way > 0.0 else replace(new, way=-new.way)
