@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from stickslip.contact import steady_slidings
 from stickslip.extensions.cycles.at_ends import grazes_arrest, least_lag, rests_for_ever, touches_stop
 from stickslip.extensions.cycles.found import FoundCycle, kind_of
+from stickslip.extensions.cycles.grazing import followed_to_grazing, hardly_holds, no_rest_left
 from stickslip.extensions.cycles.lag import is_wound, usual_rate
 from stickslip.extensions.cycles.measures import least_rate
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
@@ -131,31 +132,38 @@ def first_stick(path: Path, last: PlaceOnBranch) -> tuple[CycleEdge, PlaceOnBran
 
 def loss_of_stick(path: Path, last: PlaceOnBranch, beyond: float) -> tuple[CycleEdge, PlaceOnBranch]:
     """Return where cycles of one kind end, with rest or stops, between a last one and a value (SI) without one, by bisection."""
-    before, good, bad, kind = last, last, beyond, kind_of(last.orbit)
+    before, good, bad, kind, other = last, last, beyond, kind_of(last.orbit), None
     while abs(bad - good.value) > max(SMALLEST_BISECTED * path.range, 4.0 * np.spacing(abs(bad))):
         middle = 0.5 * (good.value + bad)
         try:
-            found = path.at_value(middle, good.orbit.place, good.orbit.period)
+            found = path.at_value(middle, good.orbit.place, good.orbit.period, good.way)
         except NoCycleError:
-            bad = middle
+            bad, other = middle, None
             continue
         if kind_of(found.orbit) != kind:
-            bad = middle
+            bad, other = middle, found.orbit
             continue
         before, good = good, found
-    name = _name_of_end(good.orbit)
-    if name == END_OF_HUNTING and before is not good:  # runs end before it, where a rest lasts too long: on a line to a lag of 0
-        now, then = least_lag(good.orbit), least_lag(before.orbit)
-        return CycleEdge(name, good.value + (good.value - before.value) * now / (then - now), good.orbit), good
-    return CycleEdge(name, 0.5 * (good.value + bad), good.orbit), good
+    value = 0.5 * (good.value + bad)
+    if touches_stop(good.orbit):
+        return CycleEdge(GRAZING, value, good.orbit), good
+    if rests_for_ever(good.orbit):
+        if before is not good:  # runs end before it, where a rest lasts too long: on a line to a lag of 0
+            now, then = least_lag(good.orbit), least_lag(before.orbit)
+            value = good.value + (good.value - before.value) * now / (then - now)
+        return CycleEdge(END_OF_HUNTING, value, good.orbit), good
+    grazed = followed_to_grazing(path, good)
+    if grazed is not None:
+        return CycleEdge(LOSS_OF_STICK if grazed.no_rest_left else GRAZING, grazed.value, grazed.orbit), good
+    return CycleEdge(_name_of_end(good.orbit, rests_beyond=other is not None and other.sticks), value, good.orbit), good
 
 
-def _name_of_end(orbit: FoundCycle) -> str:
+def _name_of_end(orbit: FoundCycle, *, rests_beyond: bool) -> str:
     """Return what happens next to the end of a branch of cycles of one kind."""
-    if touches_stop(orbit):
+    if hardly_holds(orbit):
+        return LOSS_OF_STICK if no_rest_left(orbit) else GRAZING
+    if rests_beyond and not len(orbit.place):
         return GRAZING
-    if rests_for_ever(orbit):
-        return END_OF_HUNTING
     return LOSS_OF_STICK if not is_wound(orbit.section.problem) or grazes_arrest(orbit) else NOT_FOUND
 
 

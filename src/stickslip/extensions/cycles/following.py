@@ -24,7 +24,7 @@ from stickslip.extensions.cycles.edges import (
     first_stick,
     loss_of_stick,
 )
-from stickslip.extensions.cycles.found import kind_of
+from stickslip.extensions.cycles.found import is_of_kind, kind_of
 from stickslip.extensions.cycles.hunting import end_of_hunting
 from stickslip.extensions.cycles.lag import usual_rate
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
@@ -185,6 +185,8 @@ class Following:
             if halves is not None and past_end(halves.value, self.ends) is None:
                 self._edge(halves)
                 return None
+            if halves is None and kind_of(new.orbit) != kind_of(now.orbit):  # once more round, but it is not found where it begins
+                return self._at_end(path, now)
             if past_end(new.value, self.ends) is not None:
                 last = between(path, now, new, self.ends)
                 if last is not None:
@@ -212,9 +214,11 @@ class Following:
             new = path.step(now, step)
         except NoCycleError:
             return None
-        same = (shortest and path.at_onset) or abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
-        straight = abs(float(new.way @ now.way)) >= STRAIGHT
-        if not (same and straight) or kind_of(new.orbit) != kind_of(now.orbit):
+        same = abs(new.orbit.period - now.orbit.period) <= SAME_PERIOD * now.orbit.period
+        # Next to where rest is grazed a branch turns at once.
+        straight = abs(float(new.way @ now.way)) >= STRAIGHT or (shortest and path.at_onset and same)
+        same = same or (shortest and path.at_onset)
+        if not (same and straight) or not is_of_kind(new.orbit, now.orbit, exactly=not shortest):
             return None
         return new if new.way @ now.way > 0.0 else replace(new, way=-new.way)
 

@@ -94,6 +94,22 @@ class FoundCycle(Protocol):
         """Return the run of one period."""
 
 
-def kind_of(motion: Any) -> tuple[bool, int]:
-    """Return whether a cycle, or a return, rests, and how often it meets a hard stop: cycles of one kind change smoothly."""
-    return motion.sticks, getattr(motion, "impacts", 0)
+def kind_of(motion: Any) -> tuple[bool, int, tuple[int, ...], int]:
+    """Return what cycles, or returns, have in common that change smoothly.
+
+    That is whether they rest, and how often they meet a hard stop, begin to slip and to rest, and go round before they end.
+    """
+    counts = getattr(motion, "slips", ())
+    return motion.sticks, getattr(motion, "impacts", 0), tuple(counts), getattr(motion, "rounds", 1)
+
+
+def is_of_kind(new: FoundCycle, now: FoundCycle, *, exactly: bool) -> bool:
+    """Return True if a cycle may be next to another one on a branch.
+
+    A wave that passes the pull rate is no edge, but over a longer step it may be another cycle; `exactly` forbids it. The cycle
+    of twice a period ends in one that goes round twice.
+    """
+    same_passages = getattr(new.closed, "passed", 1) == getattr(now.closed, "passed", 1)
+    (*kind, rounds), (*kind_now, rounds_now) = kind_of(new), kind_of(now)
+    halved = rounds == 2 and rounds_now == 1 and same_passages
+    return kind == kind_now and (rounds == rounds_now or halved) and (same_passages or not exactly)

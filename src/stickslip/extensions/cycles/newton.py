@@ -13,7 +13,7 @@ import numpy as np
 
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.orbit import Orbit, extent_of, is_steady_sliding, missed_share
-from stickslip.extensions.cycles.section import Return, Section, crossings, places_of
+from stickslip.extensions.cycles.section import Return, Section
 from stickslip.extensions.cycles.short_runs import ROUGH_RTOL
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -24,8 +24,6 @@ CLOSED_SHARE = 1e-11
 """Newton's iteration ends where the return misses the start by less than this share (1) of the cycle's extent."""
 GOOD_ENOUGH = 1e-7
 """A cycle is found if at last it misses by no more than this share (1)."""
-SAME_PLACE, SAME_TIME = 1e-6, 1e-2
-"""A cycle is back where it began if it misses that by no more than this share (1) of its extent, and that much (1) earlier."""
 SHORT_STEP = 1e-2
 """A step of no more than this share (1) of the extent leads so near that the next run is as exact as wished."""
 FARTHER, LARGER, SHORTEST_WAY = 4.0, 3.0, 1e-3
@@ -98,15 +96,9 @@ def _once_round(orbit: Orbit) -> Orbit:
     A run that comes to a cycle from two sides in turn is closer to itself after two periods than after one.
     """
     _check_that_it_moves(orbit)
-    met = crossings(orbit.closed.history, orbit.section.at_onset)
-    if met.time[0] >= (1.0 - SAME_TIME) * orbit.period:
+    if orbit.rounds == 1:
         return orbit
-    away = np.abs(places_of(orbit.closed.history, met, orbit.section.at_onset) - orbit.place[:, None]) / orbit.extent[:, None]
-    earlier = met.time[(away.max(axis=0) <= SAME_PLACE) & (met.time < (1.0 - SAME_TIME) * orbit.period)]
-    if not len(earlier):
-        return orbit
-    once = float(earlier[0])
-    return closed_beyond(orbit.section, orbit.section.returned(orbit.place, once), once)
+    return closed_beyond(orbit.section, orbit.section.returned(orbit.place, orbit.once), orbit.once)
 
 
 def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> NextSteps:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.section import Return, Section, coordinates, crossings
+from stickslip.extensions.cycles.section import Crossings, Return, Section, Slips, coordinates, crossings, places_of
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
@@ -26,6 +26,8 @@ HALVES_ALIKE = 2e-3
 """Cycles whose halves are closer than this share (1) of the extent are of half the period."""
 NEAR_HALF = 0.1
 """How far (1, share of the period) from half of it the middle of a doubled cycle may be."""
+SAME_PLACE, SAME_TIME = 1e-6, 1e-2
+"""A cycle is back where it began if it misses that by no more than this share (1) of its extent, and that much (1) earlier."""
 STEADY_SHARE = 1e-9
 """A slip rate that varies by less than this share (1) of the pull rate is steady sliding."""
 SLIGHT_SHARE, LEFT_SHARE = 1e-2, 0.1
@@ -68,6 +70,28 @@ class Orbit:
     def impacts(self) -> int:
         """How often the body meets a hard stop in a period."""
         return self.closed.impacts
+
+    @property
+    def slips(self) -> Slips:
+        """How often slip forwards, slip backwards and rest begin in a period."""
+        return self.closed.slips
+
+    @cached_property
+    def once(self) -> float:
+        """When it is back where it began for the first time (s)."""
+        met = crossings(self.closed.history, self.section.at_onset)
+        sooner = met.time < (1.0 - SAME_TIME) * self.period
+        if not len(self.place) or not sooner.any():
+            return self.period
+        met = Crossings(*(each[sooner] for each in met))
+        away = np.abs(places_of(self.closed.history, met, self.section.at_onset) - self.place[:, None]) / self.extent[:, None]
+        earlier = met.time[away.max(axis=0) <= SAME_PLACE]
+        return float(earlier[0]) if len(earlier) else self.period
+
+    @property
+    def rounds(self) -> int:
+        """How often it goes round before it ends (1): more than once, it is no period."""
+        return round(self.period / self.once)
 
     @property
     def grazes(self) -> bool:

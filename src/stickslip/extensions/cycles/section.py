@@ -33,6 +33,14 @@ class Crossings(NamedTuple):
     time: Floats
 
 
+class Slips(NamedTuple):
+    """How often slip forwards, slip backwards and rest begin (1)."""
+
+    forwards: int
+    backwards: int
+    rests: int
+
+
 @dataclass(frozen=True)
 class Return:
     """A run from a section to its return there."""
@@ -51,6 +59,8 @@ class Return:
     """The first piece of the history that belongs to it."""
     begin: float = 0.0
     """When it starts in its history (s)."""
+    passed: int = 1
+    """How often the section is crossed on the way, the end among them."""
 
     @property
     def missed(self) -> Floats:
@@ -85,6 +95,14 @@ class Return:
     def impacts(self) -> int:
         """How often the body meets a hard stop on the way."""
         return impacts_of(self.history, self.piece)
+
+    @cached_property
+    def slips(self) -> Slips:
+        """How often the contact begins to slip forwards and backwards, and comes to rest, on a way that closes."""
+        mode, unrecorded = self.history.store.mode[: self.piece + 1], self.history.rests[: self.piece]
+        seen = np.insert(mode, 1 + np.flatnonzero(unrecorded), 0)
+        begins = seen[seen != np.roll(seen, 1)]
+        return Slips(*(int((begins == one).sum()) for one in (1, -1, 0)))
 
 
 @dataclass(frozen=True)
@@ -131,7 +149,7 @@ class Section:
             if len(met.time) and (not len(place) or abs(met.time[nearest] - guess) <= lasts - guess):
                 piece, xi, time = int(met.piece[nearest]), float(met.place[nearest]), float(met.time[nearest])
                 end = coordinates(values_at(run.history, Positions.inside(piece, xi)), self.at_onset)[:, 0]
-                return Return(place, end, time, run.history, piece, xi, self)
+                return Return(place, end, time, run.history, piece, xi, self, passed=nearest + 1)
             if not run.status.ok:
                 raise InputError(f"cycle: a run of one period did not reach its end: {run.status}")
             lasts *= 2.0
