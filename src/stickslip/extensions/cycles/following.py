@@ -115,6 +115,8 @@ class Following:
             path, start = part
             part = self._part(path, start, length)
             length = 1.0 / self.steps
+            if part is not None and past_end(part[1].value, self.ends) is not None:
+                break  # the next one begins beyond the range
             if part is not None:
                 self._add(*part, length)
         if self.doubled:
