@@ -79,8 +79,12 @@ def test_a_branch_without_rest_ends_at_the_end_of_its_range_if_no_problem_is_bey
 @pytest.mark.parametrize(
     ("along", "to", "said"),
     [
-        ("pull_rate", 0.0, "follow: to: pull_rate must be above 0, got 0 m/s"),
-        ("pull_rate", -0.1, "follow: to: pull_rate must be above 0, got -0.1 m/s"),
+        ("pull_rate", 0.0, "follow: to: pull_rate must be above 0, got 0 m/s: a little is enough"),
+        (
+            "pull_rate",
+            -0.1,
+            "follow: to: pull_rate must be above 0, got -0.1 m/s: to pull backwards count slip the other way, and give 0.1 m/s",
+        ),
     ],
 )
 def test_a_branch_refuses_an_end_where_there_are_no_cycles(along: str, to: float, said: str) -> None:
