@@ -134,3 +134,22 @@ def test_along_a_ramp_that_comes_to_steady_sliding_the_exponent_is_the_growth_of
     found = ss.studies.lyapunov(problem, 80.0, skip=20.0)
     assert found.exponent == pytest.approx(ss.studies.steady(problem).slidings[-1].growth, rel=1e-12)
     assert found.exponent == pytest.approx(-0.5117543805, rel=1e-9)
+
+
+@pytest.mark.parametrize(("gain", "to"), [(50.0, 0.0), (0.0, 50.0)])
+def test_a_branch_along_a_ramp_refuses_to_begin_or_end_without_an_integral_gain(gain: float, to: float) -> None:
+    axis = ss.PositionLoop(MASS, KP, NORMAL, gain, 5.0)
+    start = ss.studies.cycle(ss.Problem(axis, F.Coulomb(0.4, 0.3), pull_rate=1e-3, initial_load=0.0))
+    said = (
+        r"^follow: without an integral gain the lag of an axis is no number of its cycles: begin and end with body\.integral_gain"
+    )
+    with pytest.raises(ss.InputError, match=said):
+        ss.studies.follow(start, "integral_gain", to=to, steps=3)
+
+
+def test_a_branch_refuses_to_begin_or_end_without_a_stop() -> None:
+    start = ss.studies.cycle(hunting(F.Coulomb(STATIC, DYNAMIC), 8.0, stop_ahead=0.05))
+    with pytest.raises(ss.InputError, match=r"^follow: no branch begins at body.stop_behind = inf m: give a finite one$"):
+        ss.studies.follow(start, "body.stop_behind", to=0.1)
+    with pytest.raises(ss.InputError, match=r"^follow: no branch ends at body.stop_ahead = inf m: give a finite one$"):
+        ss.studies.follow(start, "body.stop_ahead", to=math.inf)

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.extensions.cycles.edges import MEANING
 from stickslip.figures.style import image
 from tests.command_line import Command
 from tests.extensions.cycles.problems import BRAKE, coulomb, rate_and_state, stribeck
@@ -67,3 +68,10 @@ def test_the_command_says_what_is_wrong(given: tuple[str, ...], said: str, tmp_p
     file = tmp_path / "brake.toml"
     file.write_text(BRAKE, encoding="utf-8")
     assert command("cycle", str(file), *given).refusal.startswith(said)
+
+
+def test_the_page_has_a_row_for_each_edge_that_a_branch_may_name() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "cycles.md").read_text(encoding="utf-8")
+    _, _, rows = page.partition("| edge | what happens there |")
+    table, _, _ = rows.partition("\n\n")
+    assert {row.split(" | ")[0].removeprefix("| ") for row in table.splitlines()[2:]} == set(MEANING)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.contact import steady_slidings
@@ -78,8 +79,12 @@ def test_a_branch_without_rest_ends_at_the_end_of_its_range_if_no_problem_is_bey
 @pytest.mark.parametrize(
     ("along", "to", "said"),
     [
-        ("pull_rate", 0.0, "follow: to: pull_rate must be above 0, got 0 m/s"),
-        ("pull_rate", -0.1, "follow: to: pull_rate must be above 0, got -0.1 m/s"),
+        ("pull_rate", 0.0, "follow: to: pull_rate must be above 0, got 0 m/s: a little is enough"),
+        (
+            "pull_rate",
+            -0.1,
+            "follow: to: pull_rate must be above 0, got -0.1 m/s: to pull backwards count slip the other way, and give 0.1 m/s",
+        ),
     ],
 )
 def test_a_branch_refuses_an_end_where_there_are_no_cycles(along: str, to: float, said: str) -> None:
@@ -164,3 +169,34 @@ def test_a_cycle_is_found_once_though_a_run_comes_to_it_from_two_sides_in_turn()
     early, late = ss.studies.cycle(problem), ss.studies.cycle(problem, near=15000.0)
     assert early.period == pytest.approx(late.period, rel=1e-9)
     assert early.multipliers[0].real == pytest.approx(-0.8318, abs=1e-3)
+
+
+def least_of_swing(pull: float) -> float:
+    """Return the least slip rate (m/s) after an onset, as if nothing arrested it: 1 kg, 1 kN/m, 2 N s/m, friction falls by 2 N."""
+    fades, turns = 1.0, math.sqrt(1e3 - 1.0)
+    sine = (2.0 - fades * pull) / turns
+    time = (math.atan2(2.0, fades * sine - turns * pull) + math.pi) / turns
+    return pull + math.exp(-fades * time) * (sine * math.sin(turns * time) - pull * math.cos(turns * time))
+
+
+def test_no_branch_begins_in_steady_sliding_where_a_damped_block_loses_stick() -> None:
+    """Under Coulomb friction no cycle is without rest. The arrest is grazed where the swing of the oscillator says so, to 1e-9."""
+
+    def coulomb(pull: float) -> ss.Problem:
+        block = ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0)
+        return ss.Problem(block, ss.friction.Coulomb(0.6, 0.4), pull_rate=pull, initial_load=0.0)
+
+    branch = ss.studies.follow(ss.studies.cycle(coulomb(0.02)), to=0.3, steps=5)
+    assert [edge.name for edge in branch.edges] == ["loss of stick"]
+    assert branch.edges[0].value == pytest.approx(brentq(least_of_swing, 0.02, 0.3, xtol=1e-15), rel=1e-9)
+    assert branch.points[-1].edge == "loss of stick"
+
+
+def test_a_branch_that_has_come_to_its_end_goes_on_as_it_is() -> None:
+    """Its last value is that of the end, to the last digit."""
+    block = ss.SpringBlock(1.0, 1.0, 1.0, damping=0.1)
+    start = ss.studies.cycle(ss.Problem(block, ss.friction.Coulomb(0.6, 0.4), pull_rate=0.007, initial_load=0.0))
+    for to in (0.0248, 0.0276, 0.0283):  # over the range and times it they are larger
+        branch = ss.studies.follow(start, to=to, steps=3)
+        assert branch.points[-1].value == to
+        assert ss.studies.follow(start, to=to, steps=3, resume=branch).table.equals(branch.table)

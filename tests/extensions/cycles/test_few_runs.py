@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.extensions.cycles.near import limit_of
-from stickslip.extensions.cycles.newton import curved_step
+from stickslip.extensions.cycles.newton import Miss, curved_step, next_steps
 from stickslip.run import ExactRun
 from tests.extensions.cycles.problems import rate_and_state, stribeck
 
@@ -95,3 +96,11 @@ def test_a_step_with_curvature_solves_a_map_that_bends_in_one_direction() -> Non
     found = curved_step(derivative, straight, way, map_at(way) - missed)
     assert found == pytest.approx(0.8 * way, abs=1e-14)
     assert np.abs(map_at(straight)).max() > 1e-3
+
+
+def test_a_step_of_a_cycle_whose_extent_is_next_to_nothing_is_that_of_newton() -> None:
+    """Next to steady sliding the ways to earlier returns overflow: they show no curvature, and nothing warns of it."""
+    now: Any = SimpleNamespace(start=np.array([5.0]), missed=np.array([1e-13]), about=np.array([[0.5]]))
+    steps = next_steps(now, [Miss(np.array([4.0]), np.array([-0.1]))], np.array([1e-300]))
+    assert steps.curved == pytest.approx(steps.straight, rel=1e-12)
+    assert steps.curved == pytest.approx([2e-13], rel=1e-12)

@@ -87,6 +87,18 @@ def test_a_branch_that_was_interrupted_goes_on_as_if_it_had_not_been(after: int,
     assert [edge.value for edge in again.edges] == pytest.approx([edge.value for edge in whole.edges], rel=1e-9)
 
 
+def test_a_branch_that_was_interrupted_at_its_last_cycle_goes_on_to_the_edge_behind_it() -> None:
+    """The amplitude is next to 0 there: no further cycle is looked for, as in the whole branch."""
+    start = ss.studies.cycle(stribeck(0.151, initial_rate=0.151, initial_load=5.75), near=0.7)
+    given: Any = {"along": "pull_rate", "to": 0.14, "steps": 3}
+    whole = ss.studies.follow(start, **given)
+    part = ss.studies.follow(start, **given, progress=Stop(len(whole.points) - 1))
+    assert [edge.name for edge in whole.edges] == ["steady sliding"]
+    assert part.interrupted
+    again = ss.studies.follow(start, **given, resume=part)
+    assert [one.value for one in again.points] == [one.value for one in whole.points]
+
+
 def test_a_branch_of_too_many_cycles_ends_with_those_it_has_and_goes_on_from_its_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -189,3 +189,25 @@ def test_the_figure_has_a_curve_for_each_number_that_is_not_zero(block: Path) ->
     curves = [line for line in figure.axes[0].lines if len(line.get_xdata()) == len(found.times)]
     assert [line.get_label() for line in curves] == [found.numbers[n] for n in found.order[:2]]
     assert image(figure, "png", 50.0)
+
+
+def test_a_number_without_effect_makes_no_difference_and_is_not_said_to_have_values_on_one_side() -> None:
+    """A play delays all slips alike, by half of it over the pull rate: what lies between them does not depend on it, to 1e-11."""
+    played = ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0, backlash=4e-3)
+    problem = ss.Problem(played, ss.friction.Coulomb(0.6, 0.4), pull_rate=0.02, initial_load=0.0)
+    between = ss.studies.sensitivity(problem, "backlash", "recurrence", event=2, duration=3.0)
+    assert between.derivatives[0, 0] == pytest.approx(0.0, abs=1e-11)
+    assert between.notes == ()
+    assert "1 % more makes no difference (derivative 0 within " in between.texts[0]
+    first = ss.studies.sensitivity(problem, "backlash", "start", event=0, duration=1.0)
+    assert first.derivatives[0, 0] == pytest.approx(0.5 / 0.02, rel=1e-10)
+
+
+def test_values_to_one_side_do_not_count_where_smaller_steps_have_both() -> None:
+    """Static friction is barely above the dynamic one: the first steps lead below that. The start is S mu / (K V), to 1e-9."""
+    law = ss.friction.Coulomb(0.402, 0.4)
+    problem = ss.Problem(ss.SpringBlock(1.0, 1e3, 10.0), law, pull_rate=0.1, initial_load=0.0)
+    found = ss.studies.sensitivity(problem, "static", "start", event=0, duration=0.06)
+    assert found.derivatives[0, 0] == pytest.approx(10.0 / (1e3 * 0.1), rel=1e-9)
+    assert found.found[0].side == "both"
+    assert found.found[0].step[0] < 0.002 / 3.0

@@ -151,7 +151,7 @@ class LyapunovExponent(Study):
     @property
     def sum_of_all(self) -> float:
         """The sum of all exponents (1/s), which is how fast a volume of disturbances grows; NaN where it is not known."""
-        return self.found.sum_of_all
+        return -math.inf if self.exponent == -math.inf else self.found.sum_of_all  # no other is larger than the largest
 
     @property
     def chaotic(self) -> bool | None:

@@ -150,4 +150,6 @@ def check_can_be_followed(problem: Problem, who: str) -> None:
         raise InputError(f"{who}: {why}; {INSTEAD}")
     if not (pull > 0.0 or (kind.may_be_held and pull == 0.0)) or not math.isfinite(pull):
         least = "0 or above" if kind.may_be_held else "above 0"
-        raise InputError(f"{who}: pull_rate must be {least}, got {pull:g} {problem.unit_of('pull_rate')}")
+        unit = problem.unit_of("pull_rate")
+        cure = f"to pull backwards count slip the other way, and give {brief(-pull, unit)}" if pull < 0.0 else "a little is enough"
+        raise InputError(f"{who}: pull_rate must be {least}, got {pull:g} {unit}: {cure}")

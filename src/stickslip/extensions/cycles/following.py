@@ -115,6 +115,8 @@ class Following:
             path, start = part
             part = self._part(path, start, length)
             length = 1.0 / self.steps
+            if part is not None and past_end(part[1].value, self.ends) is not None:
+                break  # the next one begins beyond the range
             if part is not None:
                 self._add(*part, length)
         if self.doubled:
@@ -169,6 +171,9 @@ class Following:
         Returns where the next one begins, or None at its end.
         """
         while True:
+            *_, before, amplitude = [0.0, 0.0, *self._recent().amplitudes]
+            if amplitude < min(VANISHING * usual_rate(now.orbit.section.problem), before):
+                return self._at_end(path, now)
             step = min(length, path.longest_step(now, SHARE_OF_EXTENT))
             shortest = SHORTER * step < SHORTEST * min(1.0, path.longest_step(now, 1.0))
             new = self._stepped(path, now, step, shortest=shortest)
@@ -197,10 +202,7 @@ class Following:
                 self._note(path, edge, self.doubled)
             length = min(LONGER * step, 2.0 / self.steps)
             self._add(path, new, length)
-            now, small = new, VANISHING * usual_rate(new.orbit.section.problem)
-            *_, before, last = [np.inf, *self._recent().amplitudes]
-            if last < min(small, before):
-                return self._at_end(path, now)
+            now = new
 
     def _recent(self) -> Recent:
         """Return the cycles at the end of the part that is followed, without edges."""

@@ -9,6 +9,7 @@ import numpy as np
 from stickslip.engine import Positions
 from stickslip.extensions.cycles.edges import LOSS_OF_STICK, CycleEdge
 from stickslip.extensions.cycles.found import kind_of
+from stickslip.extensions.cycles.measures import measures_of
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.section import coordinates, passages
 from stickslip.extensions.cycles.tangent import values_at
@@ -17,6 +18,8 @@ NEXT_TO_EDGE = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Distances (1, shares of the range) from an edge, where a branch is taken up again, with or without rest."""
 CLOSE_PERIOD = 0.1
 """Cycles that meet at an edge have periods that differ by no more than this share (1), next to it."""
+CLOSE_AMPLITUDE = 0.1
+"""So do their amplitudes (1)."""
 
 
 def without_rest(path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tuple[Path, PlaceOnBranch] | None:
@@ -75,4 +78,6 @@ def with_other_impacts(path: Path, edge: CycleEdge, last: PlaceOnBranch) -> tupl
 
 def _is_next_to(edge: CycleEdge, found: PlaceOnBranch, *, at_onset: bool) -> bool:
     """Return True if a cycle may be the one that meets another at an edge."""
-    return abs(found.orbit.period - edge.orbit.period) <= CLOSE_PERIOD * edge.orbit.period and found.orbit.sticks == at_onset
+    period, swing = edge.orbit.period, measures_of(edge.orbit).amplitude
+    alike = abs(found.orbit.period - period) <= CLOSE_PERIOD * period and found.orbit.sticks == at_onset
+    return alike and abs(measures_of(found.orbit).amplitude - swing) <= CLOSE_AMPLITUDE * swing  # that of steady sliding is 0

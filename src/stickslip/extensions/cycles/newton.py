@@ -101,6 +101,7 @@ def _once_round(orbit: Orbit) -> Orbit:
     return closed_beyond(orbit.section, orbit.section.returned(orbit.place, orbit.once), orbit.once)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # on the way to steady sliding the extent of a cycle may be next to nothing
 def next_steps(now: Return, seen: Sequence[Miss], extent: Floats) -> NextSteps:
     """Return the next steps from a return. Raises InputError if the cycles near here cannot be told apart.
 

@@ -175,7 +175,7 @@ class Path:
         """Return the cycle near a start at a value (SI) of the parameter. Raises NoCycleError."""
         along = np.zeros(len(self.scales))
         along[-1] = 1.0
-        found = self.at(self.together(place, value), along, guess)
+        found = replace(self.at(self.together(place, value), along, guess), value=value)  # to the last digit
         return found if way is None or found.way @ way >= 0.0 else replace(found, way=-found.way)
 
     def step(self, begin: PlaceOnBranch, length: float) -> PlaceOnBranch:

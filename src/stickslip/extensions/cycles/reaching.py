@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
 from stickslip.extensions.cycles.find_cycle import check_can_be_followed
 from stickslip.extensions.cycles.found import kind_of
+from stickslip.extensions.cycles.lag import is_wound
 from stickslip.extensions.cycles.limit_cycle import LimitCycle
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.foundation.conversion import WithUnit
@@ -32,11 +35,17 @@ def range_of(cycle: LimitCycle, along: str, to: float | str | WithUnit) -> tuple
     end = float(parameter.declared.check("follow", "to", to))
     if end == begin:
         raise InputError(f"follow: to: {parameter.name} is {brief(begin, parameter.unit)} already: give another value")
+    for value, where in ((begin, "begins"), (end, "ends")):
+        if not np.isfinite(value):
+            raise InputError(f"follow: no branch {where} at {parameter.name} = {brief(value, parameter.unit)}: give a finite one")
     try:
         at_end = cycle.scenario.problem.parameters[parameter.name].put(end)
     except InputError as error:
         raise InputError(f"follow: to: {error}") from None
     check_can_be_followed(at_end, "follow: to")
+    if is_wound(at_end) != is_wound(cycle.scenario.problem):
+        why = "without an integral gain the lag of an axis is no number of its cycles"
+        raise InputError(f"follow: {why}: begin and end with {parameter.name} above 0, however little")
     return parameter, begin, end
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -23,6 +24,8 @@ from stickslip.solution import Solution
 
 FIRST_STEP, NEXT_STEP, MOST_STEPS = 0.01, 4.0, 11
 """The first step, as a share (1) of the number, the factor between steps, and how many are tried."""
+MOST_SHORTER = 6
+"""How many steps are tried (1) until there are values to both sides of a number."""
 WELL_KNOWN = 1e-8
 """No further step is tried where errors are below this share (1) of the largest derivative."""
 UNKNOWN, NO_EFFECT = 0.1, 1e-6
@@ -87,15 +90,18 @@ class Differences:
         count, before = len(self.base.values), self.runs
         slope, error, step = (np.full(count, np.nan) for _ in range(3))
         error[:] = np.inf
-        first = trial = FIRST_STEP * abs(parameter.value) or self._first_step(parameter)
+        first = FIRST_STEP * abs(parameter.value) or self._first_step(parameter)
         if self._cuts_anew(parameter, first / FIRST_STEP):
             nothing = np.full(count, np.nan)
             why = "the body is cut into whole cells of equal travel time, and this changes the ratio of travel times"
             return OfNumber(parameter, nothing, nothing, nothing, "both", Missing("", "", why), self.runs - before)
         last: _Tried | None = None
+        begin = trial = self._to_both_sides(parameter, first)
         grows = False
         for n in range(MOST_STEPS):
             tried = self._members(parameter, trial)
+            if tried and last and tried.side != last.side:
+                break  # values to one side alone say nothing of the other
             last = tried or last
             found = self._slopes(tried) if tried else None
             improved = False
@@ -110,7 +116,7 @@ class Differences:
             if tried and tried.same.all() and not improved:
                 if n > 1:
                     break
-                grows, trial = True, first  # a smaller step is worse: rounding decides
+                grows, trial = True, begin  # a smaller step is worse: rounding decides
             trial *= NEXT_STEP if grows else 1.0 / NEXT_STEP
         told = self._told(slope, error, first)
         missing = None if told.all() else self._missing(parameter, last, np.flatnonzero(~told))
@@ -139,6 +145,17 @@ class Differences:
             other = getattr(beside, "cells", cells)
             return bool(other.counts != cells.counts or abs(other.error - cells.error) > SAME_CELLS * NEXT_TO)
         return False
+
+    def _to_both_sides(self, parameter: Parameter[Problem], step: float) -> float:
+        """Return a step that is short enough for values to both sides of a number; this one if there are none, or hardly."""
+        shorter = step
+        for _ in range(MOST_SHORTER):
+            with suppress(InputError):
+                for place in (min(SIDES["both"]), max(SIDES["both"])):
+                    parameter.put(parameter.value + place * shorter)
+                return shorter
+            shorter /= NEXT_STEP
+        return step
 
     def _run(self, problem: Problem) -> Reading | None:
         """Return what a run gives, or None if it fails or does not give it."""

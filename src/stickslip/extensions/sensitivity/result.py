@@ -139,7 +139,7 @@ class Sensitivity(Study):
         size = f"{_as_known(float(one.slope[at]), float(one.error[at]))}{of}{per}"
         if one.parameter.value == 0.0:
             return f"{by}: the derivative is {size}{when}"
-        change = 0.01 * float(scaled[at])
+        change = 0.01 * float(scaled[at]) if abs(one.slope[at]) > one.error[at] else 0.0
         makes = f"{brief(abs(change), self.unit)} {'less' if change < 0.0 else 'more'}" if change else "no difference"
         most = ", at most" if len(self.times) > 1 else ""
         return f"{by}: 1 % more makes {makes}{when}{most} (derivative {size})"
@@ -160,6 +160,8 @@ class Sensitivity(Study):
 
 
 def _as_known(value: float, error: float) -> str:
-    """Return a number with the digits that are known, at most MOST_DIGITS."""
-    known = math.floor(math.log10(abs(value) / error)) if value and error else 1
+    """Return a number with the digits that are known, at most MOST_DIGITS; one below its error is 0 within that."""
+    if abs(value) <= error:
+        return f"0 within {number(error, 1)}" if error else "0"
+    known = math.floor(math.log10(abs(value) / error)) if error else 1
     return number(value, min(max(known, 1), MOST_DIGITS))
