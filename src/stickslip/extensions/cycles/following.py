@@ -117,6 +117,9 @@ class Following:
             length = 1.0 / self.steps
             if part is not None:
                 self._add(*part, length)
+        else:
+            if part is not None:
+                self._edge(CycleEdge(NOT_FOUND, part[1].value, part[1].orbit))
         if self.doubled:
             self._part(path, start, length)
         self._next_doubled()
