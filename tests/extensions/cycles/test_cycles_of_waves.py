@@ -158,6 +158,21 @@ def test_where_disturbances_of_a_slab_grow_no_cycle_is_near() -> None:
         ss.studies.cycle(bare(0.05), near=200.0)
 
 
+def behind_a_gain(rate: float, gain: float) -> ss.Problem:
+    """Return a slab with mass and an integral gain (Pa/m) of its driver, whose friction falls over a slip rate (m/s)."""
+    slab = ss.ElasticSlab(2800, 3500, 1000, 1e7, contact_mass=2e6, driver_impedance=3e7, driver_integral_gain=gain)
+    law: Any = ss.friction.Coulomb(0.8, 0.5) if rate == 0.0 else ss.friction.PowerStribeck(0.63, 0.27, rate)
+    return ss.Problem(slab, law, pull_rate=1.0, initial_load=0.0)
+
+
+@pytest.mark.parametrize(("rate", "gain", "steady"), [(0.0, 0.0, 0.833333), (0.0, 1e7, 1.0), (0.077, 1e6, 1.0)])
+def test_a_run_that_comes_to_steady_sliding_says_so_and_at_what_slip_rate(rate: float, gain: float, steady: float) -> None:
+    """Behind an impedance alone it is V - mu N/g = 1 - 5e6/3e7 m/s; an integral gain brings it to the pull rate, however slowly."""
+    sentence = f"cycle: the run comes to steady sliding at {steady:g} m/s: no cycle is near this run"
+    with pytest.raises(ss.InputError, match=f"^{sentence}$"):
+        ss.studies.cycle(behind_a_gain(rate, gain))
+
+
 @pytest.mark.slow
 def test_a_branch_doubles_its_period_where_a_multiplier_is_minus_one() -> None:
     """Runs on both sides of the edge show it: one period in between them, then two."""

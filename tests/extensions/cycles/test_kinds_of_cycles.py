@@ -101,7 +101,17 @@ def test_static_friction_that_is_no_larger_than_dynamic_gives_no_multiplier() ->
     [
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)}, "each moment of the round trip"),
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5)}, "sharp waves back whole"),
-        ({"body": HEAVY_DRIVER}, "leave driver_inertia or contact_mass out"),
+        (
+            {"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)},
+            "with contact_mass above 0 and a driver of finite impedance they move",
+        ),
+        ({"body": replace(HEAVY_DRIVER, contact_mass=0.0)}, "above 0 and a driver without driver_inertia they move together"),
+        ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=1e7)}, "with contact_mass above 0 they move together"),
+        ({"body": HEAVY_DRIVER}, "no run comes to a cycle; leave driver_inertia out"),
+        (
+            {"body": HEAVY_DRIVER, "friction": RATE_AND_STATE, "initial_state": 1.0},
+            "no run comes to a cycle; leave driver_inertia or contact_mass out",
+        ),
         ({"body": replace(HEAVY_DRIVER, driver_impedance=0.0)}, "dead load"),
         ({"body": COLUMN, "friction": RATE_AND_STATE, "initial_state": 1.0}, "dead load"),
         ({"body": ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, contact_mass=1e5, driver_impedance=0.0)}, "dead load"),

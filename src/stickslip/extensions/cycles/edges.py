@@ -34,7 +34,7 @@ MEANING = {
     END_OF_HUNTING: "rests last for ever, as the amplitude is 0 or a rest is at the set point: hunting dies out beyond it",
     GRAZING: "rest, slip or a hard stop is touched elsewhere in the period: beyond it another slip, rest or impact begins there",
     CORNER: "an event meets another, or an echo of one: beyond it the branch goes on in another direction",
-    NOT_FOUND: "Newton's iteration finds no cycle beyond",
+    NOT_FOUND: "the search finds none beyond: a run and `cycle` there say more",
 }
 """The edges by name, and what happens there."""
 CLOSE_TO_REST, NEARER, MOST_NEARER = 1e-7, 0.05, 30

@@ -119,6 +119,9 @@ class Following:
                 break  # the next one begins beyond the range
             if part is not None:
                 self._add(*part, length)
+        else:
+            if part is not None:
+                self._edge(CycleEdge(NOT_FOUND, part[1].value, part[1].orbit))
         if self.doubled:
             self._part(path, start, length)
         self._next_doubled()

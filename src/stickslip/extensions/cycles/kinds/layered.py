@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from stickslip.extensions.cycles.kinds.uniform import CyclesOfUniform, not_repeated
+from stickslip.extensions.cycles.kinds.uniform import FINITE, CyclesOfUniform, not_repeated
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit
 from stickslip.extensions.cycles.waves.path import WavePath
 from stickslip.foundation.errors import InputError
@@ -24,11 +24,12 @@ class CyclesOfLayered(CyclesOfUniform):
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle is looked for."""
         body = cast(OfLayers, problem.body)
-        if why := not_repeated(problem) or OF_DRIVERS.get(problem.driver_kind, ""):
+        sends_whole = any(abs(one.reflection) == 1.0 for one in body.stacks)
+        if why := not_repeated(problem, FINITE if sends_whole else "") or OF_DRIVERS.get(problem.driver_kind, ""):
             return why
         if all(one.reflection == 1.0 for one in body.stacks):
             return "a dead load holds the body nowhere"
-        if problem.body.has_inertia and any(abs(one.reflection) == 1.0 for one in body.stacks):
+        if problem.body.has_inertia and sends_whole:
             where = "the driver sends" if len(body.stacks) == 1 else "a driver sends"
             drags = "; drag is lumped between cells, and leaves waves that rest there" if body.has_drag else ""
             return (

@@ -13,9 +13,15 @@ from stickslip.problem import Problem, driver_impedance
 from stickslip.problem.bodies import as_waves
 from stickslip.problem.scenarios import ParameterPath, Scenario
 
+FINITE, WITHOUT_MASS = "a driver of finite impedance", "a driver without driver_inertia"
+"""What a driver needs that would send sharp waves back whole."""
 
-def not_repeated(problem: Problem) -> str:
-    """Return why nothing repeats itself, or each moment by itself, in a body with waves; empty if there is no such reason."""
+
+def not_repeated(problem: Problem, cure_of_driver: str) -> str:
+    """Return why nothing repeats itself, or each moment by itself, in a body with waves; empty if there is no such reason.
+
+    `cure_of_driver` says what a driver needs that sends sharp waves back whole; empty if it does not.
+    """
     law = problem.friction
     if why := not_steady(problem):
         return why
@@ -27,7 +33,7 @@ def not_repeated(problem: Problem) -> str:
         return (
             f"without a mass at the contact and under {type(law).__name__}, which has no states, each moment of the round trip"
             " moves by itself, and chaotically where r (1 - 2 Z / g') is above 1 in size; with"
-            f" {problem.body.mass_field} above 0 they move together"
+            f" {problem.body.mass_field} above 0{cure_of_driver and ' and '}{cure_of_driver} they move together"
         )
     return ""
 
@@ -41,15 +47,17 @@ class CyclesOfUniform(CycleKind):
     def refusal(self, problem: Problem) -> str:
         """Return why no cycle is looked for."""
         body = as_waves(problem.body)
-        if why := not_repeated(problem):
+        sends_whole = abs(body.front_reflection) >= 1.0
+        has_mass = body.driver_inertia > 0.0 and math.isfinite(body.driver_inertia) and math.isfinite(body.driver_impedance)
+        if why := not_repeated(problem, (WITHOUT_MASS if has_mass else FINITE) if sends_whole else ""):
             return why
         if driver_impedance(body).steady == 0.0:
             return "a dead load, or a driver that is one to slow motion, holds the body nowhere"
-        if body.has_inertia and abs(body.front_reflection) >= 1.0:
-            mass = body.driver_inertia > 0.0 and math.isfinite(body.driver_inertia)
-            cure = f"leave driver_inertia or {body.mass_field} out" if mass else "give the driver a finite impedance"
+        if body.has_inertia and sends_whole:
+            either = f" or {body.mass_field}" if problem.friction.states else ""
+            cure = f"leave driver_inertia{either} out" if has_mass else "give the driver a finite impedance"
             return (
-                f"the {'mass of the driver' if mass else 'driver'} sends sharp waves back whole, and so does the"
+                f"the {'mass of the driver' if has_mass else 'driver'} sends sharp waves back whole, and so does the"
                 f" {body.what_is_heavy}: they never fade, and no run comes to a cycle; {cure}"
             )
         return ""

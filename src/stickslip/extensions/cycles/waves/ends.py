@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -23,8 +24,12 @@ from stickslip.foundation.arrays import Floats
 
 FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
 """First step towards an end (1), the number of steps, halved without a cycle, and by what share (1) a period may change there."""
-GOES_ON = 5
-"""A branch whose last steps towards an end have all found a cycle, so many (1), goes on behind a corner."""
+GOES_ON, TELLS = 5, 10.0
+"""A branch whose last steps towards an end have all found a cycle, so many (1), goes on behind a corner, if steps are longer than
+the miss of the last cycle by a factor (1): shorter ones tell nothing."""
+ACROSS = (1e-5, 1e-4, 1e-3)
+"""How far (1, shares of the range) beyond the last cycle one is looked for behind a corner: farther than the parameter is moved to
+see how a return changes, so that no difference reaches over the corner. Corners as near to each other as the first are one."""
 NEAR_MEAN = 0.05
 """A cycle without rest is cut about where it passes its mean slip rate, if off it by less than this share (1) of its amplitude."""
 SHORTEST_AWAY, MOST_AWAY = 2e-7, 40
@@ -44,9 +49,28 @@ class EndOfPart(NamedTuple):
     onward: tuple[Path, PlaceOnBranch] | None
 
 
+def farther(path: Path, last: PlaceOnBranch, corners: list[float]) -> EndOfPart:
+    """Return where cycles with rest end beyond the last place of a branch, and where it goes on, if it does come farther.
+
+    `corners` are the values (SI) of those before, with that of this one from now on: a corner next to one of them is the same.
+    """
+    end = end_of_rests(path, last)
+    if end.onward is None:
+        return end
+    value, before = end.onward[1].value if end.edge is None else end.edge.value, list(corners)
+    corners.append(value)
+    if not any(abs(value - one) <= ACROSS[0] * path.range for one in before):
+        return end
+    beyond = across(path, end.onward[1])
+    if beyond is None or not end.onward[1].orbit.sticks:
+        return EndOfPart(CycleEdge(NOT_FOUND, last.value, last.orbit), None)
+    return EndOfPart(None, (path, beyond))
+
+
 def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
     """Return where cycles with rest end beyond the last place of a branch, by steps that become shorter."""
     length, found, changes, before, value = FIRST_SHORT, 0, _changes_in(last.orbit), last.way, last.value
+    passed = [last]
     for _ in range(MOST_SHORT):
         try:
             new = path.step(last, length)
@@ -54,20 +78,51 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
                 raise NoCycleError("follow: this is another cycle")
             moved = path.together(new.orbit.place, new.value) - path.together(last.orbit.place, last.value)
             last, found = new if new.way @ moved >= 0.0 else replace(new, way=-new.way), found + 1
+            passed.append(last)
         except NoCycleError:
             length, found, value = 0.5 * length, 0, last.value
     name = _name_of_end(last.orbit)
-    if found >= GOES_ON and name != LOSS_OF_STICK:
-        name = CORNER if _changes_in(last.orbit) == changes else GRAZING
-        if name == CORNER and abs(before @ last.way) >= STRAIGHT:
-            return EndOfPart(None, (path, last))
-        return EndOfPart(CycleEdge(name, value, last.orbit), (path, last))
+    if name != LOSS_OF_STICK:
+        if found >= GOES_ON and length > TELLS * last.orbit.share:
+            name = CORNER if _changes_in(last.orbit) == changes else GRAZING
+            if name == CORNER and abs(before @ last.way) >= STRAIGHT:
+                return EndOfPart(None, (path, last))
+            return EndOfPart(CycleEdge(name, value, last.orbit), (path, last))
+        beyond = across(path, last)
+        if beyond is not None:
+            name = CORNER if _changes_in(beyond.orbit) == changes else GRAZING
+            return EndOfPart(CycleEdge(name, _met_by(path, passed, beyond), last.orbit), (path, beyond))
     edge = CycleEdge(name, last.value, last.orbit)
     begun = _without_rest(path, edge) if name == LOSS_OF_STICK else None
     if begun is None:
         return EndOfPart(edge, None)
     other, first = begun
     return EndOfPart(edge._replace(value=_value_of_touch(other, first)), (other, _led_away(other, first)))
+
+
+def across(path: Path, last: PlaceOnBranch) -> PlaceOnBranch | None:
+    """Return a cycle behind a corner, next to the last one before it, by a step in the parameter alone; None if none is found."""
+    for share in ACROSS:
+        target = last.value + share * path.range * float(np.sign(last.way[-1]))
+        try:
+            new = path.at_value(target, last.orbit.place, last.orbit.period)
+        except NoCycleError:
+            continue
+        moved = path.together(new.orbit.place, new.value) - path.together(last.orbit.place, last.value)
+        same = abs(new.orbit.period - last.orbit.period) <= SAME_MOTION * last.orbit.period and new.orbit.sticks
+        if same and float(np.abs(moved).max()) <= SAME_MOTION:
+            return new if new.way @ moved >= 0.0 else replace(new, way=-new.way)
+    return None
+
+
+def _met_by(path: Path, passed: Sequence[PlaceOnBranch], beyond: PlaceOnBranch) -> float:
+    """Return the value (SI) where two pieces of a branch meet that go straight on to a corner between them."""
+    last = passed[-1]
+    clear = [one for one in passed if abs(last.value - one.value) > 0.5 * ACROSS[0] * path.range] or passed[:1]
+    moved = path.together(beyond.orbit.place, beyond.value) - path.together(clear[-1].orbit.place, clear[-1].value)
+    ahead = np.linalg.lstsq(np.column_stack([clear[-1].way, -beyond.way]), moved, rcond=None)[0][0]
+    low, high = sorted((last.value, beyond.value))
+    return float(np.clip(clear[-1].value + ahead * clear[-1].way[-1] * path.range, low, high))
 
 
 def _changes_in(orbit: FoundCycle) -> int:

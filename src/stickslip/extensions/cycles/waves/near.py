@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.contact import steady_slidings
 from stickslip.engine import History
+from stickslip.extensions.cycles.orbit import STEADY_SHARE
 from stickslip.extensions.cycles.section import onsets
 from stickslip.extensions.cycles.waves.mesh import mesh_of
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit, closed
@@ -12,12 +14,16 @@ from stickslip.extensions.cycles.waves.section import WaveSection, place_in
 from stickslip.extensions.cycles.waves.sources import source_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
 from stickslip.problem import Problem
 
 MOST_MEETINGS, CLOSES = 16, 3e-2
 """A run is compared with itself so many meetings with the section ago (1); it closes where it comes as close (1) as this."""
 TOO_FAR = 0.3
 """No cycle is near a run that comes no closer to itself than this (1)."""
+NEARLY_STEADY, LAST_PART, LOOKED_AT = 0.2, 0.1, 200
+"""A run that is no farther from stable steady sliding than a share (1) of its slip rate comes to it if it is nearer in its last
+part (1, of its duration) than in the part before; so many times (1) in each tell it."""
 
 ONCE = 1e-6
 """A cycle is back where it began if its wave misses that by no more than this share (1) of its extent."""
@@ -29,8 +35,9 @@ def near_end(history: History, problem: Problem, rtol: float) -> WaveOrbit:
     met = section.met(history)
     if len(met.time) < 2 or met.time[-1] < 2.0 * problem.round_trip_time:
         raise InputError(
-            "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes its mean slip rate twice:"
-            " give a longer run (near), or another start"
+            steady_text(history, problem)
+            or "cycle: the run does not come back: it neither begins to slip twice after a rest, nor passes its mean slip rate"
+            " twice: give a longer run (near), or another start"
         )
     every = _meetings(history, met.time)
     end, period = float(met.time[-1]), float(met.time[-1] - met.time[-1 - every])
@@ -64,11 +71,42 @@ def _meetings(history: History, times: Floats) -> int:
     last = source_of(history, float(times[-1])).at(phases)
     most = min(MOST_MEETINGS, int(np.sum(times > 1.001 * history.round_trip_time)) - 1)
     missed = [np.abs(source_of(history, float(times[-1 - n])).at(phases) - last).max() for n in range(1, most + 1)]
-    shares = np.array(missed) / np.ptp(last)
-    if shares.min() > TOO_FAR:
+    shares = np.array(missed) / np.maximum(np.ptp(last), np.finfo(float).tiny)
+    if shares.min() > TOO_FAR or is_steady(_last_rates(history)[1], history.problem):
+        off = f"is {100.0 * shares.min():.2g} % off at best" if shares.min() < 1.0 else "does not come near itself"
         raise InputError(
-            f"cycle: the run does not come back: its wave is {100.0 * shares.min():.2g} % off at best: it has not settled, or never"
-            " repeats itself: give a longer run (near), or ask lyapunov whether disturbances grow"
+            steady_text(history, history.problem)
+            or f"cycle: the run does not come back: its wave {off}: it has not settled, or never repeats itself: give a longer run"
+            " (near), or ask lyapunov whether disturbances grow"
         )
     close = np.flatnonzero(shares <= CLOSES)
     return 1 + int(close[0] if len(close) else np.argmin(shares))
+
+
+def _last_rates(history: History) -> Floats:
+    """Return slip rates (m/s) in the last part of a run, and in the part before it, which comes first."""
+    end, lasts = history.duration, max(LAST_PART * history.duration, history.round_trip_time)
+    times = np.maximum(end - np.linspace(2.0 * lasts, 0.0, 2 * LOOKED_AT), 0.0)
+    return history.rate(history.find(times, "left")).reshape(2, LOOKED_AT)
+
+
+def is_steady(rates: Floats, problem: Problem) -> bool:
+    """Return True if slip rates (m/s) are those of steady sliding."""
+    return bool(rates.min() > 0.0 and np.ptp(rates) <= STEADY_SHARE * problem.first_pull_rate)
+
+
+def steady_text(history: History, problem: Problem) -> str:
+    """Say in one sentence that a run comes to steady sliding, and at what slip rate; "" if it does not."""
+    before, last = _last_rates(history)
+    rate, comes = float(last.mean()), is_steady(last, problem)
+    if not comes and last.min() > 0.0:
+        try:
+            stable = [float(one.rate) for one in steady_slidings(problem).slidings if one.stable]
+        except InputError:
+            stable = []
+        rate = min(stable, key=lambda one: abs(one - rate), default=np.inf)
+        off = np.abs(last - rate).max()
+        comes = bool(off <= NEARLY_STEADY * rate < np.inf and off < np.abs(before - rate).max())
+    if not comes:
+        return ""
+    return f"cycle: the run comes to steady sliding at {brief(rate, problem.unit_of('pull_rate'))}: no cycle is near this run"

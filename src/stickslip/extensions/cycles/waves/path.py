@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.extensions.cycles.edges import CycleEdge
 from stickslip.extensions.cycles.path import NoCycleError, Path, PlaceOnBranch
 from stickslip.extensions.cycles.waves.bordered import Bordered
-from stickslip.extensions.cycles.waves.ends import EndOfPart, cut_anew, end_of_rests, with_rest
+from stickslip.extensions.cycles.waves.ends import EndOfPart, cut_anew, farther, with_rest
 from stickslip.extensions.cycles.waves.image import SMALL_NUDGE, Image, difference, missed_share, slopes_at
 from stickslip.extensions.cycles.waves.of_driver import moving
 from stickslip.extensions.cycles.waves.orbit import LINEAR_SHARE, WaveOrbit, checked, coordinates, even_mesh, with_sharp_kinks
@@ -65,6 +65,11 @@ class WavePath(Path):
     def _sections(self) -> dict[float, WaveSection]:
         """Sections by their values: a problem is made and prepared once."""
         return {}
+
+    @cached_property
+    def _corners(self) -> list[float]:
+        """Values (SI) of the parameter where the branch has turned."""
+        return []
 
     def at(self, target: Floats, way: Floats, guess: float, begin: WavePlace | None = None) -> PlaceOnBranch:
         """Return the cycle in the plane through `target` across `way`, and the direction of the branch. Raises NoCycleError.
@@ -151,7 +156,7 @@ class WavePath(Path):
 
     def end_beyond(self, last: PlaceOnBranch) -> EndOfPart | None:
         """Return the edge where cycles with rest end, beyond the last place of a branch, and where the branch goes on."""
-        return end_of_rests(self, last) if self.at_onset else cut_anew(self, last)
+        return farther(self, last, self._corners) if self.at_onset else cut_anew(self, last)
 
     def rest_begun(self, edge: CycleEdge) -> tuple[Path, PlaceOnBranch] | None:
         """Return where cycles with rest begin, at an edge where the slip rate touches 0."""
