@@ -19,9 +19,9 @@ NEAR_GRAZING, AT_GRAZING, GRAZES = 0.1, 1e-6, 1e-3
 """A grazing is looked for where its margin (1) is below the first, as near as the second, and found if it comes below the third."""
 NEARER, MOST_NEARER = 0.05, 40
 """Each step leads to this share (1) of the margin; the largest number of steps."""
-HOLDS, SLACK = 1e-6, 1e-2
+HOLDS, SOFT_ARREST = 1e-6, 1e-2
 """A rest hardly holds, or slip hardly goes on, where no more than this share (1) of strength, or of the greatest rate, is left.
-An arrest has next to no deceleration if that is below the second share of what friction falls by."""
+An arrest has next to no deceleration if that times the mass is below the second share of the fall of friction."""
 
 OF_DISTANCE = 2
 """So many margins, the last ones, are in proportion to the distance from the edge (1)."""
@@ -57,7 +57,7 @@ def begun_and_ended(orbit: FoundCycle) -> tuple[NDArray[np.intp], NDArray[np.int
 def margins_of(orbit: FoundCycle) -> Floats:
     """Return the decelerations at arrests, then the rates of loading at onsets, as shares (1) of the fall of friction and strength.
 
-    They go to 0 as roots of the distance to the value at which the branch grazes. The last two are in proportion to it: what is
+    They go to 0 as roots of the distance to the value where the branch grazes. The last two are in proportion to it: what is
     left of the strength where the load turns in a rest, or as slip ends, and the slip rate where that turns, over the greatest.
     """
     history, last = orbit.closed.history, orbit.closed.piece
@@ -112,7 +112,7 @@ def no_rest_left(orbit: FoundCycle) -> bool:
     begun, _ = begun_and_ended(orbit)
     loads = history.store.load[begun].sum(axis=1) + history.problem.strength
     held = np.abs(np.abs(loads) / strength(history, loads) - 1.0) <= HOLDS
-    return bool((held | (margins_of(orbit)[: len(begun)] <= SLACK)).all())
+    return bool((held | (margins_of(orbit)[: len(begun)] <= SOFT_ARREST)).all())
 
 
 def _of_same_kind(path: Path, here: PlaceOnBranch, step: float) -> PlaceOnBranch | None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine import History, Positions
-from stickslip.extensions.cycles.section import Crossings, Return, Section, Slips, coordinates, crossings, places_of
+from stickslip.extensions.cycles.section import Crossings, Return, Section, SlipsAndRests, coordinates, crossings, places_of
 from stickslip.extensions.cycles.tangent import values_at
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
@@ -72,7 +72,7 @@ class Orbit:
         return self.closed.impacts
 
     @property
-    def slips(self) -> Slips:
+    def slips(self) -> SlipsAndRests:
         """How often slip forwards, slip backwards and rest begin in a period."""
         return self.closed.slips
 

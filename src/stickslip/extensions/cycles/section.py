@@ -33,7 +33,7 @@ class Crossings(NamedTuple):
     time: Floats
 
 
-class Slips(NamedTuple):
+class SlipsAndRests(NamedTuple):
     """How often slip forwards, slip backwards and rest begin (1)."""
 
     forwards: int
@@ -97,12 +97,12 @@ class Return:
         return impacts_of(self.history, self.piece)
 
     @cached_property
-    def slips(self) -> Slips:
+    def slips(self) -> SlipsAndRests:
         """How often the contact begins to slip forwards and backwards, and comes to rest, on a way that closes."""
         mode, unrecorded = self.history.store.mode[: self.piece + 1], self.history.rests[: self.piece]
         seen = np.insert(mode, 1 + np.flatnonzero(unrecorded), 0)
         begins = seen[seen != np.roll(seen, 1)]
-        return Slips(*(int((begins == one).sum()) for one in (1, -1, 0)))
+        return SlipsAndRests(*(int((begins == one).sum()) for one in (1, -1, 0)))
 
 
 @dataclass(frozen=True)
