@@ -48,6 +48,8 @@ def test_the_command_finds_and_follows_a_cycle(tmp_path: Path, command: Command)
     assert "A cycle of 0.199155157 s" in done.out
     assert "Loss of stick at loading.pull_rate = 0.3022214759 m/s" in done.out
     assert figure.stat().st_size > 0
+    assert ["(mm/s)", "(ms)", "(mm/s)", "rest", "multiplier", "stable", "edge"] in [line.split() for line in done.out.splitlines()]
+    assert ["302.221", "199.152"] in [line.split()[:2] for line in done.out.splitlines()], "all in the unit of the heading"
     rows = pd.read_csv(table, comment="#")
     assert rows["edge"].dropna().tolist()[0] == "loss of stick"
     assert rows["loading.pull_rate"][0] == 0.28

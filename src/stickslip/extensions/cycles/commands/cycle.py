@@ -99,27 +99,36 @@ def _check_branch(along: str | None, out: Path | None, *, double: bool, resume: 
 
 def _show_branch(screen: Console, branch: BranchOfCycles) -> None:
     """Print the cycles of a branch, some of them if there are many, and its edges."""
-    from stickslip.foundation.show import brief, number
+    from stickslip.foundation.show import number
 
-    unit, problem = branch.parameter.unit, branch.problem
     every = -(-len(branch.points) // ROWS_SHOWN)
     words = {True: "yes", False: "no", None: "-"}
+    shown = [one for n, one in enumerate(branch.points) if n % every == 0 or one.edge or n == len(branch.points) - 1]
+    followed, values = _in_one_unit([one.value for one in shown], branch.parameter.unit)
+    second, periods = _in_one_unit([one.measures.period for one in shown], "s")
+    rate, amplitudes = _in_one_unit([one.measures.amplitude for one in shown], branch.problem.unit_of("slip_rate"))
     rows = [
         [
-            brief(one.value, unit),
-            brief(one.measures.period, "s"),
-            brief(one.measures.amplitude, problem.unit_of("slip_rate")),
+            *numbers,
             f"{100.0 * one.measures.stick_share:.4g} %",
             "-" if one.multipliers[0] != one.multipliers[0] else number(abs(one.multipliers[0]), 4),
             words[one.stable],
             one.edge,
         ]
-        for n, one in enumerate(branch.points)
-        if n % every == 0 or one.edge or n == len(branch.points) - 1
+        for *numbers, one in zip(values, periods, amplitudes, shown, strict=True)
     ]
     say(screen, "")
-    headings = (branch.parameter.name.rpartition(".")[2], "period", "amplitude", "rest", "largest\nmultiplier", "stable", "edge")
-    print_numbers(screen, headings, rows)
+    measured = f"{branch.parameter.name.rpartition('.')[2]}{followed}", f"period{second}", f"amplitude{rate}"
+    print_numbers(screen, (*measured, "rest", "largest\nmultiplier", "stable", "edge"), rows)
     say(screen, "")
     more = [text for text in (branch.hysteresis_text, branch.interrupted_text) if text]
     print_sentences(screen, branch.text, *branch.edge_texts, *more)
+
+
+def _in_one_unit(values: list[float], unit: str) -> tuple[str, list[str]]:
+    """Return the second line of the heading of a column, with one unit for all of it, and its numbers in that."""
+    from stickslip.foundation.names import readable_unit
+    from stickslip.foundation.show import BRIEF_DIGITS, number
+
+    name, size = readable_unit(unit, values, log=True)
+    return "" if name == "1" else f"\n({name.replace('µ', 'u')})", [number(value / size, BRIEF_DIGITS) for value in values]
