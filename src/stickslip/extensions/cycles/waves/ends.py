@@ -27,9 +27,10 @@ FIRST_SHORT, MOST_SHORT, SAME_MOTION = 1e-4, 16, 1e-2
 GOES_ON, TELLS = 5, 10.0
 """A branch whose last steps towards an end have all found a cycle, so many (1), goes on behind a corner, if steps are longer than
 the miss of the last cycle by a factor (1): shorter ones tell nothing."""
-ACROSS = (1e-5, 1e-4, 1e-3)
+ACROSS, SAME_CORNER, MEETS = (1e-5, 1e-4), 3e-5, 0.1
 """How far (1, shares of the range) beyond the last cycle one is looked for behind a corner: farther than the parameter is moved to
-see how a return changes, so that no difference reaches over the corner. Corners as near to each other as the first are one."""
+see how a return changes, so that no difference reaches over the corner; how near to each other (1, share of the range) two corners
+are one; and by what share (1) of their distance straight lines from both sides may miss each other at a corner, as at no jump."""
 NEAR_MEAN = 0.05
 """A cycle without rest is cut about where it passes its mean slip rate, if off it by less than this share (1) of its amplitude."""
 SHORTEST_AWAY, MOST_AWAY = 2e-7, 40
@@ -49,6 +50,13 @@ class EndOfPart(NamedTuple):
     onward: tuple[Path, PlaceOnBranch] | None
 
 
+class Corner(NamedTuple):
+    """A corner of a branch: the value (SI) of the parameter there, and the first cycle behind it."""
+
+    value: float
+    beyond: PlaceOnBranch
+
+
 def farther(path: Path, last: PlaceOnBranch, corners: list[float]) -> EndOfPart:
     """Return where cycles with rest end beyond the last place of a branch, and where it goes on, if it does come farther.
 
@@ -59,12 +67,15 @@ def farther(path: Path, last: PlaceOnBranch, corners: list[float]) -> EndOfPart:
         return end
     value, before = end.onward[1].value if end.edge is None else end.edge.value, list(corners)
     corners.append(value)
-    if not any(abs(value - one) <= ACROSS[0] * path.range for one in before):
+    if not any(abs(value - one) <= SAME_CORNER * path.range for one in before):
         return end
-    beyond = across(path, end.onward[1])
-    if beyond is None or not end.onward[1].orbit.sticks:
+    onward = end.onward[1]
+    if abs(onward.value - last.value) >= 0.5 * ACROSS[0] * path.range:
+        return EndOfPart(None, end.onward)
+    corner = across(path, [last, onward])
+    if corner is None:
         return EndOfPart(CycleEdge(NOT_FOUND, last.value, last.orbit), None)
-    return EndOfPart(None, (path, beyond))
+    return EndOfPart(None, (path, corner.beyond))
 
 
 def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
@@ -88,10 +99,10 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
             if name == CORNER and abs(before @ last.way) >= STRAIGHT:
                 return EndOfPart(None, (path, last))
             return EndOfPart(CycleEdge(name, value, last.orbit), (path, last))
-        beyond = across(path, last)
-        if beyond is not None:
-            name = CORNER if _changes_in(beyond.orbit) == changes else GRAZING
-            return EndOfPart(CycleEdge(name, _met_by(path, passed, beyond), last.orbit), (path, beyond))
+        corner = across(path, passed)
+        if corner is not None:
+            name = CORNER if _changes_in(corner.beyond.orbit) == changes else GRAZING
+            return EndOfPart(CycleEdge(name, corner.value, last.orbit), (path, corner.beyond))
     edge = CycleEdge(name, last.value, last.orbit)
     begun = _without_rest(path, edge) if name == LOSS_OF_STICK else None
     if begun is None:
@@ -100,29 +111,28 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
     return EndOfPart(edge._replace(value=_value_of_touch(other, first)), (other, _led_away(other, first)))
 
 
-def across(path: Path, last: PlaceOnBranch) -> PlaceOnBranch | None:
-    """Return a cycle behind a corner, next to the last one before it, by a step in the parameter alone; None if none is found."""
+def across(path: Path, passed: Sequence[PlaceOnBranch]) -> Corner | None:
+    """Return the corner beyond the last of the places passed, by a step in the parameter alone; None if none is found.
+
+    Lines that go straight on from both sides meet at a corner.
+    """
+    last = passed[-1]
+    clear = ([one for one in passed if abs(last.value - one.value) > 0.5 * ACROSS[0] * path.range] or passed[:1])[-1]
+    begin = path.together(clear.orbit.place, clear.value)
     for share in ACROSS:
-        target = last.value + share * path.range * float(np.sign(last.way[-1]))
         try:
+            target = last.value + share * path.range * float(np.sign(last.way[-1]))
             new = path.at_value(target, last.orbit.place, last.orbit.period)
         except NoCycleError:
             continue
-        moved = path.together(new.orbit.place, new.value) - path.together(last.orbit.place, last.value)
+        moved, ways = path.together(new.orbit.place, new.value) - begin, np.column_stack([clear.way, -new.way])
+        lengths = np.linalg.lstsq(ways, moved, rcond=None)[0]
         same = abs(new.orbit.period - last.orbit.period) <= SAME_MOTION * last.orbit.period and new.orbit.sticks
-        if same and float(np.abs(moved).max()) <= SAME_MOTION:
-            return new if new.way @ moved >= 0.0 else replace(new, way=-new.way)
+        if same and np.linalg.norm(ways @ lengths - moved) <= MEETS * np.linalg.norm(moved):
+            low, high = sorted((last.value, new.value))
+            value = float(np.clip(clear.value + lengths[0] * clear.way[-1] * path.range, low, high))
+            return Corner(value, new if new.way @ moved >= 0.0 else replace(new, way=-new.way))
     return None
-
-
-def _met_by(path: Path, passed: Sequence[PlaceOnBranch], beyond: PlaceOnBranch) -> float:
-    """Return the value (SI) where two pieces of a branch meet that go straight on to a corner between them."""
-    last = passed[-1]
-    clear = [one for one in passed if abs(last.value - one.value) > 0.5 * ACROSS[0] * path.range] or passed[:1]
-    moved = path.together(beyond.orbit.place, beyond.value) - path.together(clear[-1].orbit.place, clear[-1].value)
-    ahead = np.linalg.lstsq(np.column_stack([clear[-1].way, -beyond.way]), moved, rcond=None)[0][0]
-    low, high = sorted((last.value, beyond.value))
-    return float(np.clip(clear[-1].value + ahead * clear[-1].way[-1] * path.range, low, high))
 
 
 def _changes_in(orbit: FoundCycle) -> int:
