@@ -111,3 +111,37 @@ def test_a_branch_of_a_string_leads_from_stick_slip_back_to_steady_sliding() -> 
     growths = [ss.studies.steady(string(hopf + off, WEAK)).slidings[-1].growth for off in (-1e-4, 1e-4)]
     assert growths[0] > 0.0 > growths[1]
     assert abs(found.points[-2].multipliers[0]) == pytest.approx(1.0, abs=1e-3)
+
+
+def heavy_slab(pull: float) -> ss.Problem:
+    """Return a slab with a mass under Coulomb friction behind a drive of four times its impedance, at a pull rate (m/s)."""
+    slab = ss.ElasticSlab(2800, 3500, 655.874, 52.6784e6, driver_impedance=39.805e6, contact_mass=2.13428e6)
+    return ss.Problem(slab, F.Coulomb(0.737176, 0.400326), pull_rate=pull, initial_load=0.0)
+
+
+def period_of_slab(pull: float) -> float:
+    return float(ss.studies.cycle(heavy_slab(pull)).period)
+
+
+def test_a_branch_goes_on_behind_the_corner_where_the_periods_of_cycles_found_one_by_one_bend() -> None:
+    """Lines through two periods on each side meet there, to 1e-6; the first cycle behind it is that found alone, to 1e-9."""
+    begin = ss.studies.cycle(heavy_slab(1.00247))
+    parameter, pull, to = range_of(begin, "pull_rate", 3.0)
+    end = end_of_rests(*first_place(begin, parameter, (pull, to)))
+    assert end.edge is not None
+    assert end.onward is not None
+    assert end.edge.name == "corner"
+    before, behind = (1.00246, 1.00247), (1.00249, 1.0025)
+    sides = [np.polyfit(np.array(two) - 1.00248, [period_of_slab(one) for one in two], 1) for two in (before, behind)]
+    assert end.edge.value == pytest.approx(1.00248 + float(np.roots(sides[0] - sides[1])[0]), abs=1e-6)
+    first = end.onward[1]
+    assert first.value > end.edge.value
+    assert first.orbit.period == pytest.approx(period_of_slab(first.value), rel=1e-9)
+
+
+def test_hysteresis_to_where_a_branch_is_given_up_reaches_at_least_so_far() -> None:
+    """Behind the corner a jump of the period, by 1.3 % within 2e-5 m/s, ends the branch, and that is said once."""
+    given_up = ss.studies.follow(ss.studies.cycle(heavy_slab(1.0151)), "pull_rate", to=3.0, steps=6)
+    assert len(given_up.edges) == 1
+    assert period_of_slab(given_up.edges[0].value + 1e-5) < 0.99 * given_up.points[-1].measures.period
+    assert "hysteresis between loading.pull_rate = 1.0151 m/s and at least 1.0151" in repr(given_up)

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stickslip.extensions.cycles.edges import DOUBLING, FOLD, HALVING, MEANING, TORUS, CycleEdge
+from stickslip.extensions.cycles.edges import CORNER, DOUBLING, FOLD, GRAZING, HALVING, MEANING, NOT_FOUND, TORUS, CycleEdge
 from stickslip.extensions.cycles.hysteresis import Interval, joined, with_stable_cycles, with_stable_sliding
 from stickslip.extensions.cycles.limit_cycle import NOT_KNOWN, LimitCycle, is_stable, row_of
 from stickslip.extensions.cycles.measures import Measures
@@ -24,6 +24,9 @@ from stickslip.run import Study
 
 ON_THE_CIRCLE = (FOLD, DOUBLING, TORUS, HALVING)
 """The edges where a multiplier is on the unit circle: linear disturbances neither fade nor grow."""
+
+GIVEN_UP, BOUNDS = (CORNER, GRAZING, NOT_FOUND), ("at most ", "at least ")
+"""The edges at the end of a branch beyond which cycles may go on that are not found, and what is said of an interval to there."""
 
 
 class PointOnBranch(NamedTuple):
@@ -108,7 +111,12 @@ class BranchOfCycles(Study):
     def hysteresis_text(self) -> str:
         """Say in one sentence where steady sliding and a cycle are both stable; "" if they are so nowhere."""
         unit = self.parameter.unit
-        between = [f"{brief(one.low, unit, 10)} and {brief(one.high, unit, 10)}" for one in self.hysteresis]
+        given_up = self.points[-1].value if self.points[-1].edge in GIVEN_UP else np.nan
+        ends = [
+            [f"{word if end == given_up else ''}{brief(end, unit, 10)}" for word, end in zip(BOUNDS, one, strict=True)]
+            for one in self.hysteresis
+        ]
+        between = [" and ".join(both) for both in ends]
         if not between:
             return ""
         where = f"between {self.parameter.name} = {', and between '.join(between)}"
