@@ -94,7 +94,8 @@ def end_of_rests(path: Path, last: PlaceOnBranch) -> EndOfPart:
             length, found, value = 0.5 * length, 0, last.value
     name = _name_of_end(last.orbit)
     if name != LOSS_OF_STICK:
-        if found >= GOES_ON and length > TELLS * last.orbit.share:
+        closed: Any = last.orbit
+        if found >= GOES_ON and length > TELLS * closed.share:
             name = CORNER if _changes_in(last.orbit) == changes else GRAZING
             if name == CORNER and abs(before @ last.way) >= STRAIGHT:
                 return EndOfPart(None, (path, last))
