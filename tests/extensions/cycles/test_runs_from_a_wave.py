@@ -101,6 +101,7 @@ def test_what_is_in_the_body_before_is_refused_and_its_start_is_called_a_wave(fo
     for read in (run.energy, run.drive_rate, run.drive_traction, lambda time: run.field(100.0, time)):
         with pytest.raises(ss.InputError, match=refusal):
             read(before)
-    assert "from a given wave, with which the motion begins at" in repr(run)
+    assert dict(run.account.lines())["start"].startswith("not that of the scenario: a given wave, until ")
+    assert "not that of the scenario: a given wave" in repr(run)
     assert "initial load" not in repr(run)
     assert run.shown == (cycle.begin, run.duration)
