@@ -25,8 +25,8 @@ NOTES = {"trapped": "trapped energy", "predictability": "predictability", "prove
 class Account:
     """What is said of a run of a scenario when it is over.
 
-    `reached` is the time (s) at its end. `notes` are by the words of files: reach and, where there is something to say, creep,
-    lumping, selection, short and those of NOTES.
+    `reached` is the time (s) at its end. `notes` are by the words of files: reach and, where there is something to say, begun,
+    creep, lumping, selection, short and those of NOTES.
     """
 
     scenario: Scenario
@@ -37,6 +37,8 @@ class Account:
     def lines(self) -> Iterator[NamedLine]:
         """Yield how it went: slip, what ended it and when, and what the options of the run came to."""
         scenario, problem, note = self.scenario, self.scenario.problem, self.notes.get
+        if begun := note("begun"):
+            yield "start", begun
         if reach := note("reach"):
             yield "slip", reach
         yield "status", str(self.status)

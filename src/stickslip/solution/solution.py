@@ -252,6 +252,7 @@ class Solution(Exports, ShownAsTable):
         from stickslip.solution.account import Account
 
         notes = {
+            "begun": self.begun_note,
             "reach": self.reach_note,
             "creep": self.creep_note,
             "lumping": self.lumping_note,
@@ -269,18 +270,22 @@ class Solution(Exports, ShownAsTable):
         """Return what is said of the run, with its body, law and loading, in lines of a name and a text."""
         problem, account = self.problem, self.account
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
-        begins = f"initial load {brief(problem.load, problem.load_unit)}"
-        if self.history.given:
-            begins = f"from a given wave, with which the motion begins at {brief(self.history.begun, 's')}"
+        if not self.history.given:
+            loading += f", initial load {brief(problem.load, problem.load_unit)}"
         return [
             ("body", repr(problem.body)),
             ("friction", problem.law_text),
-            ("loading", f"{loading}, {begins}"),
+            ("loading", loading),
             *account.lines(),
             ("events", self.events_in_words()),
             ("shocks", f"{len(self.shocks)}"),
             *account.noted(),
         ]
+
+    @property
+    def begun_note(self) -> str:
+        """One line on the given wave with which the run began; empty if it began as its problem says."""
+        return f"not that of the scenario: a given wave, until {brief(self.history.begun, 's')}" if self.history.given else ""
 
     @cached_property
     def reach(self) -> Reach:

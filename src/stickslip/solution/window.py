@@ -60,8 +60,7 @@ class Window(Exports):
     @property
     def shown(self) -> tuple[float, float]:
         """The first and the last local time (s) that figures show."""
-        first, last = self.history.span
-        return max(-self.before, first), min(self.after, last)
+        return max(-self.before, self.history.begun), min(self.after, self.history.span[1])
 
     @property
     def curves(self) -> tuple[Curve, ...]:

@@ -112,7 +112,7 @@ class History:
     forgotten: int = 0
     """Number of earlier pieces that a catalogue has discarded; pieces that are left need not follow on each other."""
     begun_with: Floats | None = None
-    """Waves with which a body began (Pa), if they are given: a series for each of the first pieces, and for each cell of layers."""
+    """Waves with which a body began (Pa), if they are given: a series for each of the first pieces, and each cell of layers."""
 
     @property
     def given(self) -> int:

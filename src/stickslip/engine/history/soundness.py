@@ -94,11 +94,8 @@ def _shapes_of_history(history: History) -> Iterator[Fault]:
     yield "shape or type of history_state", not _is(store.state, (pieces if states else 0, states, at.TERMS), "f")
     yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")
     if (given := history.begun_with) is not None:
-        first, cells = (
-            int(np.searchsorted(store.trip, 1)),
-            max(1, INPUTS[history.problem.body.structure].cells(history.problem).cells),
-        )
-        yield "shape or type of history_begun_with", not first or not _is(given, (first, cells, at.TERMS), "f")
+        first, cells = int(np.searchsorted(store.trip, 1)), INPUTS[history.problem.body.structure].cells(history.problem).cells
+        yield "shape or type of history_begun_with", not first or not _is(given, (first, max(cells, 1), at.TERMS), "f")
         yield "number of history_begun_with", not np.isfinite(given).all()
 
 

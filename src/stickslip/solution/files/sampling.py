@@ -127,8 +127,8 @@ def sampled_curves(
 def _interval(run: Readings, start: float | None, end: float | None) -> tuple[float, float]:
     """Return the first and the last time (s) of a series. Raises InputError unless they lie within the run, in this order."""
     first, last = (own if given is None else given for own, given in zip(run.shown, (start, end), strict=True))
-    if not run.history.span[0] <= first < last <= run.history.span[1]:
-        low, high = run.history.span
+    low, high = run.history.begun, run.history.span[1]
+    if not low <= first < last <= high:
         raise InputError(f"samples must lie within the run, {low:g} to {high:g} s, got {first:g} to {last:g} s")
     return first, last
 
@@ -184,7 +184,7 @@ def _values(read: Read, time: Floats) -> list[Floats]:
 
 def _means(run: Readings, read: Read, time: Floats, width: float) -> list[Floats]:
     """Return averages of the quantities over `width` (s) around each time, by Gauss's rule between breaking points."""
-    low, high = run.history.span
+    low, high = run.history.begun, run.history.span[1]
     bounds = np.clip(np.append(time - 0.5 * width, time[-1] + 0.5 * width), low, high)
     breaks = run.breaks[(run.breaks > bounds[0]) & (run.breaks < bounds[-1])]
     edges = np.union1d(bounds, breaks)

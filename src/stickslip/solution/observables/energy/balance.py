@@ -27,10 +27,10 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
 
     The origin is by default the start of the run, or of its motion behind a given wave. The dataset holds work, stored (elastic +
     kinetic), elastic, kinetic, heat, damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). For
-    layers it has elastic_in_layer and
-    kinetic_in_layer, too, along a dimension `layer`: 1 is that at the contact, and -1 that on its other side. Work is the energy
-    input of the driver, net of the energy radiated through a driver of finite impedance. Balance is work - stored - heat - damped,
-    zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in waves.
+    layers it has elastic_in_layer and kinetic_in_layer, too, along a dimension `layer`: 1 is that at the contact, and -1 that on
+    its other side. Work is the energy input of the driver, net of the energy radiated through a driver of finite impedance. Balance
+    is work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that travels to and fro
+    in waves.
 
     Raises InputError for times outside the run, and for times in a leap over creep or within a round trip after it: the waves that
     left the contact there are not known.
