@@ -38,6 +38,10 @@ SHORTEST_PIECE, COARSE = 1e-5, 1.0 / 6.0
 """Shortest and longest piece of a mesh before it is divided (1, shares of a round trip)."""
 RESOLVED, MOST_PIECES, FINEST = 1e-9, 240, 1e-4
 """Pieces are halved until the last terms are below this share (1) of the wave's extent, up to a number, down to a length (1)."""
+BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
+"""Places (1) on a piece of the mesh, most of them near its ends, where a wave is compared with the mesh."""
+SEEN_BESIDE = 1e-5
+"""Pieces are halved, too, where the wave is off by more than this share (1) of its extent there: points may not see a front."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,11 @@ class WaveMesh:
     def phases(self) -> Floats:
         """The phases (s) of all points."""
         return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * MESH_PLACES).ravel())
+
+    @cached_property
+    def beside(self) -> Floats:
+        """Phases (s) of places in all pieces that are no points."""
+        return np.asarray((self.edges[:-1, None] + np.diff(self.edges)[:, None] * BESIDE).ravel())
 
     def series(self, values: Floats) -> Floats:
         """Return the polynomials of a wave with these values at the points, one for each piece; of several waves for each cell."""
@@ -176,6 +185,10 @@ def mesh_of(source: WaveSource, sharp: Floats, resolved: float = RESOLVED) -> Wa
         values = source.at(mesh.phases).reshape(-1, len(edges) - 1, NODES)
         rough = np.abs(values @ TERMS_OF_VALUES[-2:].T).max(axis=(0, 2)) > resolved * np.ptp(values)
         rough &= np.diff(edges) > FINEST * trip
+        if not rough.any():
+            off = np.abs(source.at(mesh.beside) - mesh.at(values.ravel(), mesh.beside)).reshape(-1, len(edges) - 1, len(BESIDE))
+            rough = off.max(axis=(0, 2)) > max(SEEN_BESIDE, resolved) * np.ptp(values)
+            rough &= np.diff(edges) > FINEST * trip
         if not rough.any() or len(edges) + rough.sum() > MOST_PIECES:
             return mesh
         edges = np.sort(np.append(edges, 0.5 * (edges[:-1] + edges[1:])[rough]))

@@ -25,7 +25,7 @@ NEARLY_STEADY, LAST_PART, LOOKED_AT = 0.2, 0.1, 200
 """A run that is no farther from stable steady sliding than a share (1) of its slip rate comes to it if it is nearer in its last
 part (1, of its duration) than in the part before; so many times (1) in each tell it."""
 
-ONCE = 1e-6
+ONCE = 1e-5
 """A cycle is back where it began if its wave misses that by no more than this share (1) of its extent."""
 
 

@@ -25,8 +25,6 @@ LONGER_THAN_GUESS = 1.25
 """A run to a return lasts longer than the guessed period by this factor (1)."""
 NO_STATE = 1e-15
 """A state that is no larger than this, in its unit, is 0, as a rest makes some, and has no size."""
-BESIDE = np.sort(np.append(ONE_END := 10.0 ** np.arange(-4.0, 0.0, 0.25), 1.0 - ONE_END))
-"""Places (1) on a piece of the mesh, most of them near its ends, where a wave is compared with its start."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +132,7 @@ class WaveReturn:
     def between(self) -> float:
         """By what share (1) of its extent the wave misses its start in the mean of the round trip, where the mesh has no points."""
         edges = self.start.mesh.edges
-        phases = (edges[:-1, None] + np.diff(edges)[:, None] * BESIDE).ravel()
+        phases = self.start.mesh.beside
         off = np.abs(self.source.at(phases) - self.start.mesh.at(self.start.wave, phases)).reshape(-1, len(phases))
         means = np.sum(0.5 * (off[:, 1:] + off[:, :-1]) * np.diff(phases), axis=1) / edges[-1]
         return float(means.max() / self.start.scale[-1])
