@@ -1,18 +1,18 @@
-"""What the search for cycles asks of each kind of body: what it refuses, the cycle near a run, and the path of a branch."""
+"""What is asked of each kind of body: the cycles it refuses, one near a run, the path of a branch, and how disturbances grow."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.by_kind import ByKind
-from stickslip.foundation.errors import InputError
 from stickslip.problem import BODY_KINDS, LoadingHistory, Problem
 from stickslip.run.study import MAX_PIECES
 
 if TYPE_CHECKING:
     from stickslip.engine import History
+    from stickslip.extensions.cycles.exponent import MeasuredGrowth
     from stickslip.extensions.cycles.found import FoundCycle
     from stickslip.problem.scenarios import ParameterPath, Scenario
     from stickslip.run import TextProgress
@@ -25,7 +25,6 @@ class CycleKind(ABC):
     """Largest number of pieces of history (1) of the run at whose end a cycle is looked for."""
     may_be_cut: bool = False
     """True if that run may end when it has them."""
-
     may_be_held: bool = False
     """True if a body moves in cycles whose pull rate is 0, too."""
 
@@ -48,25 +47,9 @@ class CycleKind(ABC):
     def path(self, orbit: Any, scenario: Scenario, parameter: ParameterPath, span: float) -> Any:
         """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
 
-
-@dataclass(frozen=True)
-class WithoutCycles(CycleKind):
-    """Answers of a kind of body whose cycles are not found."""
-
-    what: str
-    """What sentences call such a body."""
-
-    def refusal(self, problem: Problem) -> str:
-        """Return why no cycle of a problem is looked for."""
-        return f"cycles are found of rigid bodies on a spring, slabs and strings, and this is a {self.what}"
-
-    def near_end(self, history: History, problem: Problem, rtol: float) -> FoundCycle:
-        """Refuse. Raises InputError."""
-        raise InputError(f"cycle: {self.refusal(problem)}")
-
-    def path(self, orbit: Any, scenario: Scenario, parameter: ParameterPath, span: float) -> Any:
-        """Refuse. Raises InputError."""
-        raise InputError(f"follow: {self.refusal(scenario.problem)}")
+    @abstractmethod
+    def growth(self, problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
+        """Return how disturbances of a run are followed: by an equation for them where there is one, else by two runs."""
 
 
 def not_steady(problem: Problem) -> str:

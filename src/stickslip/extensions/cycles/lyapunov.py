@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
 from stickslip.extensions.cycles.asked import CYCLE_KINDS
-from stickslip.extensions.cycles.disturbed.growth_of_pair import growth_of_pair
 from stickslip.extensions.cycles.exponent import LOST_SHARE, LyapunovExponent, MeasuredGrowth
-from stickslip.extensions.cycles.growth_along_returns import growth_of_rigid
-from stickslip.extensions.cycles.growth_of_echoes import growth_of_echoes, tell_growth
-from stickslip.extensions.cycles.lag import is_wound
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
@@ -43,17 +38,6 @@ class PartedRuns(Protocol):
     exponent_error: float
     growth_per_event: float
     events: int
-
-
-def way_of(problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
-    """Return how disturbances of a problem are followed: by the equation for them where there is one, else by two runs."""
-    kind = problem.body.structure
-    if kind == "uniform":
-        return growth_of_echoes if tell_growth(problem, rtol) else growth_of_pair
-    moves = problem.first_pull_rate > 0.0 or is_wound(problem)
-    if kind == "layered" or CYCLE_KINDS[kind].refusal(problem) or not moves:
-        return growth_of_pair
-    return growth_of_rigid
 
 
 @for_users
@@ -119,7 +103,7 @@ def lyapunov(
         if special_solver_of(source) is not None:
             return LyapunovExponent(source, _of_parted_runs(source, given, skip))
         left_out = skipped_of(source.duration, skip)
-        follow = way_of(source.problem, rtol)
+        follow = CYCLE_KINDS[source.problem.body.structure].growth(source.problem, rtol)
         return LyapunovExponent(source.problem, follow(source.problem, left_out, source.duration, rtol, tell))
 
 

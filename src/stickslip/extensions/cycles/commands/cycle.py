@@ -21,7 +21,7 @@ NEAR = "Duration of the run at whose end the cycle is looked for: s, or with a u
 ALONG = "Follow the cycle along this number of the scenario, such as pull_rate or body.stiffness; with --to."
 TO = "Value at the other end of --along, a number in SI or with a unit."
 DOUBLED_TOO = "Follow cycles of twice the period, too, where the period doubles."
-GO_ON = "Go on with the branch in --out, which Ctrl-C has ended, or to another --to."
+GO_ON = "Go on with the branch in --out, which Ctrl-C has ended, or to a farther --to."
 ROWS_SHOWN = 24
 """Largest number of cycles of a branch that are printed; edges are printed beside them."""
 
@@ -45,10 +45,10 @@ def cycle(
     One period multiplies small disturbances by the multipliers: the cycle is
     stable if all are smaller than 1. A contact that rests forgets, and has 0.
     The cycle is looked for near the end of a run of the scenario, of a rigid
-    body, or of a slab or string, also behind a machine. With --along
-    and --to it is followed as one number changes, around folds: edges where
-    stick is lost, the period doubles, or the cycle ends in steady sliding are
-    found and named. The figure shows one period, or amplitude and period of
+    body, or of a slab or string, of layers or behind a machine too. With
+    --along and --to it is followed as one number changes, around folds: edges
+    where stick is lost, the period doubles, or the cycle ends in steady
+    sliding are found and named. The figure shows one period, or amplitude and period of
     the branch, dashed where it is unstable. A position loop at a set point
     (pull rate 0) hunts: its edges are folds, the end of hunting, and stops
     that are grazed. Ctrl-C keeps what there is of a branch in --out, and

@@ -27,10 +27,10 @@ def lyapunov(
 
     The largest Lyapunov exponent, with its standard error: above 0 the motion
     is chaotic, and single events mean nothing beyond a horizon. Rigid bodies
-    under a steady pull, and slabs and strings without masses under a law of
-    slip rate, have an equation of disturbances; of chains disturbed runs are
-    compared. Of all others (strings with a bit, layers, machines, position
-    loops, hard stops, loadings that vary) two runs that differ a little are
+    under a steady pull or in a position loop, and slabs and strings without
+    masses under a law of slip rate, have an equation of disturbances; of
+    chains disturbed runs are compared. Of all others (strings with a bit,
+    layers, machines, loadings that vary) two runs that differ a little are
     compared after each round trip. The figure shows how a disturbance grows
     along the run.
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import cast
 
+from stickslip.extensions.cycles.disturbed.growth_of_pair import growth_of_pair
+from stickslip.extensions.cycles.exponent import MeasuredGrowth
 from stickslip.extensions.cycles.kinds.uniform import FINITE, CyclesOfUniform, not_repeated
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit
 from stickslip.extensions.cycles.waves.path import WavePath
@@ -53,6 +56,10 @@ class CyclesOfLayered(CyclesOfUniform):
                 " cut into: follow a number that leaves them, such as an impedance or the pull rate, or find the cycles one by one"
             )
         return super().path(orbit, scenario, parameter, span)
+
+    def growth(self, problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
+        """Return how disturbances of a run are followed: by two runs."""
+        return growth_of_pair
 
 
 ANSWERS = CyclesOfLayered()

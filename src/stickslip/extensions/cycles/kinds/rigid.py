@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
+from stickslip.extensions.cycles.disturbed.growth_of_pair import growth_of_pair
+from stickslip.extensions.cycles.exponent import MeasuredGrowth
+from stickslip.extensions.cycles.growth_along_returns import growth_of_rigid
 from stickslip.extensions.cycles.near import near_end
 from stickslip.extensions.cycles.orbit import Orbit
 from stickslip.extensions.cycles.path import Path, path_of
@@ -36,6 +41,11 @@ class CyclesOfRigid(CycleKind):
     def path(self, orbit: Orbit, scenario: Scenario, parameter: ParameterPath, span: float) -> Path:
         """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
         return path_of(orbit, scenario, parameter, span)
+
+    def growth(self, problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
+        """Return how disturbances of a run are followed: by the equation for them where it returns to a section."""
+        returns = problem.first_pull_rate > 0.0 or self.may_be_held
+        return growth_of_rigid if returns and not self.refusal(problem) else growth_of_pair
 
 
 ANSWERS = CyclesOfRigid()

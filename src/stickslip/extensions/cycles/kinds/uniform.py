@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from stickslip.engine import History
 from stickslip.extensions.cycles.asked import CycleKind, not_steady
+from stickslip.extensions.cycles.disturbed.growth_of_pair import growth_of_pair
+from stickslip.extensions.cycles.exponent import MeasuredGrowth
+from stickslip.extensions.cycles.growth_of_echoes import growth_of_echoes, tell_growth
 from stickslip.extensions.cycles.waves.near import near_end
 from stickslip.extensions.cycles.waves.orbit import WaveOrbit
 from stickslip.extensions.cycles.waves.path import WavePath, path_of
@@ -69,6 +73,10 @@ class CyclesOfUniform(CycleKind):
     def path(self, orbit: WaveOrbit, scenario: Scenario, parameter: ParameterPath, span: float) -> WavePath:
         """Return the path of a cycle along a number of its scenario, over a span (SI) of it."""
         return path_of(orbit, scenario, parameter, span)
+
+    def growth(self, problem: Problem, rtol: float) -> Callable[..., MeasuredGrowth]:
+        """Return how disturbances of a run are followed: by echoes where each multiplies them by a number."""
+        return growth_of_echoes if tell_growth(problem, rtol) else growth_of_pair
 
 
 ANSWERS = CyclesOfUniform()
